@@ -1,0 +1,1 @@
+"""How it is computed: table → plan → one fused kernel. Knows no mechanism."""

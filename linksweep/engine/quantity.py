@@ -1,0 +1,71 @@
+"""What a mechanism's table is made of: quantities (what a name means) and rows (what makes it)."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A result by name: its unit (UDUNITS spelling) and, in words, what it is and how its sign counts.
+
+    `squared` names the quantity whose square root this is: a peak of a magnitude is sought on the square.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    squared: str | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """`function` makes `outputs` from `inputs` (by default: from quantities named like its arguments)."""
+
+    function: Callable
+    outputs: tuple[str, ...]
+    inputs: tuple[str | float, ...] = ()
+
+    @property
+    def wiring(self) -> tuple[str | float, ...]:
+        return self.inputs or tuple(inspect.signature(self.function).parameters)
+
+
+@dataclass(frozen=True)
+class Total:
+    """A quantity that is the sum of others; of none, it is zero, and whatever it enters shrinks accordingly."""
+
+    output: str
+    terms: tuple[str, ...]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def wiring(self) -> tuple[str, ...]:
+        return self.terms
+
+    def function(self, *terms):
+        return sum(terms[1:], terms[0]) if terms else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """All that a mechanism can compute: rows, the quantities people may ask for, and the sweep's own dimension."""
+
+    index: str
+    rows: tuple[Row | Total, ...]
+    quantities: tuple[Quantity, ...] = field(default=())
+
+    @cached_property
+    def maker(self) -> Mapping[str, Row | Total]:
+        """The row that makes each name."""
+        return {name: row for row in self.rows for name in row.outputs}
+
+    @cached_property
+    def quantity(self) -> Mapping[str, Quantity]:
+        return {quantity.name: quantity for quantity in self.quantities}

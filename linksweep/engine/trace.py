@@ -1,0 +1,152 @@
+"""Physics functions traced into a graph of single operations.
+
+A function called with traced values records each + - * / and square root once (equal operations are shared) and leaves
+out what is known to be nothing: 0·x, 0 + x, 1·x. Leaving out changes no bit of any result: each remaining operation is
+rounded as IEEE says, never contracted or reordered, so the same numbers come out of every path that evaluates the graph.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+COMMUTATIVE = {"+", "*"}
+DECIDED = {"<": lambda x, y: float(x < y), "abs": abs, "where": lambda c, x, y: x if c else y}
+"""Operations settled while tracing where their operands are constants."""
+
+
+class Node:
+    """One operation (or input, or constant) of a graph, with the dimensions that its value depends on."""
+
+    __slots__ = ("dims", "graph", "operands", "operator", "position", "value")
+
+    def __init__(self, graph: Graph, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value):
+        self.graph, self.operator, self.operands, self.dims, self.value = graph, operator, operands, dims, value
+        self.position = len(graph.nodes)
+        graph.nodes.append(self)
+
+    def __add__(self, other):
+        return self.graph.add(self, self.graph.node(other))
+
+    def __sub__(self, other):
+        return self.graph.subtract(self, self.graph.node(other))
+
+    def __mul__(self, other):
+        return self.graph.multiply(self, self.graph.node(other))
+
+    def __truediv__(self, other):
+        return self.graph.divide(self, self.graph.node(other))
+
+    def __radd__(self, other):
+        return self.graph.node(other) + self
+
+    def __rsub__(self, other):
+        return self.graph.node(other) - self
+
+    def __rmul__(self, other):
+        return self.graph.node(other) * self
+
+    def __rtruediv__(self, other):
+        return self.graph.node(other) / self
+
+    def __neg__(self):
+        return self.graph.negate(self)
+
+    def __abs__(self):
+        return self.graph.operation("abs", self)
+
+    def __lt__(self, other):
+        return self.graph.operation("<", self, self.graph.node(other))
+
+    def __gt__(self, other):
+        return self.graph.node(other) < self
+
+    def sqrt(self):
+        return self.graph.operation("sqrt", self)
+
+    def atan2(self, x):
+        return self.graph.operation("atan2", self, self.graph.node(x))
+
+    def where(self, x, y):
+        return self.graph.operation("where", self, self.graph.node(x), self.graph.node(y))
+
+    def is_constant(self, value: float) -> bool:
+        return self.operator == "constant" and self.value == value
+
+
+class Key(NamedTuple):
+    operator: str
+    operands: tuple[int, ...]
+    value: object
+
+
+class Graph:
+    """Nodes in the order of their making, so that operands come before what uses them."""
+
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self._known: dict[Key, Node] = {}
+
+    def node(self, value: Node | float) -> Node:
+        return value if isinstance(value, Node) else self.constant(float(value))
+
+    def constant(self, value: float) -> Node:
+        return self._make("constant", (), frozenset(), value)
+
+    def input(self, name: str, dims: tuple[str, ...]) -> Node:
+        return self._make("input", (), frozenset(dims), name)
+
+    def operation(self, operator: str, *operands: Node) -> Node:
+        if operands[0].operator == "constant" and operator in DECIDED:
+            if all(x.operator == "constant" for x in operands):
+                return self.constant(DECIDED[operator](*(x.value for x in operands)))
+            if operator == "where":
+                return operands[1] if operands[0].value else operands[2]
+        return self._make(operator, operands, frozenset().union(*(x.dims for x in operands)), None)
+
+    def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
+        positions = tuple(x.position for x in operands)
+        key = Key(operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value)
+        if key not in self._known:
+            self._known[key] = Node(self, operator, operands, dims, value)
+        return self._known[key]
+
+    def add(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0):
+            return y
+        if y.is_constant(0.0):
+            return x
+        if y.operator == "negate":
+            return self.subtract(x, y.operands[0])
+        if x.operator == "negate":
+            return self.subtract(y, x.operands[0])
+        return self.operation("+", x, y)
+
+    def subtract(self, x: Node, y: Node) -> Node:
+        if y.is_constant(0.0):
+            return x
+        if x.is_constant(0.0):
+            return self.negate(y)
+        if y.operator == "negate":
+            return self.add(x, y.operands[0])
+        return self.operation("-", x, y)
+
+    def multiply(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        if x.is_constant(1.0):
+            return y
+        if y.is_constant(1.0):
+            return x
+        return self.operation("*", x, y)
+
+    def divide(self, x: Node, y: Node) -> Node:
+        if x.is_constant(0.0) or y.is_constant(1.0):
+            return x
+        return self.operation("/", x, y)
+
+    def negate(self, x: Node) -> Node:
+        if x.operator == "constant":
+            return self.constant(-x.value if x.value else 0.0)
+        if x.operator == "negate":
+            return x.operands[0]
+        return self.operation("negate", x)

@@ -1,0 +1,190 @@
+"""Rows of one moving link, the same for every mechanism: inertia, weight, loads, centre of gravity, power.
+
+A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What the
+mechanism adds is how the first pin moves: the names of its velocity and acceleration (0.0 where it stands).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.physics import inertia, planar
+
+Source = str | float
+
+
+@dataclass(frozen=True)
+class LoadForm:
+    """What a load consists of, without its numbers: enough to know which rows it takes."""
+
+    link: str
+    force: bool
+    torque: bool
+    link_axes: bool
+
+
+@dataclass(frozen=True)
+class Body:
+    """A moving link of a mechanism: its number and role, and the motion of its first pin."""
+
+    number: int
+    role: str
+    pin_velocity: tuple[Source, Source] = (0.0, 0.0)
+    pin_acceleration: tuple[Source, Source] = (0.0, 0.0)
+
+    def rows(self, loads: tuple[LoadForm, ...]) -> list[Row | Total]:
+        mine = [(f"load{k}", load) for k, load in enumerate(loads, 1) if load.link == self.role]
+        return [*self._inertia(), *self._centre(), *self._loads(mine)]
+
+    def power_terms(self, loads: tuple[LoadForm, ...]) -> list[str]:
+        """Names of the powers that act on this link from outside, inertia included."""
+        terms = [f"inertia_power{self.number}", f"gravity_power{self.number}"]
+        for k, load in enumerate(loads, 1):
+            if load.link == self.role:
+                terms += [f"load{k}_force_power"] * load.force + [f"load{k}_torque_power"] * load.torque
+        return terms
+
+    def _inertia(self) -> list[Row | Total]:
+        k, role, pin = self.number, self.role, self.pin_acceleration
+        vector, h, rates = (f"r{k}x", f"r{k}y"), (f"h{k}x", f"h{k}y"), (f"omega{k}", f"alpha{k}")
+        cg, gravity = (f"{role}_cg_x", f"{role}_cg_y"), ("gravity_x", "gravity_y")
+        mass, length = f"{role}_mass", f"{role}_length"
+        return [
+            Row(inertia.moment_of_inertia_about_pin, (f"J{k}",), (mass, f"{role}_inertia", *cg)),
+            Row(inertia.first_moment, h, (mass, *cg, length, *vector)),
+            Row(
+                inertia.effective_force,
+                (f"Q{k}x", f"Q{k}y"),
+                (mass, *h, *pin, *gravity, *rates, f"P{k}x", f"P{k}y"),
+            ),
+            Row(inertia.effective_moment, (f"N{k}",), (f"J{k}", *h, *pin, *gravity, rates[1], f"M{k}")),
+        ]
+
+    def _centre(self) -> list[Row | Total]:
+        k, role = self.number, self.role
+        vector, centre, rates = (f"r{k}x", f"r{k}y"), (f"rG{k}x", f"rG{k}y"), (f"omega{k}", f"alpha{k}")
+        velocity, acceleration = (f"vG{k}x", f"vG{k}y"), (f"aG{k}x", f"aG{k}y")
+        mass = f"{role}_mass"
+        return [
+            Row(planar.turned, centre, (f"{role}_cg_x", f"{role}_cg_y", f"{role}_length", *vector)),
+            Row(planar.point_velocity, velocity, (*self.pin_velocity, rates[0], *centre)),
+            Row(planar.point_acceleration, acceleration, (*self.pin_acceleration, *rates, *centre)),
+            Row(
+                inertia.inertia_power,
+                (f"inertia_power{k}",),
+                (mass, f"{role}_inertia", *velocity, *acceleration, *rates),
+            ),
+            Row(inertia.gravity_power, (f"gravity_power{k}",), (mass, "gravity_x", "gravity_y", *velocity)),
+            Row(
+                inertia.newton_euler_right_side,
+                (f"rhs{k}x", f"rhs{k}y", f"rhs{k}m"),
+                (
+                    *(mass, f"{role}_inertia", *acceleration, rates[1], "gravity_x", "gravity_y", *centre),
+                    *(f"P{k}x", f"P{k}y", f"M{k}"),
+                ),
+            ),
+        ]
+
+    def _loads(self, mine: list[tuple[str, LoadForm]]) -> list[Row | Total]:
+        k, rows = self.number, []
+        for load, form in mine:
+            rows += self._force(load, form) if form.force else []
+            rows += [Row(planar.product, (f"{load}_torque_power",), (f"{load}_torque", f"omega{k}"))]
+        forces = [load for load, form in mine if form.force]
+        torques = [f"{load}_torque" for load, form in mine if form.torque]
+        return [
+            *rows,
+            Total(f"P{k}x", tuple(f"{load}_Fx" for load in forces)),
+            Total(f"P{k}y", tuple(f"{load}_Fy" for load in forces)),
+            Total(f"M{k}", (*(f"{load}_moment" for load in forces), *torques)),
+        ]
+
+    def _force(self, load: str, form: LoadForm) -> list[Row | Total]:
+        k = self.number
+        point, force, velocity = (
+            (f"{load}_rx", f"{load}_ry"),
+            (f"{load}_Fx", f"{load}_Fy"),
+            (f"{load}_vx", f"{load}_vy"),
+        )
+        axes = (f"{self.role}_length", f"r{k}x", f"r{k}y")
+        rows: list[Row | Total] = [
+            Row(planar.turned, point, (f"{load}_at_x", f"{load}_at_y", *axes)),
+            Row(planar.cross, (f"{load}_moment",), (*point, *force)),
+            Row(planar.point_velocity, velocity, (*self.pin_velocity, f"omega{k}", *point)),
+            Row(planar.dot, (f"{load}_force_power",), (*force, *velocity)),
+        ]
+        if form.link_axes:
+            rows.append(Row(planar.turned, force, (f"{load}_force_x", f"{load}_force_y", *axes)))
+        return rows
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A row of the textbook's square system: what stands before each unknown (a number, or ± a quantity), and its right side."""
+
+    label: str
+    coefficients: dict[str, float | tuple[float, str]]
+    right_side: str
+
+
+def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: str | None) -> list[Equation]:
+    """ΣFx, ΣFy and ΣM about the centre of gravity of link k.
+
+    `pins` gives for each pin force its sign on this link and the arm R from the centre of gravity to the pin (document 2).
+    """
+    x = {f"{force}x": sign for force, (sign, _) in pins.items()}
+    y = {f"{force}y": sign for force, (sign, _) in pins.items()}
+    m: dict[str, float | tuple[float, str]] = {}
+    for force, (sign, arm) in pins.items():
+        m |= {f"{force}x": (-sign, f"{arm}y"), f"{force}y": (sign, f"{arm}x")}
+    if torque:
+        m[torque] = 1.0
+    return [
+        Equation(f"sum Fx on {k}", dict(x), f"rhs{k}x"),
+        Equation(f"sum Fy on {k}", dict(y), f"rhs{k}y"),
+        Equation(f"sum M on {k} about G{k}", m, f"rhs{k}m"),
+    ]
+
+
+def arm_rows(k: int, first: str, second: str) -> list[Row | Total]:
+    """Arms from the centre of gravity of link k to its two pins."""
+    centre = (f"rG{k}x", f"rG{k}y")
+    return [
+        Row(planar.difference, (f"{first}x", f"{first}y"), (0.0, 0.0, *centre)),
+        Row(planar.difference, (f"{second}x", f"{second}y"), (f"r{k}x", f"r{k}y", *centre)),
+    ]
+
+
+def pin_force_rows(i: int, j: int) -> list[Row | Total]:
+    """Magnitude of the force of link i on link j, and the reaction of j on i, from its components."""
+    force, back = f"F{i}{j}", f"F{j}{i}"
+    return [
+        Row(planar.square, (f"{force}_squared",), (f"{force}x", f"{force}y")),
+        Row(planar.root, (force,), (f"{force}_squared",)),
+        Row(planar.opposite, (f"{back}x",), (f"{force}x",)),
+        Row(planar.opposite, (f"{back}y",), (f"{force}y",)),
+        Row(planar.square, (f"{back}_squared",), (f"{back}x", f"{back}y")),
+        Row(planar.root, (back,), (f"{back}_squared",)),
+    ]
+
+
+def pin_force_quantities(i: int, j: int, pin: str, links: dict[int, str]) -> list[Quantity]:
+    found = []
+    for a, b in ((i, j), (j, i)):
+        said = f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
+        found += [
+            Quantity(f"F{a}{b}x", "N", f"force {said}, component along x (positive to the right)"),
+            Quantity(f"F{a}{b}y", "N", f"force {said}, component along y (positive upwards)"),
+            Quantity(f"F{a}{b}", "N", f"magnitude of the force {said}", squared=f"F{a}{b}_squared"),
+        ]
+    return found
+
+
+def motion_quantities(k: int, role: str) -> list[Quantity]:
+    return [
+        Quantity(f"omega{k}", "rad s-1", f"angular velocity of the {role}, positive counter-clockwise"),
+        Quantity(f"alpha{k}", "rad s-2", f"angular acceleration of the {role}, positive counter-clockwise"),
+        Quantity(f"aG{k}x", "m s-2", f"acceleration of the {role}'s centre of gravity along x"),
+        Quantity(f"aG{k}y", "m s-2", f"acceleration of the {role}'s centre of gravity along y"),
+    ]

@@ -1,0 +1,266 @@
+"""The four-bar: crank 2 (A-B), coupler 3 (B-C), rocker 4 (D-C) on ground 1 (A-D)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.engine.run import Field
+from linksweep.mechanisms.bodies import (
+    Body,
+    Equation,
+    LoadForm,
+    arm_rows,
+    motion_quantities,
+    newton_euler_equations,
+    pin_force_quantities,
+    pin_force_rows,
+)
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
+from linksweep.physics import dyad_rrr, four_bar, inertia, planar
+
+BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
+LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
+PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
+UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+BODIES = (
+    Body(2, "crank"),
+    Body(3, "coupler", pin_velocity=("vBx", "vBy"), pin_acceleration=("aBx", "aBy")),
+    Body(4, "rocker"),
+)
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """A four-bar linkage.
+
+    Parameters
+    ----------
+    crank, coupler, rocker : Link, Bar or Disk
+        Their first pins are A, B and D.
+    ground : length of the frame from A to D [m], DataArray allowed
+    branch : "open" (C to the left of the line B→D), "crossed", or "both" (adds the dimension `branch`)
+    ground_angle : angle of the line A→D to x [degree], DataArray allowed
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds, and for lengths that cannot be joined at any crank angle.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
+    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
+    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
+    >>> press.branch
+    'open'
+    """
+
+    crank: Link | Bar | Disk
+    coupler: Link | Bar | Disk
+    rocker: Link | Bar | Disk
+    ground: Number = parameter("length", above=0.0)
+    branch: str = "open"
+    ground_angle: Number = parameter("angle", 0.0)
+
+    index: ClassVar[str] = "theta2"
+    period: ClassVar[float] = 360.0
+    drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
+    links: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
+    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
+
+    def __post_init__(self) -> None:
+        found = []
+        for role in self.links:
+            link = getattr(self, role)
+            sound = isinstance(link, Link | Bar | Disk)
+            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
+        refuse(found)
+        refuse(self._never_closes())
+
+    def lengths(self) -> dict[str, Number]:
+        return {
+            "crank": self.crank.length,
+            "coupler": self.coupler.length,
+            "rocker": self.rocker.length,
+            "ground": self.ground,
+        }
+
+    def _never_closes(self) -> list[str]:
+        """A single design whose longest link cannot be spanned by the others; in a batch it only spoils itself."""
+        lengths = self.lengths()
+        if any(hasattr(length, "dims") for length in lengths.values()):
+            return []
+        longest = max(lengths, key=lengths.__getitem__)
+        excess = 2.0 * lengths[longest] - sum(lengths.values())
+        if excess <= 0.0:
+            return []
+        path = "ground" if longest == "ground" else f"{longest}.length"
+        others = " + ".join(role for role in lengths if role != longest)
+        return [
+            f"{path} = {lengths[longest]:.15g} m is {excess:.6g} m longer than {others}: "
+            f"the mechanism cannot be assembled at any angle; shorten it or lengthen the others"
+        ]
+
+    def parameters(self) -> dict[str, Any]:
+        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
+        ground_cos, ground_sin = cos_sin(self.ground_angle)
+        cos_half, sin_half = cos_sin(0.5 * self.ground_angle)
+        numbers: dict[str, Any] = {
+            "ground_length": self.ground,
+            "ground_cos": ground_cos,
+            "ground_sin": ground_sin,
+            "ground_cos_half": cos_half,
+            "ground_sin_half": sin_half,
+            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+        }
+        for role in self.links:
+            numbers |= link_parameters(role, getattr(self, role))
+        return numbers
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """Labels of the dimensions that the mechanism itself brings."""
+        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
+
+    def table(self, drive: str, loads: tuple[LoadForm, ...]) -> Table:
+        """All that can be computed for this drive and loads of these forms."""
+        return _table(drive, loads)
+
+    def kinematics(self) -> tuple[str, ...]:
+        return ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        """The nine unknowns of the 9×9, in the textbook's order."""
+        return (*UNKNOWN_FORCES, self.drives[drive])
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """The 9×9 of document 2 (ME 470), row by row."""
+        torque = {role: self.drives[drive] if role == drive else None for role in self.links}
+        return (
+            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"]),
+            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
+            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque["rocker"]),
+        )
+
+    @cached_property
+    def closes_everywhere(self) -> bool:
+        """Whether every design closes at every angle with a margin that rounding cannot touch."""
+        a, b, c, d = self.lengths().values()
+        low = (d - a - b + c) * (d - a + b - c)
+        high = (b + c - d - a) * (b + c + d + a)
+        margin = 1e-9 * (a + b + c + d) ** 2
+        return bool(np.all(low > margin) and np.all(high > margin))
+
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return ("F12", "F32", "F43", "F14", self.drives[drive])
+
+
+@lru_cache(maxsize=64)
+def _table(drive: str, loads: tuple[LoadForm, ...]) -> Table:
+    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+    for body in BODIES:
+        rows += body.rows(loads)
+    for i, j in PINS.values():
+        rows += pin_force_rows(i, j)
+    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
+    return Table("theta2", tuple(rows), tuple(_quantities(drive)))
+
+
+def _position() -> list[Row | Total]:
+    return [
+        Row(four_bar.crank_pin, ("r2x", "r2y")),
+        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(four_bar.diagonal, ("BDx", "BDy")),
+        Row(four_bar.closure_factors, ("low", "high")),
+        Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r3_cross_r4")),
+        Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
+        Row(planar.direction, ("theta3",), ("r3x", "r3y")),
+        Row(planar.direction, ("theta4",), ("r4x", "r4y")),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
+    ]
+
+
+def _rates() -> list[Row | Total]:
+    return [
+        Row(dyad_rrr.rrr_velocity_ratios, ("ratio3", "ratio4")),
+        Row(planar.product, ("omega3",), ("omega2", "ratio3")),
+        Row(planar.product, ("omega4",), ("omega2", "ratio4")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(dyad_rrr.rrr_accelerations, ("alpha3", "alpha4")),
+    ]
+
+
+def _forces(drive: str) -> list[Row | Total]:
+    """F43 from the two moment equations free of the drive's torque; the rest follows by addition.
+
+    The torque comes from virtual work, so that it costs no pin force and is the same number whether forces are asked or not.
+    """
+    r2, r3, r4 = (("r2x", "r2y"), ("r3x", "r3y"), ("r4x", "r4y"))
+    coupler, rocker, crank = (*r3, "moment_r3"), (*r4, "N4"), (*r2, "moment_r2")
+    pair = {"crank": (*coupler, *rocker), "coupler": (*crank, *rocker), "rocker": (*coupler, *crank)}[drive]
+    inverse = "inverse_r3_cross_r4" if drive == "crank" else "inverse_leverage"
+    ratio = {"crank": 1.0, "coupler": "ratio3", "rocker": "ratio4"}[drive]
+    status: list[Row | Total] = [Row(dyad_rrr.rrr_status, ("status",))]
+    if drive != "crank":
+        status = [Row(dyad_rrr.rrr_status, ("closure",)), Row(four_bar.drive_status, ("status",))]
+    return [
+        Row(planar.opposite, ("moment_r3",), ("N3",)),
+        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(planar.cross, ("leverage",), (pair[0], pair[1], pair[3], pair[4])),
+        Row(inertia.inverse_cross, ("inverse_leverage",), (pair[0], pair[1], pair[3], pair[4])),
+        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*pair, inverse)),
+        Row(four_bar.coupler_balance, ("F32x", "F32y")),
+        Row(four_bar.rocker_balance, ("F14x", "F14y")),
+        Row(four_bar.crank_balance, ("F12x", "F12y")),
+        Row(four_bar.work_on_crank, ("work",)),
+        Row(four_bar.balancing_torque, (FourBar.drives[drive],), ("work", ratio)),
+        *status,
+        Row(four_bar.not_ok, ("not_ok",)),
+    ]
+
+
+def _power(drive: str, loads: tuple[LoadForm, ...]) -> list[Row | Total]:
+    driven = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}[drive]
+    terms = [term for body in BODIES for term in body.power_terms(loads)]
+    return [
+        Row(planar.product, ("power",), (FourBar.drives[drive], driven)),
+        Row(planar.relative_sum, ("power_residual",), ("power", *terms)),
+    ]
+
+
+def _quantities(drive: str) -> list[Quantity]:
+    torque = FourBar.drives[drive]
+    found = [
+        Quantity("theta3", "degree", "angle of the coupler B→C from x, counter-clockwise, in (-180, 180]"),
+        Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
+        Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
+        Quantity("Bx", "m", "position of pin B from A along x"),
+        Quantity("By", "m", "position of pin B from A along y"),
+        Quantity("Cx", "m", "position of pin C from A along x"),
+        Quantity("Cy", "m", "position of pin C from A along y"),
+        Quantity(
+            torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"
+        ),
+        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
+        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
+        Quantity(
+            "power_residual",
+            "1",
+            "sum of the powers of drive, loads, gravity and inertia, relative to the largest of them",
+        ),
+    ]
+    for body in BODIES:
+        found += motion_quantities(body.number, body.role)
+    for pin, (i, j) in PINS.items():
+        found += pin_force_quantities(i, j, pin, LINKS)
+    return found

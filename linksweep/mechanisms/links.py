@@ -1,0 +1,149 @@
+"""Links: any, a rectangular bar, or a disk. All three have length, mass, inertia and a centre of gravity.
+
+Mass and moment of inertia of a bar and of a disk are document 2's (ME 470): m(L² + w²)/12 and m r²/2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.validate import Number, parameter
+
+
+class Body(Protocol):
+    """What a mechanism asks of a link."""
+
+    @property
+    def length(self) -> Number: ...
+    @property
+    def mass(self) -> Number: ...
+    @property
+    def inertia(self) -> Number: ...
+    @property
+    def cg_distance(self) -> Number: ...
+    @property
+    def cg_angle(self) -> Number: ...
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link of any shape.
+
+    Parameters
+    ----------
+    length : distance between its two pins [m]
+    mass : [kg]
+    inertia : moment of inertia about its centre of gravity [kg m²]
+    cg_distance : distance of the centre of gravity from the first pin [m]
+    cg_angle : angle of the centre of gravity from the line of pins, counter-clockwise [degree]
+
+    Each may be an xarray.DataArray with named dims, except theta2. Values are checked by the mechanism that takes the link,
+    which knows it as crank, coupler or rocker: ValueError there.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Link(length=0.22, mass=0.68, inertia=2.8e-3, cg_distance=0.11).mass
+    0.68
+    """
+
+    length: Number = parameter("length", above=0.0)
+    mass: Number = parameter("mass", at_least=0.0)
+    inertia: Number = parameter("inertia", at_least=0.0)
+    cg_distance: Number = parameter("length", 0.0, at_least=0.0)
+    cg_angle: Number = parameter("angle", 0.0)
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A uniform rectangular bar from pin to pin: m = ρ·L·w·t, I = m(L² + w²)/12, centre of gravity midway.
+
+    Parameters
+    ----------
+    length, width, thickness : [m]; the width lies in the plane of motion
+    density : [kg/m³]
+
+    Source: document 2 (ME 470), bar link.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> round(ls.Bar(length=0.08, width=0.02, thickness=0.02, density=7750).mass, 6)
+    0.248
+    """
+
+    length: Number = parameter("length", above=0.0)
+    width: Number = parameter("length", above=0.0)
+    thickness: Number = parameter("length", above=0.0)
+    density: Number = parameter("density", at_least=0.0)
+
+    @property
+    def mass(self) -> Number:
+        return self.density * self.length * self.width * self.thickness
+
+    @property
+    def inertia(self) -> Number:
+        return self.mass * (self.length * self.length + self.width * self.width) / 12.0
+
+    @property
+    def cg_distance(self) -> Number:
+        return 0.5 * self.length
+
+    @property
+    def cg_angle(self) -> Number:
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Disk:
+    """A uniform disk centred on the link's first pin, the second pin `length` from it: m = ρ·πr²·t, I = m r²/2.
+
+    Parameters
+    ----------
+    length : distance between its two pins [m]
+    radius, thickness : [m]
+    density : [kg/m³]
+
+    Source: document 2 (ME 470), circle link.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Disk(length=0.05, radius=0.08, thickness=0.01, density=7750).cg_distance
+    0.0
+    """
+
+    length: Number = parameter("length", above=0.0)
+    radius: Number = parameter("length", above=0.0)
+    thickness: Number = parameter("length", above=0.0)
+    density: Number = parameter("density", at_least=0.0)
+
+    @property
+    def mass(self) -> Number:
+        return self.density * (3.141592653589793 * self.radius * self.radius) * self.thickness
+
+    @property
+    def inertia(self) -> Number:
+        return 0.5 * self.mass * self.radius * self.radius
+
+    @property
+    def cg_distance(self) -> Number:
+        return 0.0
+
+    @property
+    def cg_angle(self) -> Number:
+        return 0.0
+
+
+def link_parameters(role: str, link: Body) -> dict[str, Number]:
+    """A link's numbers under the names that the physics wires by; its centre of gravity in the link's own axes."""
+    cos, sin = cos_sin(link.cg_angle)
+    return {
+        f"{role}_length": link.length,
+        f"{role}_mass": link.mass,
+        f"{role}_inertia": link.inertia,
+        f"{role}_cg_x": link.cg_distance * cos,
+        f"{role}_cg_y": link.cg_distance * sin,
+    }

@@ -1,0 +1,24 @@
+"""The few operations beyond + - * / that physics may use, on floats and on the engine's traced values alike."""
+
+import math
+from typing import Any
+
+Number = Any
+"""A float, or whatever stands in for one: a traced value, a numpy array, a 50-digit number."""
+
+
+def sqrt(x: Number) -> Number:
+    return math.sqrt(x) if isinstance(x, float) else x.sqrt()
+
+
+def atan2(y: Number, x: Number) -> Number:
+    return math.atan2(y, x) if isinstance(y, float) else y.atan2(x)
+
+
+def where(condition: Number, x: Number, y: Number) -> Number:
+    """`x` where the condition holds, else `y`; both are evaluated."""
+    return (x if condition else y) if isinstance(condition, bool) else condition.where(x, y)
+
+
+def degrees(radians: Number) -> Number:
+    return radians * (180.0 / math.pi)

@@ -1,0 +1,87 @@
+"""The dyad of three pins (RRR): coupler r3 = B→C of length b and rocker r4 = D→C of length c, closed between B and D.
+
+With f = |BD|, the triangle B, C, D has 16·area² = ((b+c)² − f²)·(f² − (b−c)²) = high·low. Both factors come
+from the mechanism in a form that does not cancel; the plain triangle formulas lose all digits near a toggle.
+Everything else follows without another subtraction of nearly equal numbers:
+
+    r3 = (low + 2b(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥          open branch: +, C left of B→D
+    r4 = −(low − 2c(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥
+    r3 × r4 = ±√(low·high)/2
+"""
+
+from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.planar import cross, dot
+
+
+def rrr_close(
+    BDx: Number,
+    BDy: Number,
+    low: Number,
+    high: Number,
+    coupler_length: Number,
+    rocker_length: Number,
+    branch_sign: Number,
+) -> tuple[Number, ...]:
+    """Link vectors r3, r4 and the inverse of their cross product, by one square root and one division."""
+    difference = coupler_length - rocker_length
+    ff = low + difference * difference
+    root = sqrt(low * high)
+    inverse = 1.0 / (ff * root)
+    inverse_2ff = 0.5 * (inverse * root)
+    signed_root = branch_sign * root
+    along3 = (low + 2.0 * coupler_length * difference) * inverse_2ff
+    along4 = (low - 2.0 * rocker_length * difference) * inverse_2ff
+    across = signed_root * inverse_2ff
+    side_x, side_y = across * BDy, across * BDx
+    r3x, r3y = along3 * BDx - side_x, along3 * BDy + side_y
+    r4x, r4y = -along4 * BDx - side_x, side_y - along4 * BDy
+    inverse_r3_cross_r4 = (2.0 * branch_sign) * (inverse * ff)
+    return r3x, r3y, r4x, r4y, inverse_r3_cross_r4
+
+
+def rrr_status(low: Number, high: Number) -> Number:
+    """0 ok, 1 cannot assemble, 2 toggle."""
+    product = low * high
+    return where(product > 0.0, 0.0, where(product < 0.0, 1.0, 2.0))
+
+
+def rrr_velocity_ratios(
+    r2x: Number,
+    r2y: Number,
+    r3x: Number,
+    r3y: Number,
+    r4x: Number,
+    r4y: Number,
+    inverse_r3_cross_r4: Number,
+) -> tuple[Number, Number]:
+    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity)."""
+    return (
+        -cross(r2x, r2y, r4x, r4y) * inverse_r3_cross_r4,
+        -cross(r2x, r2y, r3x, r3y) * inverse_r3_cross_r4,
+    )
+
+
+def rrr_accelerations(
+    aBx: Number,
+    aBy: Number,
+    omega3: Number,
+    omega4: Number,
+    r3x: Number,
+    r3y: Number,
+    r4x: Number,
+    r4y: Number,
+    inverse_r3_cross_r4: Number,
+) -> tuple[Number, Number]:
+    """α3 and α4, from a_B + α3 × r3 − ω3² r3 = α4 × r4 − ω4² r4 (document 2, ME 470, acceleration)."""
+    square3, square4 = omega3 * omega3, omega4 * omega4
+    kx = aBx - square3 * r3x + square4 * r4x
+    ky = aBy - square3 * r3y + square4 * r4y
+    return (
+        -dot(kx, ky, r4x, r4y) * inverse_r3_cross_r4,
+        -dot(kx, ky, r3x, r3y) * inverse_r3_cross_r4,
+    )
+
+
+def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:
+    """Acute angle between coupler and rocker [degree]; document 2 leaves μ = θ4 − θ3 unfolded."""
+    return degrees(atan2(abs(cross(r3x, r3y, r4x, r4y)), abs(dot(r3x, r3y, r4x, r4y))))

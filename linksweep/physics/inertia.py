@@ -1,0 +1,123 @@
+"""Newton and Euler for one link, about its first pin, in d'Alembert's form.
+
+A link of mass m, with first moment h = m·r_G (pin → centre of gravity) and moment of inertia J = I + m|r_G|² about that
+pin, whose pin accelerates by a and which bears an outer load (P, moment M about the pin), exerts on its pins
+
+    Q = m(g − a) − α × h + ω² h + P          (effective force)
+    N = h × (g − a) − J α + M                (effective moment about the first pin)
+
+so that the pin forces on the link add up to −Q, and their moments about the first pin (with any drive torque) to −N.
+"""
+
+import math
+
+from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.planar import cross, dot
+
+
+def moment_of_inertia_about_pin(mass: Number, inertia: Number, cg_x: Number, cg_y: Number) -> Number:
+    """J = I + m|r_G|² (Steiner)."""
+    return inertia + mass * (cg_x * cg_x + cg_y * cg_y)
+
+
+def first_moment(
+    mass: Number, cg_x: Number, cg_y: Number, length: Number, rx: Number, ry: Number
+) -> tuple[Number, Number]:
+    """h = m·r_G in ground axes, of a link whose line of pins is r, |r| = length."""
+    along, across = mass * cg_x / length, mass * cg_y / length
+    return along * rx - across * ry, along * ry + across * rx
+
+
+def effective_force(
+    mass: Number,
+    hx: Number,
+    hy: Number,
+    pin_ax: Number,
+    pin_ay: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    omega: Number,
+    alpha: Number,
+    Px: Number,
+    Py: Number,
+) -> tuple[Number, Number]:
+    """Q of the module's equation."""
+    centripetal = omega * omega
+    return (
+        mass * (gravity_x - pin_ax) + alpha * hy + centripetal * hx + Px,
+        mass * (gravity_y - pin_ay) - alpha * hx + centripetal * hy + Py,
+    )
+
+
+def effective_moment(
+    J: Number,
+    hx: Number,
+    hy: Number,
+    pin_ax: Number,
+    pin_ay: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    alpha: Number,
+    M: Number,
+) -> Number:
+    """N of the module's equation."""
+    return cross(hx, hy, gravity_x - pin_ax, gravity_y - pin_ay) - J * alpha + M
+
+
+def inverse_cross(px: Number, py: Number, qx: Number, qy: Number) -> Number:
+    product = cross(px, py, qx, qy)
+    return where(abs(product) > 0.0, 1.0 / product, math.nan)
+
+
+def force_from_two_moments(
+    px: Number,
+    py: Number,
+    moment_p: Number,
+    qx: Number,
+    qy: Number,
+    moment_q: Number,
+    inverse_p_cross_q: Number,
+) -> tuple[Number, Number]:
+    """The force F with p × F = moment_p and q × F = moment_q: what is left of the 9×9 once the rest is eliminated."""
+    p, q = moment_q * inverse_p_cross_q, moment_p * inverse_p_cross_q
+    return q * qx - p * px, q * qy - p * py
+
+
+def inertia_power(
+    mass: Number,
+    inertia: Number,
+    vGx: Number,
+    vGy: Number,
+    aGx: Number,
+    aGy: Number,
+    omega: Number,
+    alpha: Number,
+) -> Number:
+    """Power of a link's inertia forces, −(m a_G·v_G + I α ω): minus the rate of its kinetic energy."""
+    return -(mass * dot(aGx, aGy, vGx, vGy) + inertia * (alpha * omega))
+
+
+def gravity_power(mass: Number, gravity_x: Number, gravity_y: Number, vGx: Number, vGy: Number) -> Number:
+    return mass * dot(gravity_x, gravity_y, vGx, vGy)
+
+
+def newton_euler_right_side(
+    mass: Number,
+    inertia: Number,
+    aGx: Number,
+    aGy: Number,
+    alpha: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    rGx: Number,
+    rGy: Number,
+    Px: Number,
+    Py: Number,
+    M: Number,
+) -> tuple[Number, Number, Number]:
+    """Right sides of ΣF = m a_G and ΣM_G = I α, weight and outer loads moved over (document 2, with gravity)."""
+    return (
+        mass * (aGx - gravity_x) - Px,
+        mass * (aGy - gravity_y) - Py,
+        inertia * alpha - (M - cross(rGx, rGy, Px, Py)),
+    )

@@ -1,0 +1,70 @@
+"""Vectors in the plane: the cross product p × q = px·qy − py·qx, the left normal of p, (−py, px), and turning."""
+
+from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+
+
+def cross(px: Number, py: Number, qx: Number, qy: Number) -> Number:
+    return px * qy - py * qx
+
+
+def dot(px: Number, py: Number, qx: Number, qy: Number) -> Number:
+    return px * qx + py * qy
+
+
+def square(px: Number, py: Number) -> Number:
+    return px * px + py * py
+
+
+def root(squared: Number) -> Number:
+    return sqrt(squared)
+
+
+def opposite(x: Number) -> Number:
+    return -x
+
+
+def product(x: Number, y: Number) -> Number:
+    return x * y
+
+
+def vector_sum(px: Number, py: Number, qx: Number, qy: Number) -> tuple[Number, Number]:
+    return px + qx, py + qy
+
+
+def difference(px: Number, py: Number, qx: Number, qy: Number) -> tuple[Number, Number]:
+    return px - qx, py - qy
+
+
+def direction(x: Number, y: Number) -> Number:
+    """Angle of a vector [degree], in (−180, 180]."""
+    return degrees(atan2(y, x))
+
+
+def turned(x: Number, y: Number, length: Number, rx: Number, ry: Number) -> tuple[Number, Number]:
+    """A vector given in the axes of a link whose line of pins is r, |r| = length, in ground axes."""
+    along, across = x / length, y / length
+    return along * rx - across * ry, along * ry + across * rx
+
+
+def point_velocity(
+    pin_vx: Number, pin_vy: Number, omega: Number, x: Number, y: Number
+) -> tuple[Number, Number]:
+    """Velocity of a link's point at (x, y) from its pin: v_pin + ω × r."""
+    return pin_vx - omega * y, pin_vy + omega * x
+
+
+def point_acceleration(
+    pin_ax: Number, pin_ay: Number, omega: Number, alpha: Number, x: Number, y: Number
+) -> tuple[Number, Number]:
+    """Acceleration of a link's point at (x, y) from its pin: a_pin + α × r − ω² r."""
+    centripetal = omega * omega
+    return pin_ax - alpha * y - centripetal * x, pin_ay + alpha * x - centripetal * y
+
+
+def relative_sum(*terms: Number) -> Number:
+    """Sum of terms that should cancel, relative to the largest of them; 0 where all are 0."""
+    total, largest = terms[0], abs(terms[0])
+    for term in terms[1:]:
+        total = total + term
+        largest = where(abs(term) > largest, abs(term), largest)
+    return where(largest > 0.0, total / largest, 0.0)

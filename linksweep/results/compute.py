@@ -1,0 +1,39 @@
+"""From a scene to arrays: the request planned, run, and blanked where a sample is not ok."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linksweep.engine.plan import plan
+from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.scene.scene import Scene
+
+
+def compute(scene: Scene, grid: Grid, names: tuple[str, ...], threads: int | None = None) -> dict[str, Field]:
+    """The named quantities of a scene that has been brought to the grid's angles."""
+    inputs = scene.inputs
+    request = plan(scene.table, names, inputs.forms)
+    return evaluate(request, inputs.fields, grid, inputs.sizes, threads)
+
+
+def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
+    """What happened at each sample, int8; not computed where the lengths alone say that all is well."""
+    if scene.drive == "crank" and scene.mechanism.closes_everywhere:
+        request = plan(scene.table, ("status",), scene.inputs.forms)
+        dims = request.dims(request.outputs["status"])
+        shape = [len(grid.angles) if dim == grid.index else scene.inputs.sizes[dim] for dim in dims]
+        return Field(dims, np.zeros(shape, dtype=np.int8))
+    status = compute(scene, grid, ("status",), threads)["status"]
+    return Field(status.dims, status.values.astype(np.int8))
+
+
+def blank(fields: dict[str, Field], status: Field) -> None:
+    """NaN where the status is not 0, in every field that has the dims to know."""
+    bad = status.values != 0
+    if not bad.any():
+        return
+    for name, (dims, values) in fields.items():
+        if set(status.dims) <= set(dims):
+            there = bad.transpose([status.dims.index(dim) for dim in dims if dim in status.dims])
+            shape = [n if dim in status.dims else 1 for dim, n in zip(dims, values.shape, strict=True)]
+            fields[name] = Field(dims, np.where(there.reshape(shape), np.nan, values))

@@ -1,0 +1,78 @@
+"""Datasets that explain themselves: units, signs, status in words, and the whole scene as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import version
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine.run import Field, Grid
+from linksweep.scene.file import write_scene
+from linksweep.scene.scene import Scene
+
+ANGLE = {"units": "degree", "long_name": "angle of the crank from x, positive counter-clockwise"}
+
+
+def described(
+    scene: Scene, sampled: Scene, grid: Grid, fields: Mapping[str, Field], status: Field, command: str
+) -> xr.Dataset:
+    """A cycle's Dataset: the fields over their dims, status, coordinates and attributes."""
+    order = (*sampled.inputs.sizes, grid.index)
+    quantity = scene.table.quantity
+    variables = {
+        name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
+    }
+    variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
+    coordinates = {grid.index: xr.Variable(grid.index, grid.angles, ANGLE)} | design_coordinates(sampled)
+    return xr.Dataset(variables, coordinates, scene_attributes(sampled, command))
+
+
+def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:
+    """A field with its unit, and its dims in the order in which the scene names them."""
+    made = xr.Variable(field.dims, field.values, {"units": units, "long_name": long_name})
+    if len(field.dims) < 2:
+        return made
+    return made.transpose(*(dim for dim in dict.fromkeys(order) if dim in field.dims))
+
+
+def status_attributes(meanings: Iterable[str]) -> dict:
+    meanings = list(meanings)
+    return {
+        "long_name": "what happened at this sample; values are NaN where it is not ok",
+        "flag_values": np.arange(len(meanings), dtype=np.int8),
+        "flag_meanings": " ".join(meanings),
+    }
+
+
+def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
+    """Labels of the design dims, and every parameter that has dims, under its path."""
+    found = {dim: xr.Variable(dim, np.asarray(labels)) if isinstance(labels, list) else labels
+             for dim, labels in scene.inputs.coordinates.items()}
+    for path, array in scene.arrays.items():
+        found[path] = array.variable
+    return found
+
+
+def scene_attributes(scene: Scene, command: str) -> dict[str, str]:
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"linksweep: {type(scene.mechanism).__name__}",
+        "linksweep_version": _version(),
+        "scene": scene_text(scene),
+        "command": command,
+    }
+
+
+@cache
+def _version() -> str:
+    return version("linksweep")
+
+
+def scene_text(scene: Scene) -> str:
+    """The scene as TOML, its DataArrays referred to by the names that `design_coordinates` gives them."""
+    if "text" not in scene.__dict__:
+        scene.__dict__["text"] = write_scene(scene, {})
+    return scene.__dict__["text"]

@@ -1,0 +1,88 @@
+"""sweep(scene): the kinematics and forces of a scene at many crank angles, as a Dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.validate import choice_problems, name_problems, refuse
+from linksweep.results.compute import blank, compute, sample_status
+from linksweep.results.record import described
+from linksweep.results.system import dense_solution
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+SOLVERS = ("fast", "dense")
+
+
+def sweep(
+    scene: Scene,
+    theta2: Any = 720,
+    outputs: Iterable[str] | None = None,
+    solver: str = "fast",
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Sweep a scene over crank angles.
+
+    Parameters
+    ----------
+    scene : Scene
+    theta2 : a count N, for the grid arange(N)·360/N, or any array of angles [degree]
+    outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine unknowns
+    solver : "fast" (the 9×9 eliminated by hand) or "dense" (the full 9×9 by LAPACK with partial pivoting, as a check)
+    threads : at most so many (default: all cores); the numbers do not depend on it
+
+    Returns
+    -------
+    Dataset over (design dims…, theta2). Each variable has only the dims that it depends on; units and sign in its attributes.
+    `status` says what happened at each sample; where it is not 0 (ok) the values are NaN.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name or angles that are no angles.
+
+    Notes
+    -----
+    Fij is the force of link i on link j in ground axes. Equations: document 2 (ME 470), with the misprints mended, and gravity.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
+    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
+    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
+    >>> cycle = ls.sweep(ls.Scene(press, omega2=30.0), theta2=360, outputs=["T12", "F32"])
+    >>> dict(cycle.sizes), cycle.T12.units
+    ({'theta2': 360}, 'N m')
+    """
+    refuse(choice_problems("solver", solver, SOLVERS))
+    grid = crank_grid(theta2, scene.mechanism.period)
+    names = _names(scene, outputs)
+    dense = [name for name in names if name == "cond" or (solver == "dense" and name in scene.mechanism.unknowns(scene.drive))]
+    sampled = scene.at(grid)
+    fields = compute(sampled, grid, tuple(name for name in names if name not in dense), threads)
+    status = sample_status(sampled, grid, threads)
+    if dense:
+        fields |= dense_solution(sampled, grid, status, threads)
+    blank(fields, status)
+    found = {name: fields[name] for name in names}
+    return described(scene, sampled, grid, found, status, _command(theta2, outputs, solver))
+
+
+def _names(scene: Scene, outputs: Iterable[str] | None) -> tuple[str, ...]:
+    if outputs is None:
+        return scene.mechanism.kinematics() + scene.mechanism.unknowns(scene.drive)
+    names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
+    known = [*scene.table.quantity, "status"]
+    refuse([problem for name in names for problem in name_problems("outputs", name, known)])
+    return tuple(name for name in names if name != "status")
+
+
+def _command(theta2: Any, outputs: Iterable[str] | None, solver: str) -> str:
+    angles = theta2 if isinstance(theta2, int | np.integer) else f"<{np.size(theta2)} angles>"
+    wanted = "" if outputs is None else f", outputs={list(outputs)}"
+    return f"linksweep.sweep(scene, theta2={angles}{wanted}" + (")" if solver == "fast" else f", solver={solver!r})")

@@ -1,0 +1,98 @@
+"""The textbook's square system: labelled, to be laid beside the page, and solved densely as the fast path's judge."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine.run import Field, Grid
+from linksweep.results.compute import blank, compute, sample_status
+from linksweep.results.record import ANGLE, design_coordinates, scene_attributes, status_attributes
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+
+def system(scene: Scene, theta2: Any) -> xr.Dataset:
+    """The 9×9 Newton–Euler system of a scene, as the textbook prints it.
+
+    Parameters
+    ----------
+    scene : Scene
+    theta2 : crank angle or angles [degree]; a single number is an angle here, not a count
+
+    Returns
+    -------
+    Dataset with `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy are
+    in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
+
+    Source: document 2 (ME 470), the matrix of R vectors, with weights and loads on every link added, R_23 read as R_23x. With
+    drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3, lecture 17).
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
+    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
+    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
+    >>> page = ls.system(ls.Scene(press, omega2=30.0), theta2=45.0)
+    >>> page.matrix.isel(theta2=0).shape
+    (9, 9)
+    """
+    angles = [theta2] if isinstance(theta2, float | int) and not isinstance(theta2, bool) else theta2
+    grid = crank_grid(angles, scene.mechanism.period)
+    sampled = scene.at(grid)
+    status = sample_status(sampled, grid)
+    dims, matrix, rhs = assembled(sampled, grid)
+    equations = scene.mechanism.equations(scene.drive)
+    both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
+    blank(both, status)
+    variables = {
+        "matrix": xr.Variable(*both["matrix"], {"long_name": "coefficients; arms in m", "units": "1"}),
+        "rhs": xr.Variable(*both["rhs"], {"long_name": "right side; forces in N, moments in N m"}),
+        "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
+    }
+    coordinates = design_coordinates(sampled) | {
+        grid.index: xr.Variable(grid.index, grid.angles, ANGLE),
+        "equation": [equation.label for equation in equations],
+        "unknown": list(scene.mechanism.unknowns(scene.drive)),
+    }
+    return xr.Dataset(variables, coordinates, scene_attributes(sampled, f"linksweep.system(scene, theta2={theta2})"))
+
+
+def assembled(scene: Scene, grid: Grid, threads: int | None = None) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Dims, matrix and right side of the square system, for every design and angle."""
+    equations, unknowns = scene.mechanism.equations(scene.drive), scene.mechanism.unknowns(scene.drive)
+    names = {entry[1] for row in equations for entry in row.coefficients.values() if isinstance(entry, tuple)}
+    names |= {row.right_side for row in equations}
+    fields = compute(scene, grid, tuple(sorted(names)), threads)
+    dims = (*scene.inputs.sizes, grid.index)
+    dims = tuple(dim for dim in dict.fromkeys(dims) if any(dim in field.dims for field in fields.values()))
+    if grid.index not in dims:
+        dims = (*dims, grid.index)
+    sizes = dict(scene.inputs.sizes) | {grid.index: len(grid.angles)}
+    shape = tuple(sizes[dim] for dim in dims)
+    matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
+    for i, row in enumerate(equations):
+        rhs[..., i] = _spread(fields[row.right_side], dims)
+        for unknown, entry in row.coefficients.items():
+            j = unknowns.index(unknown)
+            matrix[..., i, j] = entry[0] * _spread(fields[entry[1]], dims) if isinstance(entry, tuple) else entry
+    return dims, matrix, rhs
+
+
+def _spread(field: Field, dims: tuple[str, ...]) -> np.ndarray:
+    values = np.transpose(field.values, [field.dims.index(dim) for dim in dims if dim in field.dims])
+    sizes = iter(values.shape)
+    return values.reshape([next(sizes) if dim in field.dims else 1 for dim in dims])
+
+
+def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None = None) -> dict[str, Field]:
+    """The unknowns by LAPACK with partial pivoting, and the matrix's exact 1-norm condition number `cond`."""
+    dims, matrix, rhs = assembled(scene, grid, threads)
+    bad = np.broadcast_to(_spread(Field(status.dims, status.values != 0), dims), matrix.shape[:-2])
+    matrix[bad] = np.eye(matrix.shape[-1])
+    solution = np.linalg.solve(matrix, rhs[..., None])[..., 0]
+    found = {name: Field(dims, solution[..., k]) for k, name in enumerate(scene.mechanism.unknowns(scene.drive))}
+    return found | {"cond": Field(dims, np.linalg.cond(matrix, 1))}

@@ -1,0 +1,416 @@
+"""Scene files: TOML with the same words as the constructors, where a number may carry its unit.
+
+::
+
+    omega2 = "1500 rpm"
+    gravity = [0, -9.81]
+
+    [mechanism]
+    type = "FourBar"
+    ground = "20 cm"
+
+    [mechanism.crank]
+    type = "Bar"
+    length = {dim = "crank_length", start = "6 cm", stop = "9 cm", num = 31}
+    ...
+
+    [[loads]]
+    link = "coupler"
+    force = [0, "-80 lbf"]
+    at = ["10 cm", 15]
+
+For a design axis stands, in place of a number, ``{dim = "width", values = [...]}`` or ``{dim = "width", start = ...,
+stop = ..., num = ...}`` or, for more than one, ``{dims = ["a", "b"], values = [[...], [...]]}``. ``unit = "cm"`` is
+for its plain numbers, ``coords = {a = [...]}`` labels its positions, ``theta2 = [...]`` is short for crank angles
+[degree] in coords. Without coords, the values of a dim that occurs once in the file are its labels.
+
+All errors of a file are reported at once, one a line: ``scene.toml:12: coupler.lenght: unknown key; did you mean
+"length"?``. Paths are those of the constructors; lists count from one, as engineers do: ``loads[1]`` is the first.
+
+`SCHEMA` says for each class what its fields hold, read off the dataclasses. A new mechanism is a row of it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import count, pairwise
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from linksweep.mechanisms.four_bar import FourBar
+from linksweep.mechanisms.links import Bar, Disk, Link
+from linksweep.mechanisms.validate import choice_problems, did_you_mean
+from linksweep.scene.loads import Load
+from linksweep.scene.scene import Scene
+from linksweep.scene.units import KINDS, design_axis, quantity, shown
+
+Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
+Arrays = dict[str, xr.DataArray]
+
+# Stands in for a value with an error, so that the constructors can still look at the others.
+_UNREAD: Any = "(not read)"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """What a field holds: here a word, which the constructor judges."""
+
+    example: str = '"..."'
+
+    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+        return raw
+
+    def advice(self, where: Where) -> str:
+        return f"write, for example, {where[-1]} = {self.example}"
+
+
+@dataclass(frozen=True)
+class Number(Field):
+    """A number, or a DataArray, of one kind of quantity."""
+
+    kind: str
+
+    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+        if isinstance(raw, list):
+            axis = f'{{dim = "{where[-1]}", values = [...]}}'
+            return log.problem(where, f" = {shown(raw)}: must be one number; for a design axis write {axis}")
+        if isinstance(raw, dict) and "variable" in raw:
+            return log.variable(raw["variable"], where)
+        try:
+            if isinstance(raw, dict):
+                return design_axis(raw, self.kind, alone=log.dims[str(raw.get("dim"))] == 1)
+            return quantity(raw, self.kind)
+        except ValueError as error:
+            return log.refused(error, where) if isinstance(raw, dict) else log.problem(where, f" = {error}")
+
+    def advice(self, where: Where) -> str:
+        return f'write {where[-1]} = "{KINDS[self.kind].example}", or a number in {KINDS[self.kind].unit}'
+
+
+@dataclass(frozen=True)
+class Pair(Field):
+    """Two numbers."""
+
+    first: Number
+    second: Number
+
+    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+        if not isinstance(raw, list) or len(raw) != 2:
+            return raw  # the constructor says what the two are
+        return self.first.read(raw[0], (*where, 0), log), self.second.read(raw[1], (*where, 1), log)
+
+
+@dataclass(frozen=True)
+class Table(Field):
+    """A table of one of several classes, named by its `type`; without it, of the default class."""
+
+    classes: dict[str, type]
+    default: str | None = None
+
+    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+        if not isinstance(raw, dict):
+            return log.problem(where, f" = {shown(raw)}: must be a table; write it below [{_header(where)}]")
+        words = {key: value for key, value in raw.items() if key != "type"}
+        likely = max(self.classes, key=lambda name: len(SCHEMA[self.classes[name]].keys() & words.keys()))
+        name = raw.get("type", self.default if likely == self.default else None)
+        if name is None:
+            log.problem((*where, "type"), f': missing; by its keys a {likely}, so write type = "{likely}"')
+        elif name not in self.classes:
+            log.problem((*where, "type"), choice_problems("", name, self.classes)[0])
+        return _built(self.classes[name if name in self.classes else likely], words, where, log)
+
+    def advice(self, where: Where) -> str:
+        return f"write a table [{_header(where)}] with its type ({' or '.join(self.classes)})"
+
+
+@dataclass(frozen=True)
+class Tables(Field):
+    """A list of tables of one class."""
+
+    cls: type
+
+    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+        if not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
+            return log.problem(where, f": must be a list of tables; write [[{_header(where)}]] above each")
+        return tuple(_built(self.cls, item, (*where, i), log) for i, item in enumerate(raw))
+
+
+def _fields(cls: Any, **special: Field) -> dict[str, Field]:
+    """Return what the fields of a class hold: those with a rule a number of its kind, the others a word."""
+    rules = {item.name: item.metadata.get("rule") for item in dataclasses.fields(cls) if item.init}
+    return {key: Number(rule.kind) if rule else Field() for key, rule in rules.items()} | special
+
+
+_LINKS = Table({"Link": Link, "Bar": Bar, "Disk": Disk}, default="Link")
+_MECHANISMS = Table({"FourBar": FourBar})
+_FORCE, _ACCELERATION = Number("force"), Number("acceleration")
+_POLAR = Pair(Number("length"), Number("angle"))
+
+SCHEMA: dict[type, dict[str, Field]] = {
+    **{cls: _fields(cls) for cls in _LINKS.classes.values()},
+    FourBar: _fields(FourBar, crank=_LINKS, coupler=_LINKS, rocker=_LINKS),
+    Load: _fields(Load, link=Field(example='"coupler"'), force=Pair(_FORCE, _FORCE), at=_POLAR),
+    Scene: _fields(
+        Scene, mechanism=_MECHANISMS, gravity=Pair(_ACCELERATION, _ACCELERATION), loads=Tables(Load)
+    ),
+}
+
+
+def read_scene(path: str | Path) -> Scene:
+    """Read a scene file.
+
+    Raises
+    ------
+    ValueError
+        When the file is missing or has errors: all of them, one a line, each with file, line and path.
+
+    Examples
+    --------
+    >>> scene = read_scene("press.toml")  # doctest: +SKIP
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*.toml")])
+        raise ValueError(f"{path}: there is no such file{near}") from None
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is not a text file in UTF-8; save it as one") from None
+    return parse_scene(text, str(path))
+
+
+def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArray] | None = None) -> Scene:
+    """Make a scene of the text of a scene file.
+
+    Parameters
+    ----------
+    text, name : str
+        The TOML text, and what messages call the file.
+    arrays : mapping of str to DataArray, optional
+        What ``{variable = "coupler.length"}`` in the text refers to, as `write_scene` puts it there.
+
+    Raises
+    ------
+    ValueError
+        As `read_scene`.
+    """
+    document = _document(text, name)
+    log = _Log(document, arrays or {})
+    scene: Scene = _built(Scene, document, (), log)
+    if log.problems:
+        raise ValueError(log.report(text, name))
+    return scene
+
+
+def write_scene(scene: Scene, arrays: Arrays | None = None) -> str:
+    """Return the scene as the text of a scene file, from which `parse_scene` makes an equal scene, to the bit.
+
+    Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims.
+
+    Parameters
+    ----------
+    scene : Scene
+    arrays : dict, optional
+        Where given, every DataArray is put into it under its path; the text has ``{variable = "coupler.length"}``.
+
+    Raises
+    ------
+    ValueError
+        When a number of the scene is a function of theta2: sample it first.
+    """
+    import tomli_w  # here: only those who write files need it
+
+    text = tomli_w.dumps(_written(scene, (), arrays))
+    # tomli_w gives each number of a list a line of its own; one line for all reads better.
+    return re.sub(r"\[\n([-+.\w,\s]*),\n *\]", lambda found: f"[{' '.join(found[1].split())}]", text)
+
+
+def _built(cls: Any, raw: dict[str, Any], where: Where, log: _Log) -> Any:
+    """Read the fields of a table and construct its class."""
+    schema = SCHEMA[cls]
+    log.unknown(raw, cls, where)
+    words = {key: schema[key].read(raw[key], (*where, key), log) for key in schema if key in raw}
+    words |= {key: log.missing((*where, key), schema[key]) for key in _required(cls) if key not in raw}
+    try:
+        return cls(**words)
+    except ValueError as error:
+        log.refused(error, where)
+        refused = object.__new__(
+            cls
+        )  # unchecked, for what takes it to look at the rest of the file; never returned
+        refused.__dict__.update(words)
+        return refused
+
+
+def _required(cls: Any) -> list[str]:
+    none = dataclasses.MISSING
+    return [item.name for item in dataclasses.fields(cls) if item.default is item.default_factory is none]
+
+
+def _written(value: Any, where: Where, arrays: Arrays | None) -> Any:
+    """Return what stands in the file for a value of a scene."""
+    if type(value) in SCHEMA:
+        words = {key: getattr(value, key) for key in SCHEMA[type(value)]}
+        words = {
+            key: _written(word, (*where, key), arrays) for key, word in words.items() if word is not None
+        }
+        named = type(value) in {*_LINKS.classes.values(), *_MECHANISMS.classes.values()}
+        return {"type": type(value).__name__, **words} if named else words
+    if isinstance(value, (tuple, list)):
+        return [_written(item, (*where, i), arrays) for i, item in enumerate(value)]
+    if isinstance(value, xr.DataArray):
+        return _array_written(value, _path(where), arrays)
+    if callable(value):
+        advice = "sample it first, as a DataArray over theta2"
+        raise ValueError(f"{_path(where)} is a function of theta2 and cannot be written to a file: {advice}")
+    return value if isinstance(value, str) else float(value)
+
+
+def _array_written(array: xr.DataArray, path: str, arrays: Arrays | None) -> dict[str, Any]:
+    if arrays is not None:
+        arrays[path] = array
+        return {"variable": path}
+    coords = {str(dim): array.coords[dim].values.tolist() for dim in array.dims if dim in array.coords}
+    dims = {"dim": array.dims[0]} if array.ndim == 1 else {"dims": list(array.dims)}
+    return {**dims, "values": array.values.tolist(), "coords": coords}
+
+
+class _Log:
+    """What is wrong with a file, and where; and what numbers in it refer to."""
+
+    def __init__(self, document: dict[str, Any], arrays: Mapping[str, xr.DataArray]) -> None:
+        dims = [
+            value for place, value in _places(document) if place[-1] == "dim" or place[-2:-1] == ("dims",)
+        ]
+        self.arrays, self.dims = arrays, Counter(map(str, dims))
+        self.problems: list[tuple[Where, str]] = []
+        self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
+
+    def problem(self, where: Where, text: str) -> Any:
+        self.problems.append((where, _path(where) + text))
+        return _UNREAD
+
+    def missing(self, where: Where, field: Field) -> Any:
+        known = where in self.misplaced
+        return _UNREAD if known else self.problem(where, f": missing; {field.advice(where)}")
+
+    def unknown(self, raw: dict[str, Any], cls: type, where: Where) -> None:
+        """Log the keys that a class does not have: the scene's or the mechanism's, or misspelt."""
+        for key in [key for key in raw if key not in SCHEMA[cls]]:
+            if key in SCHEMA[Scene]:
+                self.misplaced.add((key,))
+                self.problem(
+                    (*where, key),
+                    ": does not belong here; write it at the top of the file, above the first [table]",
+                )
+            elif not where and any(key in SCHEMA[kind] for kind in _MECHANISMS.classes.values()):
+                self.misplaced.add(("mechanism", key))
+                self.problem(("mechanism", key), ": does not belong here; write it below [mechanism]")
+            else:
+                self.misplaced |= {
+                    (*where, near) for near in difflib.get_close_matches(key, SCHEMA[cls], n=1)
+                }
+                listed = f"; a {cls.__name__} has {', '.join(SCHEMA[cls])}"
+                self.problem((*where, key), f": unknown key{did_you_mean(key, SCHEMA[cls]) or listed}")
+
+    def variable(self, name: Any, where: Where) -> Any:
+        if name in self.arrays:
+            return self.arrays[name]
+        return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
+
+    def refused(self, error: ValueError, where: Where) -> Any:
+        """Log what a constructor says, one problem a line with its path first, but for what was not read."""
+        known = [*self.misplaced, *(place for place, _ in self.problems)]
+        for path, rest in re.findall(r"^([\w.\[\]]*[\w\]])(.*)$", str(error), re.MULTILINE):
+            keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
+            place = (*where, *keys) if where or keys[0] in SCHEMA[Scene] else ("mechanism", *keys)
+            if not any(place[: len(other)] == other[: len(place)] for other in known):
+                self.problem(place, rest)
+        return _UNREAD
+
+    def report(self, text: str, name: str) -> str:
+        """Return the problems, one a line, in the order of the file."""
+        lines = _key_lines(text)
+        # What has no line of its own is missing, or in a list: it belongs to the nearest thing around it.
+        placed = [
+            (next(lines[where[:n]] for n in range(len(where), -1, -1) if where[:n] in lines), problem)
+            for where, problem in self.problems
+        ]
+        return "\n".join(f"{name}:{line}: {problem}" for line, problem in sorted(placed, key=lambda p: p[0]))
+
+
+def _document(text: str, name: str) -> dict[str, Any]:
+    """Parse the TOML; an error says file, line and, for the commonest slip, what to write."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        lines = text.rstrip().split("\n")
+        reason, at = str(error).partition(" (at ")[0], re.search(r"at line (\d+)", str(error))
+        number = min(int(at[1]) if at else len(lines), len(lines))
+        bare = re.match(r"\s*([\w.]+)\s*=\s*([-+.]?\d[^#\"\[{]*[^#\"\[{\s])", lines[number - 1])
+        quoted = f'; a number with a unit stands in quotes, {bare[1]} = "{bare[2]}"' if bare else ""
+        comma = "; a number has a decimal point, no comma; a list stands in brackets"
+        advice = comma if bare and "," in bare[2] else quoted
+        raise ValueError(f"{name}:{number}: not TOML: {reason}{advice}") from None
+
+
+def _key_lines(text: str) -> dict[Where, int]:
+    """Find the line of every key: the text is cut into pieces that are TOML by themselves, headers and keys."""
+    lines: dict[Where, int] = {(): 1}
+    table: Where = ()
+    start, piece = 1, ""
+    for number, line in enumerate(text.split("\n"), 1):
+        piece += line + "\n"
+        try:
+            places = [place for place, _ in _places(tomllib.loads(piece))]
+        except tomllib.TOMLDecodeError:
+            continue  # the value goes on in the next line
+        if piece.lstrip().startswith("["):
+            table, places = _opened(places[-1], lines), []
+        for place in (
+            *(table[:depth] for depth in range(len(table) + 1)),
+            *((*table, *place) for place in places),
+        ):
+            lines.setdefault(place, start)
+        start, piece = number + 1, ""
+    return lines
+
+
+def _opened(header: Where, lines: dict[Where, int]) -> Where:
+    """Return the place of the table that a header opens; a [[header]] ends in 0."""
+    table: Where = ()
+    for key, following in pairwise((*header, None)):
+        if key != 0:
+            table = (*table, key)
+            so_far = next(n for n in count() if (*table, n) not in lines)
+            table = (*table, so_far) if following == 0 else (*table, so_far - 1) if so_far else table
+    return table
+
+
+def _places(raw: Any, where: Where = ()) -> Iterator[tuple[Where, Any]]:
+    """Yield the place and value of every key and list item."""
+    for key, item in (
+        raw.items() if isinstance(raw, dict) else enumerate(raw) if isinstance(raw, list) else ()
+    ):
+        yield (*where, key), item
+        yield from _places(item, (*where, key))
+
+
+def _path(where: Where) -> str:
+    """Return the path as the constructors name it: without "mechanism", lists counted from one."""
+    keys = where[1:] if where[0] == "mechanism" and where[1:] not in ((), ("type",)) else where
+    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
+
+
+def _header(where: Where) -> str:
+    return ".".join(str(key) for key in where if isinstance(key, str))

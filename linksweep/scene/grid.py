@@ -1,0 +1,46 @@
+"""The angles of a sweep, with the cosines and sines that the kernels start from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from linksweep.engine.run import Grid
+from linksweep.mechanisms.degrees import cos_sin
+
+NAMES = ("cos2", "sin2", "cos2_half", "sin2_half")
+
+
+def crank_grid(theta2: Any, period: float) -> Grid:
+    """The grid of a count (arange(N)·360/N) or of given angles [degree]. Raises ValueError for anything else."""
+    if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool):
+        if theta2 < 1:
+            raise ValueError(f"theta2 = {theta2}: a count of angles must be at least 1")
+        return _uniform(int(theta2), period)
+    return _grid(_angles(theta2), period=0.0)
+
+
+@lru_cache(maxsize=8)
+def _uniform(count: int, period: float) -> Grid:
+    return _grid(np.arange(count) * (period / count), period)
+
+
+def _angles(theta2: Any) -> np.ndarray:
+    try:
+        angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
+    except (TypeError, ValueError):
+        angles = None
+    if angles is None or isinstance(theta2, str | bool | Mapping) or angles.ndim > 1 or angles.size == 0:
+        raise ValueError(f"theta2 = {theta2!r}: must be a count of angles, or a list of angles in degrees")
+    if not np.isfinite(angles).all():
+        k = int(np.argmin(np.isfinite(angles)))
+        raise ValueError(f"theta2[{k}] = {angles.reshape(-1)[k]}: every angle must be a finite number of degrees")
+    return np.array(angles, ndmin=1)
+
+
+def _grid(angles: np.ndarray, period: float) -> Grid:
+    table = np.array([*cos_sin(angles), *cos_sin(0.5 * angles)])
+    return Grid("theta2", angles, period, NAMES, table)

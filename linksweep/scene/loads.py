@@ -1,0 +1,79 @@
+"""Loads: a force at a point of a link, a torque on a link, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from linksweep.mechanisms.bodies import LoadForm
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_problems, parameter, problems
+
+FORCE = Rule("force", over_angle=True)
+TORQUE = Rule("torque", over_angle=True)
+AT = (Rule("length", at_least=0.0), Rule("angle"))
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force at a point of a link, a torque on it, or both, besides weight and inertia.
+
+    Parameters
+    ----------
+    link : the link it acts on, by name ("crank", "coupler", "rocker")
+    force : (Fx, Fy) [N], or None for no force
+    at : the point, in the link's own polar coordinates: (distance [m], angle from the line of pins [degree])
+    frame : axes of the force: "ground", or "link" (x along the line of pins)
+    torque : [N m], positive counter-clockwise, or None for no torque
+    origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
+
+    Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
+    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline at angles that
+    it does not hold. Values are checked by the scene that takes the load.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Load("coupler", force=(0.0, -80.0), at=(0.10, 15.0)).frame
+    'ground'
+    """
+
+    link: str
+    force: tuple[Number, Number] | None = None
+    at: tuple[Number, Number] = (0.0, 0.0)
+    frame: str = "ground"
+    torque: Number | None = parameter("torque", None, over_angle=True)
+    origin: str = "pin"
+
+    @property
+    def form(self) -> LoadForm:
+        return LoadForm(self.link, self.force is not None, self.torque is not None, self.frame == "link")
+
+    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        found = choice_problems(f"{path}.link", self.link, links)
+        found += choice_problems(f"{path}.frame", self.frame, ("ground", "link"))
+        found += choice_problems(f"{path}.origin", self.origin, ("pin", "cg"))
+        if self.force is None and self.torque is None:
+            found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
+        if self.force is not None:
+            found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), "(Fx, Fy) in N")
+        return found + problems(self, path + ".") + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
+
+    def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> Load:
+        """The load with its force and torque brought to a sweep's angles by sample(path, value, rule)."""
+        force = self.force and tuple(sample(f"{path}.force[{k}]", f, FORCE) for k, f in enumerate(self.force, 1))
+        return replace(self, force=force, torque=sample(f"{path}.torque", self.torque, TORQUE))
+
+    def parameters(self, load: str, cg: tuple[Number, Number]) -> dict[str, Number]:
+        """The load's numbers under the names that the physics wires by; `cg` is its link's, in the link's axes."""
+        named: dict[str, Any] = {}
+        if self.force is not None:
+            component = f"{load}_force_" if self.frame == "link" else f"{load}_F"
+            named |= {component + "x": self.force[0], component + "y": self.force[1]}
+            cos, sin = cos_sin(self.at[1])
+            from_x, from_y = cg if self.origin == "cg" else (0.0, 0.0)
+            named |= {f"{load}_at_x": from_x + self.at[0] * cos, f"{load}_at_y": from_y + self.at[0] * sin}
+        if self.torque is not None:
+            named[f"{load}_torque"] = self.torque
+        return named

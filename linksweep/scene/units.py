@@ -1,0 +1,383 @@
+"""Numbers as they stand in a scene file: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``; a design axis of such.
+
+The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then divisors:
+``lbf in s^2``, ``rad/s^2``; ``*``, ``·``, ``-`` between factors and ``²``, ``**2`` for ``^2`` are read too.
+
+pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as 1/m, "1 1/2 in" as
+half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity takes, and all else is
+an error that tells what to write. The arithmetic is in fractions: where a unit is defined exactly the result is the
+correctly rounded float ("8 cm" is 0.08, to the bit).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, lru_cache
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.validate import did_you_mean
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of quantity: the unit of a plain number, an example, and the spellings a text may use."""
+
+    unit: str
+    example: str
+    spellings: tuple[str, ...]
+
+
+_INERTIAS = (
+    "kg m^2, kg cm^2, kg mm^2, g cm^2, g mm^2, lb in^2, lb ft^2, slug ft^2, blob in^2, lbf in s^2, lbf ft s^2"
+)
+KINDS = {
+    name: Kind(unit, example, tuple(spellings.split(", ")))
+    for name, unit, example, spellings in (
+        ("length", "m", "8 cm", "m, mm, cm, km, um, in, ft"),
+        ("mass", "kg", "0.7 kg", "kg, g, tonne, lb, oz, slug, blob, lbf s^2/ft, lbf s^2/in"),
+        ("inertia", "kg m^2", "2.8e-3 kg m^2", _INERTIAS),
+        ("angle", "deg", "45 deg", "deg, rad, rev"),
+        ("angular_velocity", "rad/s", "1500 rpm", "rad/s, deg/s, rpm, rev/min, rev/s"),
+        ("angular_acceleration", "rad/s^2", "100 rad/s^2", "rad/s^2, deg/s^2, rev/s^2, rpm/s"),
+        ("force", "N", "80 N", "N, kN, MN, mN, lbf, kgf"),
+        ("torque", "N m", "12 N m", "N m, N cm, N mm, kN m, lbf in, lbf ft, kgf m, kgf cm"),
+        ("acceleration", "m/s^2", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
+        ("density", "kg/m^3", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
+        ("dimensionless", "1", "10 %", "%"),
+    )
+}
+
+# What pint lacks. A blob is the inch's slug: 1 lbf gives it 1 in/s^2.
+_NOT_IN_PINT = ("blob = lbf * s^2 / in", "rev = revolution")
+
+# What is often written for a unit of another kind, or of none: "ft lb" for a torque, "1/s" for rad/s.
+_MEANT = {r"\blbm?\b": "lbf", r"\bHz\b": "rev/s", r"^1/s\b": "rad/s", r"^[gG]$": "g0"}
+
+_AXIS_KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2")
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_FRACTION = re.compile(r"([+-]?)(?:([0-9]+)[\s-]+)?([0-9]+)\s*/\s*0*([1-9][0-9]*)(.*)", re.DOTALL)
+_COMMAS = re.compile(r"([+-]?[0-9][0-9.]*(?:,[0-9][0-9.]*)+)(.*)", re.DOTALL)
+_THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(\.[0-9]*)?")
+_UNIT = re.compile(
+    r"[a-z%]\w*(\^-?[0-9]+)?( [a-z%]\w*(\^-?[0-9]+)?)*(/[a-z%]\w*(\^[0-9]+)?)*", re.ASCII | re.I
+)
+_SYMBOLS = {"**": "^", "*": " ", "·": " ", "⋅": " ", "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "u"}
+
+
+def quantity(value: Any, kind: str, unit: str | None = None) -> float:
+    """Read a number, or a text such as "8 cm", as a float in SI units; angles are in degrees.
+
+    Parameters
+    ----------
+    value : float or str
+        A number passes through: it is in SI units already. A text is one decimal number, a space, one unit.
+    kind : str
+        What is measured: a key of `KINDS`.
+    unit : str, optional
+        The unit of plain numbers, in place of the SI unit.
+
+    Returns
+    -------
+    float
+        The value [`KINDS[kind].unit`], correctly rounded where the unit is defined exactly.
+
+    Raises
+    ------
+    ValueError
+        When the text is not that, or the unit not one of this kind. The message says what to write.
+
+    Examples
+    --------
+    >>> quantity("8 cm", "length"), quantity("1 blob", "mass"), quantity(45, "angle")
+    (0.08, 175.1268352464764, 45.0)
+    """
+    try:
+        if isinstance(value, str):
+            return _scaled(*_parted(value.strip().replace("−", "-"), kind), kind)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise ValueError(f'must be a number or a text such as "{KINDS[kind].example}"')
+        return _finite(value) if unit is None else _scaled(repr(_finite(value)), unit, kind)
+    except ValueError as error:
+        raise ValueError(f"{shown(value)}: {error}") from None
+
+
+@lru_cache(maxsize=1024)
+def accepted_unit(unit: str, kind: str) -> str:
+    """Return the listed spelling of `unit`, or raise a ValueError that lists the units of this kind."""
+    key = _factors(unit)
+    for spelling in KINDS[kind].spellings:
+        if _factors(spelling) == key:
+            return spelling
+    raise ValueError(_not_accepted(unit, kind))
+
+
+def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.DataArray:
+    """Read the inline table that stands in place of a number: ``{dim = "length", values = ["8 cm", 0.09]}``.
+
+    Parameters
+    ----------
+    table : dict
+        `dim` or `dims`; `values`, nested as deep as there are dims, or `start`, `stop`, `num`; `unit` of the plain
+        numbers; `coords`, a list for each dim with labels; `theta2`, short for the angles [degree] in `coords`.
+    kind : str
+        What is measured: a key of `KINDS`.
+    alone : bool
+        Whether no other number has this one dim: without `coords` the values are then its labels.
+
+    Returns
+    -------
+    DataArray
+        The values [`KINDS[kind].unit`], with the dims named.
+
+    Raises
+    ------
+    ValueError
+        One problem a line, each starting with its place in the table.
+
+    Examples
+    --------
+    >>> design_axis({"dim": "length", "values": [8, 9], "unit": "cm"}, "length").values.tolist()
+    [0.08, 0.09]
+    """
+    listed = f"; a design axis has {', '.join(_AXIS_KEYS)}"
+    unknown = [key for key in table if key not in _AXIS_KEYS]
+    problems = [f"{key}: unknown key{did_you_mean(key, _AXIS_KEYS) or listed}" for key in unknown]
+    dims = _axis_dims(table, problems)
+    values = _axis_values(table, kind, problems)
+    if not problems and values.ndim != len(dims):
+        problems.append(f"values: lists nested {values.ndim} deep for {len(dims)} dims, {', '.join(dims)}")
+    coords = {} if problems else _axis_coords(table, dims, values, alone, problems)
+    if problems:
+        raise ValueError("\n".join(problems))
+    return xr.DataArray(values, dims=dims, coords=coords)
+
+
+def shown(value: object) -> str:
+    """Return a value as it stands in a file, cut where it is long."""
+    text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _parted(text: str, kind: str) -> tuple[str, str]:
+    """Split "8 cm" into its number and its unit."""
+    if advice := _comma(text) or _fraction(text):
+        raise ValueError(advice)
+    found = _NUMBER.match(text)
+    if not found:
+        raise ValueError(_no_number(text, kind))
+    number, rest = found[0], text[found.end() :]
+    if advice := _bad_shape(number, rest, kind):
+        raise ValueError(advice)
+    unit = accepted_unit(rest.strip(), kind)
+    if not rest[0].isspace():
+        raise ValueError(f'needs a space between the number and the unit; write "{number} {rest}"')
+    return number, unit
+
+
+def _comma(text: str) -> str | None:
+    """Advise on "2,5 mm" and "1,500 rpm"."""
+    if not (found := _COMMAS.match(text)):
+        return None
+    number, rest = found.groups()
+    point, plain = number.replace(",", "."), number.replace(",", "")
+    meant = [point] if _NUMBER.fullmatch(point) else []
+    meant += [plain] if _THOUSANDS.fullmatch(number) or not meant else []
+    written = " or ".join(f'"{item}{rest}"' for item in meant)
+    return f"a comma in a number is not read; write {written}"
+
+
+def _fraction(text: str) -> str | None:
+    """Advise on "1 1/2 in"."""
+    if not (found := _FRACTION.match(text)):
+        return None
+    sign, whole, upper, lower, rest = found.groups()
+    decimal = float(int(whole or 0) + Fraction(int(upper), int(lower)))
+    return f'a fraction is not read; write the decimal number, "{sign}{decimal:.12g}{rest}"'
+
+
+def _no_number(text: str, kind: str) -> str:
+    """Advise where no number starts the text."""
+    finite = "a finite number" if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE) else "a number"
+    return f'must be {finite}, a space and a unit, as in "{KINDS[kind].example}"'
+
+
+def _bad_shape(number: str, rest: str, kind: str) -> str | None:
+    """Advise where the number is not followed by one unit."""
+    unit = KINDS[kind].unit
+    if not rest:
+        if unit == "1":
+            return f"has no unit; write {number} without the quotes"
+        return f'has no unit; write "{number} {unit}", or {number} without the quotes, which is in {unit}'
+    if not re.match(r"\s*[A-Za-zµμ°%]|\s+1/", rest):
+        return f'must be one number, a space and one unit, as in "{KINDS[kind].example}"'
+    return None
+
+
+def _not_accepted(unit: str, kind: str) -> str:
+    """Say why a unit is refused, what may have been meant and what there is."""
+    key, spellings = _factors(unit), KINDS[kind].spellings
+    listed = f"accepted: {', '.join(spellings)}"
+    for other, row in KINDS.items():
+        if any(_factors(spelling) == key for spelling in row.spellings):
+            wrong = f"{unit} is a unit of {_words(other)}, not of {_words(kind)}"
+            return f"{wrong}{_meant(unit, spellings) or ';'} {listed}"
+    for spelling in spellings:
+        if unit.casefold() == spelling.casefold():
+            return f'"{unit}" is written "{spelling}"'
+        if unit.casefold() == spelling.replace(" ", "").casefold():
+            return f'"{unit}" runs its units together; write them with a space, "{spelling}"'
+    near = _meant(unit, spellings) or did_you_mean(unit, spellings)
+    return f'"{unit}" is not an accepted unit of {_words(kind)}{near or ";"} {listed}'
+
+
+def _meant(unit: str, spellings: Iterable[str]) -> str:
+    """Advise on the common slips of `_MEANT`."""
+    candidates = {_factors(re.sub(slip, right, unit)) for slip, right in _MEANT.items()}
+    meant = [spelling for spelling in spellings if _factors(spelling) in candidates]
+    return f'; did you mean "{meant[0]}"?' if meant else ""
+
+
+def _factors(unit: str) -> frozenset[tuple[str, int]] | str:
+    """Take a unit apart, so that order does not matter: "ft lbf" is "lbf ft"; what is none stays as it is."""
+    for symbol, plain in _SYMBOLS.items():
+        unit = unit.replace(symbol, plain)
+    unit = re.sub(r"\s*([/^])\s*", r"\1", unit.strip())
+    unit = re.sub(r"(?<=\w)\s*-\s*(?=[A-Za-z])|\s+", " ", unit)
+    if not _UNIT.fullmatch(unit):
+        return unit
+    powers: dict[str, int] = {}
+    for factor in re.split(r" |(?=/)", unit):
+        name, _, power = factor.lstrip("/").partition("^")
+        name = "lb" if name == "lbm" else name
+        powers[name] = powers.get(name, 0) + int(power or 1) * (-1 if factor.startswith("/") else 1)
+    return frozenset(powers.items())
+
+
+def _scaled(number: str, unit: str, kind: str) -> float:
+    """Return number times unit in SI, rounded once."""
+    factor, rough = _factor(accepted_unit(unit, kind), kind), float(number)
+    # 0 and inf stay floats: 1e-999999999 is 0, and a billion digits as a fraction.
+    exact = Fraction(number.replace("_", "")) * factor if rough and math.isfinite(rough) else rough
+    return _finite(exact)
+
+
+def _finite(number: Any) -> float:
+    if not abs(number) <= sys.float_info.max:
+        raise ValueError("must be a finite number, at most 1.8e308")
+    return float(number)
+
+
+@cache
+def _factor(spelling: str, kind: str) -> Fraction:
+    """Return what one such unit is in SI; pint's pi has 50 digits, all else is exact."""
+    si = KINDS[kind].unit
+    one = _pint().Quantity(Fraction(1), spelling.replace(" ", "*"))
+    return Fraction(one.to("dimensionless" if si == "1" else si.replace(" ", "*")).magnitude)
+
+
+@cache
+def _pint() -> Any:
+    import pint  # here, because it takes a third of a second and most scenes have plain numbers
+
+    registry: Any = pint.UnitRegistry(non_int_type=Fraction)
+    for definition in _NOT_IN_PINT:
+        registry.define(definition)
+    return registry
+
+
+def _words(kind: str) -> str:
+    return "a dimensionless number" if kind == "dimensionless" else kind.replace("_", " ")
+
+
+def _axis_dims(table: dict[str, Any], problems: list[str]) -> list[str]:
+    key = "dims" if "dims" in table else "dim"
+    dims = table.get("dims", [table.get("dim")])
+    if key not in table:
+        problems.append('dim: missing; write dim = "name of the design axis"')
+    elif not isinstance(dims, list) or not all(isinstance(dim, str) for dim in dims):
+        problems.append(
+            f"{key} = {shown(table[key])}: must be {'a list of names' if key == 'dims' else 'a name'}"
+        )
+    return dims
+
+
+def _axis_values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
+    """Read `values`, or `start`, `stop` and `num`."""
+    unit = _axis_unit(table, kind, problems)
+    if "values" in table:
+        values = _read_nested(table["values"], "values", kind, unit, problems)
+        return np.array([]) if problems else _array(values, problems)
+    if not table.keys() >= {"start", "stop", "num"}:
+        problems.append("values: missing; write values = [...], or start, stop and num")
+        return None
+    start, stop = (_read_nested(table[key], key, kind, unit, problems) for key in ("start", "stop"))
+    if not isinstance(num := table["num"], int) or isinstance(num, bool) or num < 1:
+        problems.append(f"num = {shown(num)}: must be a count, 1 or more")
+    return None if problems else _evenly(start, stop, num)
+
+
+def _evenly(start: float, stop: float, num: int) -> Any:
+    """Space numbers as decimals: four from 0.06 to 0.09 have 0.07, where floats give 0.06999999999999999."""
+    first, last = Fraction(repr(start)), Fraction(repr(stop))
+    return np.array([float(first + (last - first) * Fraction(i, max(num - 1, 1))) for i in range(num)])
+
+
+def _axis_unit(table: dict[str, Any], kind: str, problems: list[str]) -> str | None:
+    try:
+        return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
+    except ValueError as error:
+        problems.append(f"unit = {shown(table['unit'])}: {error}")
+        return None
+
+
+def _read_nested(item: Any, at: str, kind: str, unit: str | None, problems: list[str]) -> Any:
+    if isinstance(item, list):
+        return [_read_nested(part, f"{at}[{i}]", kind, unit, problems) for i, part in enumerate(item, 1)]
+    try:
+        return quantity(item, kind, unit)
+    except ValueError as error:
+        problems.append(f"{at} = {error}")
+        return math.nan
+
+
+def _array(values: Any, problems: list[str]) -> Any:
+    try:
+        array = np.array(values, dtype=float)
+    except ValueError:
+        problems.append("values: the rows differ in length")
+        return None
+    if not array.size:
+        problems.append("values: is empty")
+    return array
+
+
+def _axis_coords(
+    table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]
+) -> dict[str, Any]:
+    """Read the labels of the dims; those of theta2 are angles."""
+    sizes = dict(zip(dims, values.shape, strict=True))
+    if "coords" not in table and "theta2" not in table:
+        return {dims[0]: values} if alone and len(dims) == 1 and dims != ["theta2"] else {}
+    if not isinstance(coords := table.get("coords", {}), dict):
+        problems.append(f"coords = {shown(coords)}: must be a table, {{{dims[0]} = [...]}}")
+        return {}
+    coords = coords | ({"theta2": table["theta2"]} if "theta2" in table else {})
+    if isinstance(angles := coords.get("theta2"), list) and any(isinstance(angle, str) for angle in angles):
+        coords["theta2"] = _read_nested(angles, "theta2", "angle", None, problems)
+    for dim, labels in coords.items():
+        if dim not in sizes:
+            problems.append(f"coords: {dim} is no dim of these values; they have {', '.join(dims)}")
+        elif not isinstance(labels, list) or len(labels) != sizes[dim]:
+            problems.append(f"coords: {dim} must be a list of {sizes[dim]}, as many as there are values")
+    return coords
