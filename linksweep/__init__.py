@@ -2,10 +2,27 @@
 
 from linksweep.mechanisms.four_bar import FourBar
 from linksweep.mechanisms.links import Bar, Disk, Link
+from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.results.system import system
+from linksweep.scene.examples import example
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
+from linksweep.surface.storage import load_scene, save
 
-__all__ = ["Bar", "Disk", "FourBar", "Link", "Load", "Scene", "peaks", "sweep", "system"]
+__all__ = [
+    "Bar",
+    "Disk",
+    "FourBar",
+    "Link",
+    "Load",
+    "Scene",
+    "check",
+    "example",
+    "load_scene",
+    "peaks",
+    "save",
+    "sweep",
+    "system",
+]

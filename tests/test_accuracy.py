@@ -1,7 +1,7 @@
 """Every number of random scenes against 60-digit arithmetic: fast path, dense path, compiled batches.
 
-Errors are relative to the largest of their kind at the same position: forces to the largest pin force, torques to that
-force times the longest link, rates to the fastest link's, places to the longest link.
+Errors are relative to the largest of their kind at the same position: forces to the largest pin force, torques to
+that force times the longest link, rates to the fastest link's, places to the longest link.
 """
 
 from dataclasses import fields, replace
@@ -21,7 +21,6 @@ from oracle import (
     LoadData,
     largest_force,
     largest_torque,
-    log_uniform,
     motion,
     mp,
     random_data,
@@ -44,7 +43,7 @@ REACTIONS = {f"F{name[2]}{name[1]}{name[3:]}": name for name in FORCES}
 
 
 class Case(NamedTuple):
-    """A random scene, crank angles away from its toggles [degree], and the judge's results there, rounded once."""
+    """A random scene, crank angles away from its toggles [degree], and the judge's results, rounded once."""
 
     data: FourBarData
     theta2: list[float]
@@ -78,17 +77,20 @@ def random_case(rng: np.random.Generator, angles: int, **given) -> Case:
 
 @cache
 def cases() -> list[Case]:
-    """240 scenes: ten of each kind, branch and drive."""
+    """192 scenes: eight of each kind, branch and drive."""
     rng = np.random.default_rng(1)
-    sorts = product(KINDS, BRANCHES, LINKS, range(10))
-    return [random_case(rng, 4, kind=kind, branch=branch, drive=drive) for kind, branch, drive, _ in sorts]
+    sorts = product(KINDS, BRANCHES, LINKS, range(8))
+    return [random_case(rng, 5, kind=kind, branch=branch, drive=drive) for kind, branch, drive, _ in sorts]
+
+
+def largest(*values: np.ndarray | float) -> np.ndarray:
+    return np.max(np.abs(np.broadcast_arrays(*values)), axis=0)
 
 
 def scales(data: FourBarData, results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The largest of each kind at each angle, by how the names of the kind begin."""
-    omega = np.max([*np.broadcast_arrays(abs(data.omega2), abs(results["omega3"]), abs(results["omega4"]))], 0)
-    prescribed = data.omega2**2 + abs(data.alpha2)
-    alpha = np.max([*np.broadcast_arrays(prescribed, abs(results["alpha3"]), abs(results["alpha4"]))], 0)
+    omega = largest(data.omega2, results["omega3"], results["omega4"])
+    alpha = largest(data.omega2**2 + abs(data.alpha2), results["alpha3"], results["alpha4"])
     longest = max(data.ground, *(getattr(data, link).length for link in LINKS))
     angle = np.full_like(omega, 180.0)
     found = {"theta": angle, "transmission": angle, "omega": omega, "alpha": alpha, "aG": alpha * longest}
@@ -114,3 +116,130 @@ def worst(scenes: list[dict[str, float]]) -> dict[str, float]:
     for name, error in (item for scene in scenes for item in scene.items()):
         found[name] = max(found.get(name, 0.0), error)
     return found
+
+
+def test_fast_path_agrees_with_the_judge():
+    """Promised: 1e-11, away from toggles (sin μ > 0.1). Reached: 2e-12 on 19 000 positions, less on these."""
+    found = []
+    for case in cases():
+        names = all_names(case.data)
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=names)
+        assert not cycle.status.any(), case
+        found.append(errors(cycle, names, case))
+    assert max(worst(found).values()) < 1e-11, worst(found)
+
+
+def test_power_balances_at_every_sample():
+    """Drive, loads, gravity and inertia, of which none knows of the others; 1.4e-14 on 19 000 positions."""
+    for case in cases()[::2]:
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=["power_residual"])
+        assert abs(cycle.power_residual).max() < 1e-13, case
+
+
+def test_dense_path_agrees_with_the_judge_and_with_the_fast_path():
+    """The 9×9 by partial pivoting may err by eps·cond, where the fast path may not."""
+    found = []
+    for case in cases()[1::3]:
+        names = unknowns(case.data)
+        dense = ls.sweep(to_scene(case.data), case.theta2, outputs=[*names, "cond"], solver="dense")
+        fast = ls.sweep(to_scene(case.data), case.theta2, outputs=names)
+        allowed = np.minimum(1e-10, EPS * dense.cond)
+        for name in names:
+            size = case.results["largest_torque" if name.startswith("T") else "largest_force"]
+            assert (abs(dense[name] - fast[name]) / size <= allowed).all(), (name, case)
+        found.append(errors(dense, names, case))
+    assert max(worst(found).values()) < 1e-11, worst(found)
+
+
+def test_fast_and_dense_paths_are_two():
+    """Equal to the last bit everywhere would mean that one stands in for the other."""
+    case = cases()[0]
+    names = unknowns(case.data)
+    dense = ls.sweep(to_scene(case.data), case.theta2, outputs=names, solver="dense")
+    for outputs in (names, (*names, "cond")):
+        fast = ls.sweep(to_scene(case.data), case.theta2, outputs=outputs)
+        assert any((dense[name] != fast[name]).any() for name in names)
+
+
+def norm_1(matrix):
+    return max(mp.fsum(abs(matrix[i, j]) for i in range(matrix.rows)) for j in range(matrix.cols))
+
+
+def test_condition_number_is_that_of_the_printed_matrix():
+    for case in cases()[2::7]:
+        found = ls.sweep(to_scene(case.data), case.theta2[:1], outputs="cond").cond.item()
+        matrix = mp.matrix(system(case.data, motion(case.data, case.theta2[0]))[0])
+        cond = float(norm_1(matrix) * norm_1(matrix**-1))
+        assert found == pytest.approx(cond, rel=100 * EPS * cond)
+
+
+# ---- a batch of designs in one scene -----
+
+
+def loaded(data: FourBarData, rng: np.random.Generator) -> FourBarData:
+    """Three loads of fixed forms and random numbers, on the scale of the inertia forces."""
+    length = data.coupler.length
+    force = data.coupler.mass * data.omega2**2 * length
+    fx, fy, gx, gy, moment, torque = (float(x) for x in rng.uniform(-2, 2, 6) * force)
+    loads = (
+        LoadData("crank", (fx, fy), at=(0.5 * length, float(rng.uniform(-180, 180))), torque=moment * length),
+        LoadData("coupler", (gx, gy), at=(length, 30.0), frame="link", origin="cg"),
+        LoadData("rocker", torque=torque * length),
+    )
+    return replace(data, loads=loads)
+
+
+def over_designs(owners: list, name: str) -> xr.DataArray:
+    return xr.DataArray([getattr(owner, name) for owner in owners], dims="design")
+
+
+def pairs_over_designs(owners: list, name: str) -> tuple[xr.DataArray, xr.DataArray]:
+    pairs = np.array([getattr(owner, name) for owner in owners]).T
+    return tuple(xr.DataArray(values, dims="design") for values in pairs)
+
+
+def stacked_load(loads: list[LoadData]) -> ls.Load:
+    words = {name: getattr(loads[0], name) for name in ("link", "frame", "origin")}
+    numbers = {"at": pairs_over_designs(loads, "at")}
+    if any(loads[0].force):
+        numbers["force"] = pairs_over_designs(loads, "force")
+    if loads[0].torque:
+        numbers["torque"] = over_designs(loads, "torque")
+    return ls.Load(**words, **numbers)
+
+
+def stacked(designs: list[FourBarData]) -> ls.Scene:
+    """All designs in one scene, along the dim "design", each on both branches."""
+    numbers = [field.name for field in fields(LinkData)]
+    links = {
+        link: ls.Link(**{name: over_designs([getattr(d, link) for d in designs], name) for name in numbers})
+        for link in LINKS
+    }
+    frame = {name: over_designs(designs, name) for name in ("ground", "ground_angle")}
+    return ls.Scene(
+        ls.FourBar(**links, **frame, branch="both"),
+        omega2=over_designs(designs, "omega2"),
+        alpha2=over_designs(designs, "alpha2"),
+        gravity=pairs_over_designs(designs, "gravity"),
+        loads=[stacked_load(list(loads)) for loads in zip(*(d.loads for d in designs), strict=True)],
+        drive=designs[0].drive,
+    )
+
+
+@pytest.mark.parametrize("drive", LINKS)
+def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkeypatch):
+    """Also where some of the designs cannot be assembled: NaN there, and nowhere else."""
+    rng = np.random.default_rng(7)
+    designs = [loaded(random_data(rng, drive=drive, loads=0), rng) for _ in range(24)]
+    theta2 = rng.uniform(-180, 540, 11)
+    names = (*all_names(designs[0]), "power_residual")
+    monkeypatch.setattr(run, "COMPILE_AFTER", -1)
+    batch = ls.sweep(stacked(designs), theta2, outputs=names)
+    monkeypatch.setattr(run, "COMPILE_AFTER", np.inf)
+    assert {0, 1} <= set(batch.status.values.flat)
+    for (k, design), branch in product(enumerate(designs), BRANCHES):
+        single = ls.sweep(to_scene(replace(design, branch=branch)), theta2, outputs=names)
+        for name in (*names, "status"):
+            chosen = batch[name].isel(design=k, drop=True) if "design" in batch[name].dims else batch[name]
+            chosen = chosen.sel(branch=branch, drop=True) if "branch" in chosen.dims else chosen
+            np.testing.assert_array_equal(chosen.values, single[name].values, err_msg=f"{name} of {design}")

@@ -21,7 +21,7 @@ SETTINGS = 'error_model="numpy", nogil=True'
 
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "
-    "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8, f8[:, ::1])"
+    "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8, f8[::1])"
 )
 
 HEADER = "import math\nfrom math import atan2, sqrt\n\nimport numba\n\n\n"
@@ -78,7 +78,8 @@ def _stored(folder: Path, text: str) -> Path | None:
 
 def _imported(path: Path):
     spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path}: not a module")
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)

@@ -8,9 +8,9 @@ plain inner loop over contiguous rows: that is what vectorises.
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, period, lanes)
 
-`parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each input
-starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost design loop
-(the samples, where there is none), so that a pool of threads can share the work.
+`parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each
+input starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost
+design loop (the samples, where there is none), so that a pool of threads can share the work.
 """
 
 from __future__ import annotations
@@ -38,7 +38,6 @@ class Reduction:
 
     kind: str
     name: str
-    sign: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +176,7 @@ class _Writer:
             if self.level(node) != level or node.operator == "constant":
                 continue
             if self.per_sample(node):
-                call = f"{reduction.kind}({self._row(node)}, {reduction.sign!r}, angles, period, lanes)"
+                call = f"{reduction.kind}({self._row(node)}, angles, period, lanes)"
             else:
                 call = f"({name(node)}, angles[0])"
             self.write(depth, f"value, at = {call}")

@@ -63,9 +63,19 @@ class Table:
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:
-        """The row that makes each name."""
-        return {name: row for row in self.rows for name in row.outputs}
+        """The row that makes each name, and the opposite of each quantity (its largest is minus the least)."""
+        made = {name: row for row in self.rows for name in row.outputs}
+        turned = (Row(_opposite, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
+        return made | {name: row for row in turned for name in row.outputs}
 
     @cached_property
     def quantity(self) -> Mapping[str, Quantity]:
         return {quantity.name: quantity for quantity in self.quantities}
+
+
+def opposite_of(name: str) -> str:
+    return f"-{name}"
+
+
+def _opposite(x):
+    return -x

@@ -50,9 +50,10 @@ class Field(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The samples of the index: its values, its period (0: none), and the rows of numbers that depend on it alone."""
+    """The samples of the index dimension `dim`: its values, its period (0: none), and the rows of numbers that
+    depend on it alone."""
 
-    index: str
+    dim: str
     angles: np.ndarray
     period: float
     names: tuple[str, ...]
@@ -90,12 +91,12 @@ def evaluate(
     stored = _stored_fields(ready, block, single, grid, sizes)
     if plan.late:
         values = {node: _align(plan, node.dims, field) for node, field in stored.items()}
-        values |= {node: np.float64(node.value) for node in plan.nodes if node.operator == "constant"}
+        values |= {node: np.asarray(node.value) for node in plan.nodes if node.operator == "constant"}
         values = interpret(plan.late, values)
         stored |= {node: _field(plan, node, values[node], grid, sizes) for node in plan.late}
     for node in plan.outputs.values():
         if node.operator == "constant":
-            stored[node] = Field((), np.float64(node.value))
+            stored[node] = Field((), np.asarray(node.value))
     return {name: stored[node] for name, node in plan.outputs.items()}
 
 
@@ -128,7 +129,7 @@ def interpret(nodes, values: dict[Node, np.ndarray], operators=OPERATORS) -> dic
     with np.errstate(all="ignore"):
         for node in nodes:
             if node.operator == "constant":
-                values[node] = np.float64(node.value)
+                values[node] = np.asarray(node.value)
             elif node.operator != "input":
                 values[node] = operators[node.operator](*(values[x] for x in node.operands))
     return values
@@ -141,7 +142,7 @@ def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, n
         node: _align(
             plan,
             node.dims,
-            Field((grid.index,), rows[node.value]) if node.value in rows else inputs[node.value],
+            Field((grid.dim,), rows[node.value]) if node.value in rows else inputs[node.value],
         )
         for node in plan.nodes
         if node.operator == "input"
@@ -158,19 +159,19 @@ def _align(plan: Plan, dims: frozenset[str], field: Field) -> np.ndarray:
 
 def _field(plan: Plan, node: Node, value: np.ndarray, grid: Grid, sizes: Mapping[str, int]) -> Field:
     dims = plan.dims(node)
-    shape = tuple(len(grid.angles) if dim == grid.index else sizes[dim] for dim in dims)
+    shape = tuple(len(grid.angles) if dim == grid.dim else sizes[dim] for dim in dims)
     return Field(dims, np.reshape(value, shape))
 
 
 def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[Field, Field]:
-    if grid.index not in field.dims:
+    if grid.dim not in field.dims:
         return field, Field(field.dims, np.full(field.values.shape, grid.angles[0]))
     dims, shape = field.dims[:-1], field.values.shape[:-1]
-    lanes = np.empty((2, reduce.LANES))
+    lanes = np.empty(reduce.LANES)
     function = getattr(reduce, reduction.kind)
     rows = field.values.reshape(-1, len(grid.angles)).tolist()
     angles = grid.angles.tolist()
-    both = np.array([function(row, reduction.sign, angles, grid.period, lanes) for row in rows])
+    both = np.array([function(row, angles, grid.period, lanes) for row in rows])
     return Field(dims, both[:, 0].reshape(shape)), Field(dims, both[:, 1].reshape(shape))
 
 
@@ -191,7 +192,7 @@ def _execute(ready: Runner, inputs: Mapping[str, Field], grid: Grid, sizes: Mapp
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
-        scratch, lanes = np.empty((fused.scratch_rows, samples)), np.empty((2, reduce.LANES))
+        scratch, lanes = np.empty((fused.scratch_rows, samples)), np.empty(reduce.LANES)
         kernel(
             first, last, samples, loop_sizes, parameters, parameter_at, profiles, profile_at,
             block, block_at, single, single_at, scratch, grid.angles, grid.period, lanes,

@@ -1,16 +1,22 @@
 """Physics functions traced into a graph of single operations.
 
-A function called with traced values records each + - * / and square root once (equal operations are shared) and leaves
-out what is known to be nothing: 0·x, 0 + x, 1·x. Leaving out changes no bit of any result: each remaining operation is
-rounded as IEEE says, never contracted or reordered, so the same numbers come out of every path that evaluates the graph.
+A function called with traced values records each + - * / and square root once (equal operations are shared) and
+leaves out what is known to be nothing: 0·x, 0 + x, 1·x. Leaving out changes no bit of any result: each remaining
+operation is rounded as IEEE says, never contracted or reordered, so the same numbers come out of every path that
+evaluates the graph.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 COMMUTATIVE = {"+", "*"}
-DECIDED = {"<": lambda x, y: float(x < y), "abs": abs, "where": lambda c, x, y: x if c else y}
+DECIDED: dict[str, Callable[..., float]] = {
+    "<": lambda x, y: float(x < y),
+    "abs": abs,
+    "where": lambda c, x, y: x if c else y,
+}
 """Operations settled while tracing where their operands are constants."""
 
 
@@ -128,6 +134,8 @@ class Graph:
             return self.negate(y)
         if y.operator == "negate":
             return self.add(x, y.operands[0])
+        if x.operator == "negate":
+            return self.negate(self.add(x.operands[0], y))
         return self.operation("-", x, y)
 
     def multiply(self, x: Node, y: Node) -> Node:
@@ -137,14 +145,21 @@ class Graph:
             return y
         if y.is_constant(1.0):
             return x
+        if x.operator == "negate":
+            return self.negate(self.multiply(x.operands[0], y))
+        if y.operator == "negate":
+            return self.negate(self.multiply(x, y.operands[0]))
         return self.operation("*", x, y)
 
     def divide(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0) or y.is_constant(1.0):
             return x
+        if x.operator == "negate":
+            return self.negate(self.divide(x.operands[0], y))
         return self.operation("/", x, y)
 
     def negate(self, x: Node) -> Node:
+        """Signs move outward until a sum takes them in: rounding is symmetric, so no bit changes."""
         if x.operator == "constant":
             return self.constant(-x.value if x.value else 0.0)
         if x.operator == "negate":

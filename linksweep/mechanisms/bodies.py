@@ -1,7 +1,7 @@
 """Rows of one moving link, the same for every mechanism: inertia, weight, loads, centre of gravity, power.
 
-A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What the
-mechanism adds is how the first pin moves: the names of its velocity and acceleration (0.0 where it stands).
+A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What
+the mechanism adds is how the first pin moves: the names of its velocity and acceleration (0.0 where it stands).
 """
 
 from __future__ import annotations
@@ -26,12 +26,16 @@ class LoadForm:
 
 @dataclass(frozen=True)
 class Body:
-    """A moving link of a mechanism: its number and role, and the motion of its first pin."""
+    """A moving link of a mechanism: its number and role, and the motion of its first pin.
+
+    `steady` marks the link whose rates are given, on a pin that stands: its inertia is then one turning vector.
+    """
 
     number: int
     role: str
     pin_velocity: tuple[Source, Source] = (0.0, 0.0)
     pin_acceleration: tuple[Source, Source] = (0.0, 0.0)
+    steady: bool = False
 
     def rows(self, loads: tuple[LoadForm, ...]) -> list[Row | Total]:
         mine = [(f"load{k}", load) for k, load in enumerate(loads, 1) if load.link == self.role]
@@ -50,15 +54,20 @@ class Body:
         vector, h, rates = (f"r{k}x", f"r{k}y"), (f"h{k}x", f"h{k}y"), (f"omega{k}", f"alpha{k}")
         cg, gravity = (f"{role}_cg_x", f"{role}_cg_y"), ("gravity_x", "gravity_y")
         mass, length = f"{role}_mass", f"{role}_length"
+        moment_of_inertia = Row(inertia.moment_of_inertia_about_pin, (f"J{k}",), (mass, f"{role}_inertia", *cg))
+        force, moment, load = (f"Q{k}x", f"Q{k}y"), (f"N{k}",), (f"P{k}x", f"P{k}y")
+        if self.steady:
+            body = (mass, *cg, length, *vector, *gravity)
+            return [
+                moment_of_inertia,
+                Row(inertia.steady_effective_force, force, (*body, *rates, *load)),
+                Row(inertia.steady_effective_moment, moment, (f"J{k}", *body, rates[1], f"M{k}")),
+            ]
         return [
-            Row(inertia.moment_of_inertia_about_pin, (f"J{k}",), (mass, f"{role}_inertia", *cg)),
+            moment_of_inertia,
             Row(inertia.first_moment, h, (mass, *cg, length, *vector)),
-            Row(
-                inertia.effective_force,
-                (f"Q{k}x", f"Q{k}y"),
-                (mass, *h, *pin, *gravity, *rates, f"P{k}x", f"P{k}y"),
-            ),
-            Row(inertia.effective_moment, (f"N{k}",), (f"J{k}", *h, *pin, *gravity, rates[1], f"M{k}")),
+            Row(inertia.effective_force, force, (mass, *h, *pin, *gravity, *rates, *load)),
+            Row(inertia.effective_moment, moment, (f"J{k}", *h, *pin, *gravity, rates[1], f"M{k}")),
         ]
 
     def _centre(self) -> list[Row | Total]:
@@ -121,7 +130,8 @@ class Body:
 
 @dataclass(frozen=True)
 class Equation:
-    """A row of the textbook's square system: what stands before each unknown (a number, or ± a quantity), and its right side."""
+    """A row of the textbook's square system: what stands before each unknown (a number, or ± a quantity); its right
+    side."""
 
     label: str
     coefficients: dict[str, float | tuple[float, str]]
@@ -131,7 +141,8 @@ class Equation:
 def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: str | None) -> list[Equation]:
     """ΣFx, ΣFy and ΣM about the centre of gravity of link k.
 
-    `pins` gives for each pin force its sign on this link and the arm R from the centre of gravity to the pin (document 2).
+    `pins` gives for each pin force its sign on this link and the arm R from the centre of gravity to the pin
+    (document 2).
     """
     x = {f"{force}x": sign for force, (sign, _) in pins.items()}
     y = {f"{force}y": sign for force, (sign, _) in pins.items()}

@@ -30,7 +30,7 @@ LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
-    Body(2, "crank"),
+    Body(2, "crank", steady=True),
     Body(3, "coupler", pin_velocity=("vBx", "vBy"), pin_acceleration=("aBx", "aBy")),
     Body(4, "rocker"),
 )
@@ -180,7 +180,7 @@ def _position() -> list[Row | Total]:
         Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
-        Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r3_cross_r4")),
+        Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
@@ -203,29 +203,36 @@ def _rates() -> list[Row | Total]:
 def _forces(drive: str) -> list[Row | Total]:
     """F43 from the two moment equations free of the drive's torque; the rest follows by addition.
 
-    The torque comes from virtual work, so that it costs no pin force and is the same number whether forces are asked or not.
+    The torque comes from virtual work: it costs no pin force, and is the same number whether forces are asked or not.
     """
-    r2, r3, r4 = (("r2x", "r2y"), ("r3x", "r3y"), ("r4x", "r4y"))
-    coupler, rocker, crank = (*r3, "moment_r3"), (*r4, "N4"), (*r2, "moment_r2")
-    pair = {"crank": (*coupler, *rocker), "coupler": (*crank, *rocker), "rocker": (*coupler, *crank)}[drive]
-    inverse = "inverse_r3_cross_r4" if drive == "crank" else "inverse_leverage"
-    ratio = {"crank": 1.0, "coupler": "ratio3", "rocker": "ratio4"}[drive]
-    status: list[Row | Total] = [Row(dyad_rrr.rrr_status, ("status",))]
-    if drive != "crank":
-        status = [Row(dyad_rrr.rrr_status, ("closure",)), Row(four_bar.drive_status, ("status",))]
+    ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3", "rocker": "ratio4"}
     return [
-        Row(planar.opposite, ("moment_r3",), ("N3",)),
-        Row(four_bar.moment_on_crank, ("moment_r2",)),
-        Row(planar.cross, ("leverage",), (pair[0], pair[1], pair[3], pair[4])),
-        Row(inertia.inverse_cross, ("inverse_leverage",), (pair[0], pair[1], pair[3], pair[4])),
-        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*pair, inverse)),
+        *(_crank_driven() if drive == "crank" else _driven_beyond_the_crank(drive)),
         Row(four_bar.coupler_balance, ("F32x", "F32y")),
         Row(four_bar.rocker_balance, ("F14x", "F14y")),
         Row(four_bar.crank_balance, ("F12x", "F12y")),
         Row(four_bar.work_on_crank, ("work",)),
-        Row(four_bar.balancing_torque, (FourBar.drives[drive],), ("work", ratio)),
-        *status,
+        Row(four_bar.balancing_torque, (FourBar.drives[drive],), ("work", ratios[drive])),
         Row(four_bar.not_ok, ("not_ok",)),
+    ]
+
+
+def _crank_driven() -> list[Row | Total]:
+    return [Row(dyad_rrr.rrr_status, ("status",)), Row(dyad_rrr.rrr_pin_force, ("F43x", "F43y"))]
+
+
+def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
+    """The crank's moment equation takes the place of the driven link's."""
+    crank, coupler, rocker = ("r2x", "r2y", "moment_r2"), ("r3x", "r3y", "moment_r3"), ("r4x", "r4y", "N4")
+    p, q = {"coupler": (crank, rocker), "rocker": (coupler, crank)}[drive]
+    return [
+        Row(planar.opposite, ("moment_r3",), ("N3",)),
+        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(planar.cross, ("leverage",), (*p[:2], *q[:2])),
+        Row(inertia.inverse_cross, ("inverse_leverage",), (*p[:2], *q[:2])),
+        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*p, *q, "inverse_leverage")),
+        Row(dyad_rrr.rrr_status, ("closure",)),
+        Row(four_bar.drive_status, ("status",)),
     ]
 
 
@@ -248,9 +255,7 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("By", "m", "position of pin B from A along y"),
         Quantity("Cx", "m", "position of pin C from A along x"),
         Quantity("Cy", "m", "position of pin C from A along y"),
-        Quantity(
-            torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"
-        ),
+        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"),
         Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
         Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
         Quantity(

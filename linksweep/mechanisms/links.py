@@ -39,8 +39,8 @@ class Link:
     cg_distance : distance of the centre of gravity from the first pin [m]
     cg_angle : angle of the centre of gravity from the line of pins, counter-clockwise [degree]
 
-    Each may be an xarray.DataArray with named dims, except theta2. Values are checked by the mechanism that takes the link,
-    which knows it as crank, coupler or rocker: ValueError there.
+    Each may be an xarray.DataArray with named dims, except theta2. Values are checked by the mechanism that takes
+    the link, which knows it as crank, coupler or rocker: ValueError there.
 
     Examples
     --------

@@ -79,9 +79,7 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     if isinstance(value, bool | np.bool_):
         return [f"{path} = {value}: must be a number in {unit}, not a truth value"]
     if isinstance(value, str):
-        return [
-            f"{path} = {value!r}: must be a number in {unit}, not text; strings with units belong in scene files"
-        ]
+        return [f"{path} = {value!r}: must be a number in {unit}, not text; strings with units belong in scene files"]
     if callable(value) and not hasattr(value, "dims"):
         return [] if rule.over_angle else [f"{path} is a function: must be a number in {unit}; {_over_angle_only()}"]
     if hasattr(value, "dims"):

@@ -22,21 +22,19 @@ def rrr_close(
     rocker_length: Number,
     branch_sign: Number,
 ) -> tuple[Number, ...]:
-    """Link vectors r3, r4 and the inverse of their cross product, by one square root and one division."""
+    """Link vectors r3, r4 and 1/(r4 × r3), by one square root and one division."""
     difference = coupler_length - rocker_length
     ff = low + difference * difference
     root = sqrt(low * high)
-    inverse = 1.0 / (ff * root)
-    inverse_2ff = 0.5 * (inverse * root)
-    signed_root = branch_sign * root
+    half_inverse = 0.5 / (ff * root)
+    inverse_2ff = half_inverse * root
     along3 = (low + 2.0 * coupler_length * difference) * inverse_2ff
-    along4 = (low - 2.0 * rocker_length * difference) * inverse_2ff
-    across = signed_root * inverse_2ff
+    along4 = (2.0 * rocker_length * difference - low) * inverse_2ff
+    across = branch_sign * root * inverse_2ff
     side_x, side_y = across * BDy, across * BDx
     r3x, r3y = along3 * BDx - side_x, along3 * BDy + side_y
-    r4x, r4y = -along4 * BDx - side_x, side_y - along4 * BDy
-    inverse_r3_cross_r4 = (2.0 * branch_sign) * (inverse * ff)
-    return r3x, r3y, r4x, r4y, inverse_r3_cross_r4
+    r4x, r4y = along4 * BDx - side_x, along4 * BDy + side_y
+    return r3x, r3y, r4x, r4y, (-4.0 * branch_sign) * (half_inverse * ff)
 
 
 def rrr_status(low: Number, high: Number) -> Number:
@@ -52,12 +50,12 @@ def rrr_velocity_ratios(
     r3y: Number,
     r4x: Number,
     r4y: Number,
-    inverse_r3_cross_r4: Number,
+    inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
     """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity)."""
     return (
-        -cross(r2x, r2y, r4x, r4y) * inverse_r3_cross_r4,
-        -cross(r2x, r2y, r3x, r3y) * inverse_r3_cross_r4,
+        cross(r2x, r2y, r4x, r4y) * inverse_r4_cross_r3,
+        cross(r2x, r2y, r3x, r3y) * inverse_r4_cross_r3,
     )
 
 
@@ -70,16 +68,30 @@ def rrr_accelerations(
     r3y: Number,
     r4x: Number,
     r4y: Number,
-    inverse_r3_cross_r4: Number,
+    inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
     """α3 and α4, from a_B + α3 × r3 − ω3² r3 = α4 × r4 − ω4² r4 (document 2, ME 470, acceleration)."""
     square3, square4 = omega3 * omega3, omega4 * omega4
     kx = aBx - square3 * r3x + square4 * r4x
     ky = aBy - square3 * r3y + square4 * r4y
     return (
-        -dot(kx, ky, r4x, r4y) * inverse_r3_cross_r4,
-        -dot(kx, ky, r3x, r3y) * inverse_r3_cross_r4,
+        dot(kx, ky, r4x, r4y) * inverse_r4_cross_r3,
+        dot(kx, ky, r3x, r3y) * inverse_r4_cross_r3,
     )
+
+
+def rrr_pin_force(
+    r3x: Number,
+    r3y: Number,
+    N3: Number,
+    r4x: Number,
+    r4y: Number,
+    N4: Number,
+    inverse_r4_cross_r3: Number,
+) -> tuple[Number, Number]:
+    """F43 from r3 × F43 = −N3 and r4 × F43 = N4: what is left of the 9×9 once the rest is eliminated by hand."""
+    n3, n4 = N3 * inverse_r4_cross_r3, N4 * inverse_r4_cross_r3
+    return n4 * r3x + n3 * r4x, n4 * r3y + n3 * r4y
 
 
 def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:

@@ -57,9 +57,7 @@ def closure_factors(
     return low, high
 
 
-def crank_pin_acceleration(
-    omega2: Number, alpha2: Number, r2x: Number, r2y: Number
-) -> tuple[Number, Number]:
+def crank_pin_acceleration(omega2: Number, alpha2: Number, r2x: Number, r2y: Number) -> tuple[Number, Number]:
     """a_B = α2 × r2 − ω2² r2."""
     centripetal = omega2 * omega2
     return -alpha2 * r2y - centripetal * r2x, alpha2 * r2x - centripetal * r2y

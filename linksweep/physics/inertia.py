@@ -1,7 +1,7 @@
 """Newton and Euler for one link, about its first pin, in d'Alembert's form.
 
-A link of mass m, with first moment h = m·r_G (pin → centre of gravity) and moment of inertia J = I + m|r_G|² about that
-pin, whose pin accelerates by a and which bears an outer load (P, moment M about the pin), exerts on its pins
+A link of mass m, with first moment h = m·r_G (pin → centre of gravity) and moment of inertia J = I + m|r_G|² about
+that pin, whose pin accelerates by a and which bears an outer load (P, moment M about the pin), exerts on its pins
 
     Q = m(g − a) − α × h + ω² h + P          (effective force)
     N = h × (g − a) − J α + M                (effective moment about the first pin)
@@ -49,6 +49,50 @@ def effective_force(
     )
 
 
+def steady_effective_force(
+    mass: Number,
+    cg_x: Number,
+    cg_y: Number,
+    length: Number,
+    rx: Number,
+    ry: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    omega: Number,
+    alpha: Number,
+    Px: Number,
+    Py: Number,
+) -> tuple[Number, Number]:
+    """Q of a link on a pin that stands, its rates given: one turning vector, cheap where they are constant."""
+    h_along, h_across, centripetal = mass * cg_x / length, mass * cg_y / length, omega * omega
+    along = centripetal * h_along + alpha * h_across
+    across = centripetal * h_across - alpha * h_along
+    return (
+        mass * gravity_x + along * rx - across * ry + Px,
+        mass * gravity_y + along * ry + across * rx + Py,
+    )
+
+
+def steady_effective_moment(
+    J: Number,
+    mass: Number,
+    cg_x: Number,
+    cg_y: Number,
+    length: Number,
+    rx: Number,
+    ry: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    alpha: Number,
+    M: Number,
+) -> Number:
+    """N of the same link."""
+    h_along, h_across = mass * cg_x / length, mass * cg_y / length
+    lever_x = h_along * gravity_y - h_across * gravity_x
+    lever_y = h_along * gravity_x + h_across * gravity_y
+    return lever_x * rx - lever_y * ry - J * alpha + M
+
+
 def effective_moment(
     J: Number,
     hx: Number,
@@ -78,7 +122,7 @@ def force_from_two_moments(
     moment_q: Number,
     inverse_p_cross_q: Number,
 ) -> tuple[Number, Number]:
-    """The force F with p × F = moment_p and q × F = moment_q: what is left of the 9×9 once the rest is eliminated."""
+    """The force F with p × F = moment_p and q × F = moment_q."""
     p, q = moment_q * inverse_p_cross_q, moment_p * inverse_p_cross_q
     return q * qx - p * px, q * qy - p * py
 

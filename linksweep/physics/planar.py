@@ -46,9 +46,7 @@ def turned(x: Number, y: Number, length: Number, rx: Number, ry: Number) -> tupl
     return along * rx - across * ry, along * ry + across * rx
 
 
-def point_velocity(
-    pin_vx: Number, pin_vy: Number, omega: Number, x: Number, y: Number
-) -> tuple[Number, Number]:
+def point_velocity(pin_vx: Number, pin_vy: Number, omega: Number, x: Number, y: Number) -> tuple[Number, Number]:
     """Velocity of a link's point at (x, y) from its pin: v_pin + ω × r."""
     return pin_vx - omega * y, pin_vy + omega * x
 

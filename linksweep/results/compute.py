@@ -21,7 +21,7 @@ def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field
     if scene.drive == "crank" and scene.mechanism.closes_everywhere:
         request = plan(scene.table, ("status",), scene.inputs.forms)
         dims = request.dims(request.outputs["status"])
-        shape = [len(grid.angles) if dim == grid.index else scene.inputs.sizes[dim] for dim in dims]
+        shape = [len(grid.angles) if dim == grid.dim else scene.inputs.sizes[dim] for dim in dims]
         return Field(dims, np.zeros(shape, dtype=np.int8))
     status = compute(scene, grid, ("status",), threads)["status"]
     return Field(status.dims, status.values.astype(np.int8))

@@ -1,7 +1,8 @@
 """peaks(scene): the worst of each quantity over the revolution, and where it is.
 
-Still the largest sample of a grid, improved by the parabola through it and its neighbours: with 720 angles typically good to
-1e-4, but a spike near a dead point that fits between two samples is missed. `engine.reduce` is where an exact search belongs.
+Still the largest sample of a grid, improved by the parabola through it and its neighbours: with 720 angles typically
+good to 1e-4, but a spike near a dead point that fits between two samples is missed. `engine.reduce` is where an
+exact search belongs.
 """
 
 from __future__ import annotations
@@ -14,10 +15,10 @@ import xarray as xr
 
 from linksweep.engine.fuse import Reduction
 from linksweep.engine.plan import plan
-from linksweep.engine.quantity import Quantity
+from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.mechanisms.validate import name_problems, refuse
-from linksweep.results.record import design_coordinates, scene_attributes, variable
+from linksweep.results.record import design_coordinates, flags, scene_attributes, variable
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -25,26 +26,25 @@ MEANINGS = ("ok", "partial_revolution", "cannot_assemble")
 SUMMARIES = ("mean", "rms")
 
 
-def peaks(
-    scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, threads: int | None = None
-) -> xr.Dataset:
+def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
     """Worst case of each quantity over the revolution.
 
-    The largest sample of the grid, improved by a local parabola: an estimate, whose error falls with the number of angles.
-    A narrow spike between two samples can be missed; compare two grids where transmission angles get small.
+    The largest sample of the grid, improved by a local parabola: an estimate, whose error falls with the number of
+    angles. A narrow spike between two samples can be missed; compare two grids where transmission angles get small.
 
     Parameters
     ----------
     scene : Scene
-    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square instead. Default: all pins and the torque
+    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square instead. Default: all pins and the
+        torque
     theta2 : a count of angles, or any array of angles [degree] (then its ends are not joined)
     threads : at most so many (default: all cores); the numbers do not depend on it
 
     Returns
     -------
-    Dataset over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity `T12_max`,
-    `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution (peaks are
-    those of the angles that can be assembled) or cannot_assemble (NaN).
+    Dataset over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity
+    `T12_max`, `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution
+    (peaks are those of the angles that can be assembled) or cannot_assemble (NaN).
 
     Raises
     ------
@@ -54,10 +54,8 @@ def peaks(
     Examples
     --------
     >>> import linksweep as ls
-    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
-    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
-    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
-    >>> worst = ls.peaks(ls.Scene(press, omega2=30.0), of=["F32"])
+    >>> scene = ls.example("press")
+    >>> worst = ls.peaks(scene, of=["F32"])
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
     """
@@ -103,7 +101,7 @@ def _reductions(quantity: Quantity, summary: str) -> list[Reduction]:
         return [Reduction("mean", quantity.squared) if quantity.squared else Reduction("mean_square", quantity.name)]
     if quantity.squared:
         return [Reduction("largest", quantity.squared)]
-    return [Reduction("largest", quantity.name), Reduction("largest", quantity.name, -1.0)]
+    return [Reduction("largest", quantity.name), Reduction("largest", opposite_of(quantity.name))]
 
 
 def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
@@ -118,7 +116,7 @@ def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
         yield f"{name}_peak", _map(np.sqrt, value), units, f"largest {said}"
         yield f"{name}_peak_at", angle, "degree", f"crank angle of the largest {said}"
     else:
-        least, least_at = found[1]
+        least, least_at = _map(np.negative, found[1][0]), found[1][1]
         yield f"{name}_max", value, units, f"largest {said}"
         yield f"{name}_max_at", angle, "degree", f"crank angle of the largest {said}"
         yield f"{name}_min", least, units, f"least {said}"
@@ -135,9 +133,5 @@ def _status(fraction_not_ok: Field, order: tuple[str, ...]) -> xr.Variable:
     values = fraction_not_ok.values
     codes = np.where(values == 0.0, 0, np.where(values == 1.0, 2, 1)).astype(np.int8)
     made = variable(Field(fraction_not_ok.dims, codes), "1", "whether the revolution is whole", order)
-    made.attrs = {
-        "long_name": "whether the mechanism can be assembled all the way round",
-        "flag_values": np.arange(len(MEANINGS), dtype=np.int8),
-        "flag_meanings": " ".join(MEANINGS),
-    }
+    made.attrs = flags("whether the mechanism can be assembled all the way round", MEANINGS)
     return made

@@ -20,13 +20,13 @@ def described(
     scene: Scene, sampled: Scene, grid: Grid, fields: Mapping[str, Field], status: Field, command: str
 ) -> xr.Dataset:
     """A cycle's Dataset: the fields over their dims, status, coordinates and attributes."""
-    order = (*sampled.inputs.sizes, grid.index)
+    order = (*sampled.inputs.sizes, grid.dim)
     quantity = scene.table.quantity
     variables = {
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
     variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
-    coordinates = {grid.index: xr.Variable(grid.index, grid.angles, ANGLE)} | design_coordinates(sampled)
+    coordinates = {grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE)} | design_coordinates(sampled)
     return xr.Dataset(variables, coordinates, scene_attributes(sampled, command))
 
 
@@ -38,32 +38,34 @@ def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> 
     return made.transpose(*(dim for dim in dict.fromkeys(order) if dim in field.dims))
 
 
+def flags(long_name: str, meanings: Iterable[str]) -> dict:
+    """CF attributes of a variable whose small integers stand for words."""
+    words = list(meanings)
+    values = np.arange(len(words), dtype=np.int8)
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": " ".join(words)}
+
+
 def status_attributes(meanings: Iterable[str]) -> dict:
-    meanings = list(meanings)
-    return {
-        "long_name": "what happened at this sample; values are NaN where it is not ok",
-        "flag_values": np.arange(len(meanings), dtype=np.int8),
-        "flag_meanings": " ".join(meanings),
-    }
+    return flags("what happened at this sample; values are NaN where it is not ok", meanings)
 
 
 def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
     """Labels of the design dims, and every parameter that has dims, under its path."""
-    found = {dim: xr.Variable(dim, np.asarray(labels)) if isinstance(labels, list) else labels
-             for dim, labels in scene.inputs.coordinates.items()}
-    for path, array in scene.arrays.items():
-        found[path] = array.variable
-    return found
+    return scene.labels | {path: array.variable for path, array in scene.arrays.items()}
 
 
-def scene_attributes(scene: Scene, command: str) -> dict[str, str]:
+def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
     return {
         "Conventions": "CF-1.11",
         "title": f"linksweep: {type(scene.mechanism).__name__}",
         "linksweep_version": _version(),
-        "scene": scene_text(scene),
         "command": command,
     }
+
+
+def scene_attributes(scene: Scene, command: str) -> dict[str, str]:
+    """Where a Dataset comes from, with the whole scene, so that it can be run again."""
+    return origin_attributes(scene, command) | {"scene": scene_text(scene)}
 
 
 @cache

@@ -31,14 +31,15 @@ def sweep(
     ----------
     scene : Scene
     theta2 : a count N, for the grid arange(N)·360/N, or any array of angles [degree]
-    outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine unknowns
+    outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine
+        unknowns
     solver : "fast" (the 9×9 eliminated by hand) or "dense" (the full 9×9 by LAPACK with partial pivoting, as a check)
     threads : at most so many (default: all cores); the numbers do not depend on it
 
     Returns
     -------
-    Dataset over (design dims…, theta2). Each variable has only the dims that it depends on; units and sign in its attributes.
-    `status` says what happened at each sample; where it is not 0 (ok) the values are NaN.
+    Dataset over (design dims…, theta2). Each variable has only the dims that it depends on; units and sign in its
+    attributes. `status` says what happened at each sample; where it is not 0 (ok) the values are NaN.
 
     Raises
     ------
@@ -47,22 +48,25 @@ def sweep(
 
     Notes
     -----
-    Fij is the force of link i on link j in ground axes. Equations: document 2 (ME 470), with the misprints mended, and gravity.
+    Fij is the force of link i on link j in ground axes. Equations: document 2 (ME 470), with the misprints mended,
+    and gravity.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
-    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
-    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
-    >>> cycle = ls.sweep(ls.Scene(press, omega2=30.0), theta2=360, outputs=["T12", "F32"])
+    >>> scene = ls.example("press")
+    >>> cycle = ls.sweep(scene, theta2=360, outputs=["T12", "F32"])
     >>> dict(cycle.sizes), cycle.T12.units
     ({'theta2': 360}, 'N m')
     """
     refuse(choice_problems("solver", solver, SOLVERS))
     grid = crank_grid(theta2, scene.mechanism.period)
     names = _names(scene, outputs)
-    dense = [name for name in names if name == "cond" or (solver == "dense" and name in scene.mechanism.unknowns(scene.drive))]
+    dense = [
+        name
+        for name in names
+        if name == "cond" or (solver == "dense" and name in scene.mechanism.unknowns(scene.drive))
+    ]
     sampled = scene.at(grid)
     fields = compute(sampled, grid, tuple(name for name in names if name not in dense), threads)
     status = sample_status(sampled, grid, threads)

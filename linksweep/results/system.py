@@ -24,19 +24,17 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
 
     Returns
     -------
-    Dataset with `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy are
-    in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
+    Dataset with `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy
+    are in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
 
-    Source: document 2 (ME 470), the matrix of R vectors, with weights and loads on every link added, R_23 read as R_23x. With
-    drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3, lecture 17).
+    Source: document 2 (ME 470), the matrix of R vectors, with weights and loads on every link added, R_23 read as
+    R_23x. With drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3, lecture 17).
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> bar = dict(width=0.02, thickness=0.02, density=7750)
-    >>> press = ls.FourBar(crank=ls.Bar(length=0.08, **bar), coupler=ls.Bar(length=0.22, **bar),
-    ...                    rocker=ls.Bar(length=0.18, **bar), ground=0.20)
-    >>> page = ls.system(ls.Scene(press, omega2=30.0), theta2=45.0)
+    >>> scene = ls.example("press")
+    >>> page = ls.system(scene, theta2=45.0)
     >>> page.matrix.isel(theta2=0).shape
     (9, 9)
     """
@@ -54,7 +52,7 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
         "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
     }
     coordinates = design_coordinates(sampled) | {
-        grid.index: xr.Variable(grid.index, grid.angles, ANGLE),
+        grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE),
         "equation": [equation.label for equation in equations],
         "unknown": list(scene.mechanism.unknowns(scene.drive)),
     }
@@ -67,11 +65,11 @@ def assembled(scene: Scene, grid: Grid, threads: int | None = None) -> tuple[tup
     names = {entry[1] for row in equations for entry in row.coefficients.values() if isinstance(entry, tuple)}
     names |= {row.right_side for row in equations}
     fields = compute(scene, grid, tuple(sorted(names)), threads)
-    dims = (*scene.inputs.sizes, grid.index)
+    dims = (*scene.inputs.sizes, grid.dim)
     dims = tuple(dim for dim in dict.fromkeys(dims) if any(dim in field.dims for field in fields.values()))
-    if grid.index not in dims:
-        dims = (*dims, grid.index)
-    sizes = dict(scene.inputs.sizes) | {grid.index: len(grid.angles)}
+    if grid.dim not in dims:
+        dims = (*dims, grid.dim)
+    sizes = dict(scene.inputs.sizes) | {grid.dim: len(grid.angles)}
     shape = tuple(sizes[dim] for dim in dims)
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
     for i, row in enumerate(equations):

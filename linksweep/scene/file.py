@@ -19,13 +19,13 @@
     force = [0, "-80 lbf"]
     at = ["10 cm", 15]
 
-For a design axis stands, in place of a number, ``{dim = "width", values = [...]}`` or ``{dim = "width", start = ...,
-stop = ..., num = ...}`` or, for more than one, ``{dims = ["a", "b"], values = [[...], [...]]}``. ``unit = "cm"`` is
-for its plain numbers, ``coords = {a = [...]}`` labels its positions, ``theta2 = [...]`` is short for crank angles
-[degree] in coords. Without coords, the values of a dim that occurs once in the file are its labels.
+In place of a number, a design axis is ``{dim = "width", values = [...]}``, or with ``start``, ``stop`` and
+``num`` for values; over more dims ``{dims = ["a", "b"], values = [[...], [...]]}``. ``unit = "cm"`` is for
+plain numbers, ``coords = {a = [...]}`` are labels, ``theta2 = [...]`` is short for angles [degree] there.
+Without coords, the values of a dim that occurs once in the file are its labels.
 
-All errors of a file are reported at once, one a line: ``scene.toml:12: coupler.lenght: unknown key; did you mean
-"length"?``. Paths are those of the constructors; lists count from one, as engineers do: ``loads[1]`` is the first.
+All errors of a file are reported at once, one a line: ``scene.toml:12: coupler.lenght: unknown key; did you
+mean "length"?``. Paths are those of the constructors; lists count from one, as engineers do: ``loads[1]``.
 
 `SCHEMA` says for each class what its fields hold, read off the dataclasses. A new mechanism is a row of it.
 """
@@ -39,7 +39,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import count, pairwise
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -117,18 +117,18 @@ class Table(Field):
 
     def read(self, raw: Any, where: Where, log: _Log) -> Any:
         if not isinstance(raw, dict):
-            return log.problem(where, f" = {shown(raw)}: must be a table; write it below [{_header(where)}]")
+            return log.problem(where, f" = {shown(raw)}: {self.advice(where)}")
         words = {key: value for key, value in raw.items() if key != "type"}
         likely = max(self.classes, key=lambda name: len(SCHEMA[self.classes[name]].keys() & words.keys()))
         name = raw.get("type", self.default if likely == self.default else None)
         if name is None:
             log.problem((*where, "type"), f': missing; by its keys a {likely}, so write type = "{likely}"')
-        elif name not in self.classes:
+        elif str(name) not in self.classes:
             log.problem((*where, "type"), choice_problems("", name, self.classes)[0])
-        return _built(self.classes[name if name in self.classes else likely], words, where, log)
+        return _built(self.classes.get(str(name), self.classes[likely]), words, where, log)
 
     def advice(self, where: Where) -> str:
-        return f"write a table [{_header(where)}] with its type ({' or '.join(self.classes)})"
+        return f"write a table [{'.'.join(map(str, where))}] with its type ({' or '.join(self.classes)})"
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class Tables(Field):
 
     def read(self, raw: Any, where: Where, log: _Log) -> Any:
         if not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
-            return log.problem(where, f": must be a list of tables; write [[{_header(where)}]] above each")
+            return log.problem(where, f": must be a list of tables; write [[{where[-1]}]] above each")
         return tuple(_built(self.cls, item, (*where, i), log) for i, item in enumerate(raw))
 
 
@@ -151,16 +151,15 @@ def _fields(cls: Any, **special: Field) -> dict[str, Field]:
 
 _LINKS = Table({"Link": Link, "Bar": Bar, "Disk": Disk}, default="Link")
 _MECHANISMS = Table({"FourBar": FourBar})
-_FORCE, _ACCELERATION = Number("force"), Number("acceleration")
+_FORCE = Pair(Number("force"), Number("force"))
 _POLAR = Pair(Number("length"), Number("angle"))
+_GRAVITY = Pair(Number("acceleration"), Number("acceleration"))
 
 SCHEMA: dict[type, dict[str, Field]] = {
     **{cls: _fields(cls) for cls in _LINKS.classes.values()},
     FourBar: _fields(FourBar, crank=_LINKS, coupler=_LINKS, rocker=_LINKS),
-    Load: _fields(Load, link=Field(example='"coupler"'), force=Pair(_FORCE, _FORCE), at=_POLAR),
-    Scene: _fields(
-        Scene, mechanism=_MECHANISMS, gravity=Pair(_ACCELERATION, _ACCELERATION), loads=Tables(Load)
-    ),
+    Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR),
+    Scene: _fields(Scene, mechanism=_MECHANISMS, gravity=_GRAVITY, loads=Tables(Load)),
 }
 
 
@@ -213,15 +212,14 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
 
 
 def write_scene(scene: Scene, arrays: Arrays | None = None) -> str:
-    """Return the scene as the text of a scene file, from which `parse_scene` makes an equal scene, to the bit.
+    """Return the text of a scene file from which `parse_scene` makes an equal scene, to the bit.
 
     Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims.
 
     Parameters
     ----------
-    scene : Scene
     arrays : dict, optional
-        Where given, every DataArray is put into it under its path; the text has ``{variable = "coupler.length"}``.
+        Where given, DataArrays go there under their paths; the text has ``{variable = "coupler.length"}``.
 
     Raises
     ------
@@ -245,9 +243,8 @@ def _built(cls: Any, raw: dict[str, Any], where: Where, log: _Log) -> Any:
         return cls(**words)
     except ValueError as error:
         log.refused(error, where)
-        refused = object.__new__(
-            cls
-        )  # unchecked, for what takes it to look at the rest of the file; never returned
+        # Unchecked, so that the scene can still look at the rest of the file; it never gets out of here.
+        refused = object.__new__(cls)
         refused.__dict__.update(words)
         return refused
 
@@ -260,10 +257,8 @@ def _required(cls: Any) -> list[str]:
 def _written(value: Any, where: Where, arrays: Arrays | None) -> Any:
     """Return what stands in the file for a value of a scene."""
     if type(value) in SCHEMA:
-        words = {key: getattr(value, key) for key in SCHEMA[type(value)]}
-        words = {
-            key: _written(word, (*where, key), arrays) for key, word in words.items() if word is not None
-        }
+        given = {key: getattr(value, key) for key in SCHEMA[type(value)]}
+        words = {k: _written(word, (*where, k), arrays) for k, word in given.items() if word is not None}
         named = type(value) in {*_LINKS.classes.values(), *_MECHANISMS.classes.values()}
         return {"type": type(value).__name__, **words} if named else words
     if isinstance(value, (tuple, list)):
@@ -289,10 +284,8 @@ class _Log:
     """What is wrong with a file, and where; and what numbers in it refer to."""
 
     def __init__(self, document: dict[str, Any], arrays: Mapping[str, xr.DataArray]) -> None:
-        dims = [
-            value for place, value in _places(document) if place[-1] == "dim" or place[-2:-1] == ("dims",)
-        ]
-        self.arrays, self.dims = arrays, Counter(map(str, dims))
+        named = [str(item) for at, item in _places(document) if "dim" in at[-1:] or "dims" in at[-2:-1]]
+        self.arrays, self.dims = arrays, Counter(named)
         self.problems: list[tuple[Where, str]] = []
         self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
 
@@ -309,44 +302,41 @@ class _Log:
         for key in [key for key in raw if key not in SCHEMA[cls]]:
             if key in SCHEMA[Scene]:
                 self.misplaced.add((key,))
-                self.problem(
-                    (*where, key),
-                    ": does not belong here; write it at the top of the file, above the first [table]",
-                )
-            elif not where and any(key in SCHEMA[kind] for kind in _MECHANISMS.classes.values()):
+                self.problem((*where, key), ": belongs at the top of the file, above the first [table]")
+            elif any(key in SCHEMA[kind] for kind in _MECHANISMS.classes.values()):
                 self.misplaced.add(("mechanism", key))
-                self.problem(("mechanism", key), ": does not belong here; write it below [mechanism]")
+                self.problem((*where, key), ": belongs to the mechanism, right below [mechanism]")
             else:
-                self.misplaced |= {
-                    (*where, near) for near in difflib.get_close_matches(key, SCHEMA[cls], n=1)
-                }
+                near = difflib.get_close_matches(key, SCHEMA[cls], n=1)
+                self.misplaced |= {(*where, meant) for meant in near}
                 listed = f"; a {cls.__name__} has {', '.join(SCHEMA[cls])}"
                 self.problem((*where, key), f": unknown key{did_you_mean(key, SCHEMA[cls]) or listed}")
 
     def variable(self, name: Any, where: Where) -> Any:
-        if name in self.arrays:
+        if str(name) in self.arrays:
             return self.arrays[name]
         return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
 
     def refused(self, error: ValueError, where: Where) -> Any:
         """Log what a constructor says, one problem a line with its path first, but for what was not read."""
         known = [*self.misplaced, *(place for place, _ in self.problems)]
-        for path, rest in re.findall(r"^([\w.\[\]]*[\w\]])(.*)$", str(error), re.MULTILINE):
+        for line in str(error).splitlines():
+            path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
             keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
-            place = (*where, *keys) if where or keys[0] in SCHEMA[Scene] else ("mechanism", *keys)
+            place = (*where, *keys) if where or {*keys[:1]} <= SCHEMA[Scene].keys() else ("mechanism", *keys)
             if not any(place[: len(other)] == other[: len(place)] for other in known):
-                self.problem(place, rest)
+                self.problem(place, line[len(path) :])
         return _UNREAD
 
     def report(self, text: str, name: str) -> str:
         """Return the problems, one a line, in the order of the file."""
         lines = _key_lines(text)
-        # What has no line of its own is missing, or in a list: it belongs to the nearest thing around it.
-        placed = [
-            (next(lines[where[:n]] for n in range(len(where), -1, -1) if where[:n] in lines), problem)
-            for where, problem in self.problems
-        ]
-        return "\n".join(f"{name}:{line}: {problem}" for line, problem in sorted(placed, key=lambda p: p[0]))
+
+        def line(where: Where) -> int:  # what is missing has the line of what it is missing in
+            return lines.get(where) or line(where[:-1])
+
+        placed = sorted(((line(where), problem) for where, problem in self.problems), key=lambda p: p[0])
+        return "\n".join(f"{name}:{number}: {problem}" for number, problem in placed)
 
 
 def _document(text: str, name: str) -> dict[str, Any]:
@@ -358,14 +348,14 @@ def _document(text: str, name: str) -> dict[str, Any]:
         reason, at = str(error).partition(" (at ")[0], re.search(r"at line (\d+)", str(error))
         number = min(int(at[1]) if at else len(lines), len(lines))
         bare = re.match(r"\s*([\w.]+)\s*=\s*([-+.]?\d[^#\"\[{]*[^#\"\[{\s])", lines[number - 1])
-        quoted = f'; a number with a unit stands in quotes, {bare[1]} = "{bare[2]}"' if bare else ""
-        comma = "; a number has a decimal point, no comma; a list stands in brackets"
-        advice = comma if bare and "," in bare[2] else quoted
+        advice = f'; a number with a unit stands in quotes, {bare[1]} = "{bare[2]}"' if bare else ""
+        if bare and "," in bare[2]:
+            advice = "; a number has a decimal point, no comma; a list stands in brackets"
         raise ValueError(f"{name}:{number}: not TOML: {reason}{advice}") from None
 
 
 def _key_lines(text: str) -> dict[Where, int]:
-    """Find the line of every key: the text is cut into pieces that are TOML by themselves, headers and keys."""
+    """Find the line of every key: the text is cut into the smallest pieces that are TOML by themselves."""
     lines: dict[Where, int] = {(): 1}
     table: Where = ()
     start, piece = 1, ""
@@ -376,41 +366,35 @@ def _key_lines(text: str) -> dict[Where, int]:
         except tomllib.TOMLDecodeError:
             continue  # the value goes on in the next line
         if piece.lstrip().startswith("["):
-            table, places = _opened(places[-1], lines), []
-        for place in (
-            *(table[:depth] for depth in range(len(table) + 1)),
-            *((*table, *place) for place in places),
-        ):
-            lines.setdefault(place, start)
+            table, places = _opened(places[-1], start, lines), []
+        for place in places:
+            lines.setdefault((*table, *place), start)
         start, piece = number + 1, ""
     return lines
 
 
-def _opened(header: Where, lines: dict[Where, int]) -> Where:
-    """Return the place of the table that a header opens; a [[header]] ends in 0."""
+def _opened(header: Where, start: int, lines: dict[Where, int]) -> Where:
+    """Note the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
     table: Where = ()
-    for key, following in pairwise((*header, None)):
+    for key, following in zip(header, (*header[1:], ""), strict=True):
         if key != 0:
             table = (*table, key)
             so_far = next(n for n in count() if (*table, n) not in lines)
+            lines.setdefault(table, start)
             table = (*table, so_far) if following == 0 else (*table, so_far - 1) if so_far else table
+            lines.setdefault(table, start)
     return table
 
 
 def _places(raw: Any, where: Where = ()) -> Iterator[tuple[Where, Any]]:
     """Yield the place and value of every key and list item."""
-    for key, item in (
-        raw.items() if isinstance(raw, dict) else enumerate(raw) if isinstance(raw, list) else ()
-    ):
+    items = raw.items() if isinstance(raw, dict) else enumerate(raw) if isinstance(raw, list) else ()
+    for key, item in items:
         yield (*where, key), item
         yield from _places(item, (*where, key))
 
 
 def _path(where: Where) -> str:
     """Return the path as the constructors name it: without "mechanism", lists counted from one."""
-    keys = where[1:] if where[0] == "mechanism" and where[1:] not in ((), ("type",)) else where
+    keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
     return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
-
-
-def _header(where: Where) -> str:
-    return ".".join(str(key) for key in where if isinstance(key, str))

@@ -29,8 +29,8 @@ class Load:
     origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
 
     Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
-    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline at angles that
-    it does not hold. Values are checked by the scene that takes the load.
+    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline at
+    angles that it does not hold. Values are checked by the scene that takes the load.
 
     Examples
     --------
@@ -58,7 +58,11 @@ class Load:
             found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
         if self.force is not None:
             found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), "(Fx, Fy) in N")
-        return found + problems(self, path + ".") + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
+        return (
+            found
+            + problems(self, path + ".")
+            + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
+        )
 
     def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> Load:
         """The load with its force and torque brought to a sweep's angles by sample(path, value, rule)."""

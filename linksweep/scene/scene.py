@@ -36,7 +36,6 @@ class Inputs(NamedTuple):
     fields: Mapping[str, Field]
     forms: InputForms
     sizes: Mapping[str, int]
-    coordinates: Mapping[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,24 +123,30 @@ class Scene:
 
         return replace(
             self,
-            omega2=sample("omega2", self.omega2, Rule("angular_velocity")),
-            alpha2=sample("alpha2", self.alpha2, Rule("angular_acceleration")),
+            omega2=sample("omega2", self.omega2, Rule("angular_velocity", over_angle=True)),
+            alpha2=sample("alpha2", self.alpha2, Rule("angular_acceleration", over_angle=True)),
             loads=tuple(load.sampled(f"loads[{k}]", sample) for k, load in enumerate(self.loads, 1)),
         )
 
     @cached_property
     def inputs(self) -> Inputs:
-        """The scene as the engine takes it; one that changes over the revolution must have been brought `at` a grid."""
+        """The scene as the engine takes it; what changes over the revolution must have been brought `at` a grid."""
         named = self._named_values()
         fields = {name: _field(value) for name, value in named.items()}
         grid_rows = tuple((name, (self.mechanism.index,)) for name in GRID_ROWS)
         forms = (*((name, _form(field)) for name, field in fields.items()), *grid_rows)
         sizes = {dim: n for f in fields.values() for dim, n in zip(f.dims, f.values.shape, strict=True)}
-        coordinates: dict[str, Any] = dict(self.mechanism.coordinates())
+        sizes.pop(self.mechanism.index, None)
+        return Inputs(fields, forms, sizes)
+
+    @cached_property
+    def labels(self) -> dict[str, xr.Variable]:
+        """Coordinates of the design dims that have some."""
+        found = {dim: xr.Variable(dim, names) for dim, names in self.mechanism.coordinates().items()}
         for array in self.arrays.values():
-            coordinates |= {dim: array[dim].variable for dim in array.dims if dim in array.coords}
-        coordinates.pop(self.mechanism.index, None)
-        return Inputs(fields, forms, sizes, coordinates)
+            found |= {str(dim): array[dim].variable for dim in array.dims if dim in array.coords}
+        found.pop(self.mechanism.index, None)
+        return found
 
     def _named_values(self) -> dict[str, Any]:
         gx, gy = self.gravity
@@ -158,7 +163,7 @@ def _field(value: Any) -> Field:
         return value
     if isinstance(value, xr.DataArray):
         return Field(tuple(map(str, value.dims)), np.asarray(value.values, dtype=float))
-    return Field((), np.float64(value))
+    return Field((), np.asarray(float(value)))
 
 
 def _form(field: Field) -> tuple[str, ...] | float:

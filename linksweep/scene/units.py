@@ -1,12 +1,12 @@
-"""Numbers as they stand in a scene file: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``; a design axis of such.
+"""Numbers as a scene file has them: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``; a design axis of such.
 
-The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then divisors:
-``lbf in s^2``, ``rad/s^2``; ``*``, ``·``, ``-`` between factors and ``²``, ``**2`` for ``^2`` are read too.
+The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then its
+divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors, ``²``, ``**2`` for ``^2``.
 
-pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as 1/m, "1 1/2 in" as
-half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity takes, and all else is
-an error that tells what to write. The arithmetic is in fractions: where a unit is defined exactly the result is the
-correctly rounded float ("8 cm" is 0.08, to the bit).
+pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as number/m,
+"1 1/2 in" as half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity
+takes; all else is an error that tells what to write. The arithmetic is in fractions: where a unit is defined
+exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit).
 """
 
 from __future__ import annotations
@@ -37,9 +37,7 @@ class Kind:
     spellings: tuple[str, ...]
 
 
-_INERTIAS = (
-    "kg m^2, kg cm^2, kg mm^2, g cm^2, g mm^2, lb in^2, lb ft^2, slug ft^2, blob in^2, lbf in s^2, lbf ft s^2"
-)
+_INERTIAS = "kg m^2, kg cm^2, kg mm^2, g cm^2, g mm^2, lb in^2, lb ft^2, slug ft^2, blob in^2, lbf in s^2, lbf ft s^2"
 KINDS = {
     name: Kind(unit, example, tuple(spellings.split(", ")))
     for name, unit, example, spellings in (
@@ -69,9 +67,7 @@ _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?
 _FRACTION = re.compile(r"([+-]?)(?:([0-9]+)[\s-]+)?([0-9]+)\s*/\s*0*([1-9][0-9]*)(.*)", re.DOTALL)
 _COMMAS = re.compile(r"([+-]?[0-9][0-9.]*(?:,[0-9][0-9.]*)+)(.*)", re.DOTALL)
 _THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(\.[0-9]*)?")
-_UNIT = re.compile(
-    r"[a-z%]\w*(\^-?[0-9]+)?( [a-z%]\w*(\^-?[0-9]+)?)*(/[a-z%]\w*(\^[0-9]+)?)*", re.ASCII | re.I
-)
+_UNIT = re.compile(r"[a-z%]\w*(\^-?[0-9]+)?( [a-z%]\w*(\^-?[0-9]+)?)*(/[a-z%]\w*(\^[0-9]+)?)*", re.ASCII | re.I)
 _SYMBOLS = {"**": "^", "*": " ", "·": " ", "⋅": " ", "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "u"}
 
 
@@ -128,8 +124,8 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     Parameters
     ----------
     table : dict
-        `dim` or `dims`; `values`, nested as deep as there are dims, or `start`, `stop`, `num`; `unit` of the plain
-        numbers; `coords`, a list for each dim with labels; `theta2`, short for the angles [degree] in `coords`.
+        `dim` or `dims`; `values`, nested as deep as the dims, or `start`, `stop`, `num`; the `unit` of plain
+        numbers; `coords`, a list for each dim with labels; `theta2`, short for angles [degree] in `coords`.
     kind : str
         What is measured: a key of `KINDS`.
     alone : bool
@@ -158,6 +154,8 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     if not problems and values.ndim != len(dims):
         problems.append(f"values: lists nested {values.ndim} deep for {len(dims)} dims, {', '.join(dims)}")
     coords = {} if problems else _axis_coords(table, dims, values, alone, problems)
+    if unknown:  # one of them may be what is missing
+        problems = [problem for problem in problems if ": missing" not in problem]
     if problems:
         raise ValueError("\n".join(problems))
     return xr.DataArray(values, dims=dims, coords=coords)
@@ -305,10 +303,9 @@ def _axis_dims(table: dict[str, Any], problems: list[str]) -> list[str]:
     dims = table.get("dims", [table.get("dim")])
     if key not in table:
         problems.append('dim: missing; write dim = "name of the design axis"')
-    elif not isinstance(dims, list) or not all(isinstance(dim, str) for dim in dims):
-        problems.append(
-            f"{key} = {shown(table[key])}: must be {'a list of names' if key == 'dims' else 'a name'}"
-        )
+    elif not isinstance(dims, list) or len({dim for dim in dims if isinstance(dim, str)}) < len(dims):
+        must = "a list of different names" if key == "dims" else "a name"
+        problems.append(f"{key} = {shown(table[key])}: must be {must}")
     return dims
 
 
@@ -378,6 +375,6 @@ def _axis_coords(
     for dim, labels in coords.items():
         if dim not in sizes:
             problems.append(f"coords: {dim} is no dim of these values; they have {', '.join(dims)}")
-        elif not isinstance(labels, list) or len(labels) != sizes[dim]:
-            problems.append(f"coords: {dim} must be a list of {sizes[dim]}, as many as there are values")
+        elif not isinstance(labels, list) or [type(label) is list for label in labels] != [False] * sizes[dim]:
+            problems.append(f"coords: {dim} must be a list of {sizes[dim]} labels, one for each position")
     return coords

@@ -1,0 +1,5 @@
+import sys
+
+from linksweep.surface.cli import main
+
+sys.exit(main())

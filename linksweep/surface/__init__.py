@@ -1,0 +1,1 @@
+"""Where people meet it: files, plots, the accessor of Datasets, the command line."""

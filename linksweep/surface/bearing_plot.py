@@ -1,0 +1,151 @@
+"""The bearing load diagram: the locus that a pin's force draws over a revolution, as bearing catalogues and texts show it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.four_bar import LINKS
+from linksweep.mechanisms.validate import choice_problems, refuse
+from linksweep.results.sweep import sweep
+from linksweep.surface import signals
+from linksweep.surface.palette import BLUE, GREY, SHADE, VERMILION
+from linksweep.surface.storage import scene_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TICK = 30.0  # degrees of the crank between marks on the locus
+LABELLED = 90.0  # degrees between marks with a number
+LINES_OF_PINS = {2: "A→B", 3: "B→C", 4: "D→C"}
+
+
+def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | None = None) -> Axes:
+    """Plot the bearing load diagram of a pin: the force's components [N] against each other over a revolution.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the components of the force (F32x, F32y), of one design.
+    pin : str
+        The force, as "Fij": of link i on link j.
+    frame : {"ground", "link"}
+        Axes of the components: "ground", or those of link j (x along its line of pins), which carries the bearing and
+        turns with it. Of a force on the ground ("F21") both are the same.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With equal scales; dots on the locus every 30 degrees of the crank, and an arrow from the origin to the largest load.
+
+    Raises
+    ------
+    ValueError
+        For a force that is not in the Dataset, an unknown frame, and more than one design.
+
+    Examples
+    --------
+    >>> ax = linksweep.sweep(scene).linksweep.bearing("F32", frame="link")  # doctest: +SKIP
+    """
+    refuse(choice_problems("frame", frame, ("ground", "link")))
+    signals.require_angles(ds)
+    pair = signals.components(ds, pin)
+    angles, x, y = signals.revolution(ds, *pair)
+    link = int(pin[2]) if frame == "link" else 1
+    if link != 1:
+        x, y = _in_link_axes(ds, link, x, y)
+    ax = _axes(ax)
+    size = np.hypot(x, y)
+    largest = signals.peak(angles, size)
+    shown = signals.scale(size, [largest])
+    _cross(ax)
+    ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
+    units = signals.unit(pair[0], "N")
+    if largest:
+        at = int(np.nanargmax(size))
+        _peak(ax, pin, largest, np.array([x[at], y[at]]), units, shown)
+    _ticks(ax, angles, x, y, shown)
+    _limits(ax, x, y, shown)
+    ax.set_xlabel(f"{_axis(pin, link, 'x')} [{units}]")
+    ax.set_ylabel(f"{_axis(pin, link, 'y')} [{units}]")
+    return ax
+
+
+def _in_link_axes(ds: xr.Dataset, link: int, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Components of the same force in the axes of a link: turned back by the link's angle."""
+    name = f"theta{link}"
+    if name not in ds:
+        ds = sweep(scene_of(ds), theta2=ds[signals.INDEX].values, outputs=[name])
+    cos, sin = cos_sin(signals.revolution(ds, ds[name])[1])
+    return cos * x + sin * y, cos * y - sin * x
+
+
+def _axis(pin: str, link: int, axis: str) -> str:
+    force = signals.symbol(pin)
+    if link == 1:
+        return f"{force[:-2]}{axis}}}$, ground axes"
+    way = f"along the {LINKS[link]}, {LINES_OF_PINS[link]}"
+    return f"{force} {way}" if axis == "x" else f"{force} across the {LINKS[link]}"
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(figsize=(5.6, 5.2), layout="constrained")[1]
+
+
+def _cross(ax: Axes) -> None:
+    """Equal scales, with a cross through the origin."""
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_axisbelow(True)
+    ax.grid(color=SHADE, linewidth=0.6)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+    ax.plot([0.0], [0.0], "+", color="black", markersize=9.0, zorder=2.6, label="_origin")
+
+
+def _limits(ax: Axes, x: np.ndarray, y: np.ndarray, shown: float) -> None:
+    """Limits around what is to be shown, which equal scales may still widen."""
+    near = np.hypot(x, y) <= shown * (1.0 + 1e-9)
+    for values, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
+        low, high = np.min(values, initial=0.0, where=near), np.max(values, initial=0.0, where=near)
+        room = 0.16 * ((high - low) or shown or 1.0)
+        set_limits(low - room, high + room, auto=True)
+
+
+def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: float) -> None:
+    """Dots on the locus at round crank angles, some with the angle beside them."""
+    from linksweep.surface.labels import label
+
+    at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
+    at = at[:-1] if len(at) and at[-1] == angles[0] + 360.0 else at
+    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
+    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= 1.1 * shown)
+    at, points = at[there], points[:, there]
+    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
+    named = at % LABELLED == 0.0
+    if named.sum() < 3:
+        named[:] = True
+    for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):
+        label(ax, *point, ("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE)
+
+
+def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> None:
+    from linksweep.surface.labels import arrow, label
+
+    beyond = largest.value > 1.1 * shown
+    tip = force * (1.1 * shown / largest.value) if beyond else force
+    if largest.value > 0.0:
+        arrow(ax, np.zeros(2), tip, VERMILION)
+    direction = np.degrees(np.arctan2(force[1], force[0]))
+    said = f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}, direction {signals.number(round(direction, 1))}°\n"
+    said += f"at $\\theta_2$ = {signals.angle_text(largest.angle)}" + ", off the scale" * beyond
+    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {pin}")
+    label(ax, *tip, said, VERMILION)

@@ -1,0 +1,111 @@
+"""The command line: demo, sweep, peaks, check."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import xarray as xr
+
+from linksweep.results.check import check
+from linksweep.results.peaks import peaks
+from linksweep.results.sweep import sweep
+from linksweep.scene.examples import example
+from linksweep.scene.scene import Scene
+from linksweep.surface.report import check_lines, peak_table
+from linksweep.surface.storage import load_scene, save
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; 0 when all went well, 2 with a message when the input or a file was at fault."""
+    options = _parser().parse_args(arguments)
+    try:
+        options.run(options)
+    except (ValueError, OSError) as error:
+        print(f"linksweep: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("linksweep: stopped", file=sys.stderr)
+        return 130
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="linksweep", description="How hard are my pins loaded, and where is the worst of it?")
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    demo = commands.add_parser("demo", help="a built-in press: peak table, demo.nc, demo.png")
+    demo.add_argument("-o", "--output", type=Path, default=Path("demo"), help="name of the files without ending (demo)")
+    demo.set_defaults(run=_demo)
+
+    cycle = commands.add_parser("sweep", help="one revolution to NetCDF, and to a figure")
+    _scene_arguments(cycle)
+    cycle.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
+    cycle.add_argument("--plot", type=Path, help="figure to write: .png, .pdf or .svg")
+    cycle.add_argument("--outputs", help="names of the variables wanted, separated by commas")
+    cycle.set_defaults(run=_sweep)
+
+    worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
+    _scene_arguments(worst)
+    worst.add_argument("--of", help="names of the quantities wanted, separated by commas")
+    worst.add_argument("-o", "--output", type=Path, help="NetCDF file to write")
+    worst.set_defaults(run=_peaks)
+
+    sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
+    sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    sound.set_defaults(run=_check)
+    return parser
+
+
+def _scene_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    parser.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
+
+
+def _demo(options: argparse.Namespace) -> None:
+    scene = example("press")
+    cycle = sweep(scene)
+    print("A press: crank 8 cm, coupler 22 cm, rocker 18 cm, ground 20 cm, 300 rpm, 80 lbf on the coupler\n")
+    print(peak_table(peaks(scene)))
+    data, picture = (options.output.with_suffix(ending) for ending in (".nc", ".png"))
+    save(cycle, data)
+    _plot(cycle, picture)
+    print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")
+
+
+def _sweep(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    cycle = sweep(scene, theta2=options.theta2, outputs=_names(options.outputs))
+    save(cycle, options.output)
+    print(f"written: {options.output}")
+    if options.plot:
+        _plot(cycle, options.plot)
+        print(f"written: {options.plot}")
+
+
+def _peaks(options: argparse.Namespace) -> None:
+    found = peaks(load_scene(options.scene), of=_names(options.of), theta2=options.theta2)
+    print(peak_table(found))
+    if options.output:
+        save(found, options.output)
+        print(f"\nwritten: {options.output}")
+
+
+def _check(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    print("\n".join(check_lines(check(scene))))
+
+
+def _names(text: str | None) -> list[str] | None:
+    return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _plot(cycle: xr.Dataset, path: Path) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from linksweep.surface import plot
+
+    plot.cycle(cycle).savefig(path, dpi=150)

@@ -1,0 +1,301 @@
+"""Plots of a cycle: pin forces and torque over the revolution, and the page that shows all of it.
+
+Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
+settings. Peaks marked are those of the samples in the Dataset. Colours are Okabe and Ito's, told apart by colour-blind
+readers; lines also differ in dashes, so that one force on top of another is seen, in grey too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.surface import signals
+from linksweep.surface.bearing_plot import bearing
+from linksweep.surface.mechanism_plot import mechanism
+from linksweep.surface.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["bearing", "cycle", "forces", "mechanism", "torque"]
+
+SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
+STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
+HEADROOM = 1.3  # of the largest value, for the legend and the labels of peaks
+A4_WIDTH = 7.1  # inches between the margins of an A4 page
+
+
+class Curve(NamedTuple):
+    """A line of a plot over the revolution."""
+
+    name: str
+    text: str  # in the legend
+    angles: np.ndarray
+    values: np.ndarray
+    style: dict[str, Any]
+
+
+def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
+    """Plot the magnitudes of pin forces [N] over the crank angle [degree], each peak marked with value and angle.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with magnitudes (F32) or components (F32x, F32y), of one design; of a single force
+        also up to six designs along one dimension, one line each.
+    names : iterable of str, optional
+        The forces, such as ["F32", "F43"]; by default those of all pins that are in the Dataset.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Angles at which there is no result are a gap in the lines, shaded. Where forces grow without bound beside it, the
+        axis ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
+
+    Raises
+    ------
+    ValueError
+        For forces that the Dataset does not hold, and for more designs than a plot can show.
+
+    Examples
+    --------
+    >>> ax = linksweep.sweep(scene).linksweep.forces(["F12", "F32"])  # doctest: +SKIP
+    """
+    signals.require_angles(ds)
+    wanted = _names(ds, names)
+    found = {name: signals.magnitude(ds, name) for name in wanted}
+    if len(wanted) > 1:
+        signals.require_one_design(found.values())
+    curves = _curves(ds, found)
+    peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
+    top = signals.scale(np.concatenate([curve.values for curve in curves]), peaks)
+    ax = _axes(ax)
+    _draw(ax, curves)
+    ax.set_ylim(0.0, HEADROOM * top or 1.0)
+    units = signals.unit(found[wanted[0]], "N")
+    said = "pin force" if len(wanted) > 1 else f"pin force {signals.symbol(wanted[0])}"
+    ax.set_ylabel(f"{said} [{units}]")
+    widest = _shade(ax, ds, found[wanted[0]])
+    _angle_axis(ax, curves[0].angles)
+    runaway = any(found and found.value > HEADROOM * top for found in peaks)
+    _legend(ax, curves, widest if runaway else None)
+    marks = [(found, curve) for found, curve in zip(peaks, curves, strict=True) if found]
+    for found_peak, curve in sorted(marks, key=lambda mark: -mark[0].value):  # labels then stand in the order of the dots
+        _mark(ax, found_peak, units, curve, signals.symbol(curve.name) if len(wanted) > 1 else "")
+    return ax
+
+
+def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Plot the torque of the drive (T12, T13 or T14) [N m] over the crank angle [degree], largest and smallest marked.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the torque of one design, or of up to six along one dimension, one line each.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With gaps as in `forces`.
+
+    Raises
+    ------
+    ValueError
+        Without a torque in the Dataset, and for more designs than a plot can show.
+
+    Examples
+    --------
+    >>> ax = linksweep.sweep(scene).linksweep.torque()  # doctest: +SKIP
+    """
+    signals.require_angles(ds)
+    name = signals.torque_name(ds)
+    units = signals.unit(ds[name], "N m")
+    curves = _curves(ds, {name: ds[name]})
+    extremes = [(curve, _extremes(curve)) for curve in curves]
+    every = [found for _, pair in extremes for found in pair.values()]
+    size = signals.scale(np.concatenate([curve.values for curve in curves]), every)
+    ax = _axes(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+    _draw(ax, curves)
+    _span(ax, every, size)
+    ax.set_ylabel(f"drive torque {signals.symbol(name)} [{units}]")
+    widest = _shade(ax, ds, ds[name])
+    _angle_axis(ax, curves[0].angles)
+    if len(curves) > 1:
+        _legend(ax, curves, widest if any(abs(found.value) > size for found in every) else None)
+    for curve, pair in extremes:
+        for said, found in pair.items():
+            _mark(ax, found, units, curve, said)
+    return ax
+
+
+def cycle(ds: xr.Dataset) -> Figure:
+    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, torque, and that pin's bearing.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with pin forces and torque, of one design.
+
+    Returns
+    -------
+    matplotlib Figure
+        7.1 inches wide; save it with ``figure.savefig("cycle.png", dpi=200)``.
+
+    Raises
+    ------
+    ValueError
+        For more than one design, and when there is no result at any angle.
+
+    Examples
+    --------
+    >>> linksweep.sweep(scene).linksweep.cycle().savefig("cycle.png", dpi=200)  # doctest: +SKIP
+    """
+    import matplotlib.pyplot as plt
+
+    signals.require_angles(ds)
+    pin, angle = _most_loaded(ds)
+    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+        figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout="constrained")
+        figure.get_layout_engine().set(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
+        mechanism(ds, theta2=angle, ax=panels[0, 0], forces=True)
+        forces(ds, ax=panels[0, 1])
+        bearing(ds, pin, ax=panels[1, 0])
+        torque(ds, ax=panels[1, 1])
+        where = f"Largest pin force, at $\\theta_2$ = {signals.angle_text(angle)}"
+        titles = (where, "Pin forces", f"Load of pin {signals.PIN_OF[pin]}: {signals.symbol(pin)}", "Drive torque")
+        for panel, title in zip(panels.flat, titles, strict=True):
+            panel.set_title(title, loc="left")
+    return figure
+
+
+def _most_loaded(ds: xr.Dataset) -> tuple[str, float]:
+    """The pin force that is largest, and the crank angle [degree] where it is."""
+    found = {}
+    for name in _names(ds, None):
+        largest = signals.peak(*signals.revolution(ds, signals.magnitude(ds, name)))
+        if largest is None:
+            raise ValueError("there is no result at any angle of the Dataset: see its status, and linksweep.check")
+        found[name] = largest
+    name = max(found, key=lambda force: found[force].value)
+    return name, found[name].angle
+
+
+def _names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
+    if names is not None:
+        wanted = [names] if isinstance(names, str) else list(dict.fromkeys(names))
+        if wanted:
+            return wanted
+    wanted = [name for name in signals.PIN_FORCES if signals.has_pin(ds, name)]
+    if not wanted:
+        raise ValueError("the Dataset has no pin force: sweep with outputs=[..., 'F12', 'F32', 'F43', 'F14']")
+    return wanted
+
+
+def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
+    """The lines to draw: one for each signal, or of a single signal one for each design."""
+    curves: list[Curve] = []
+    for name, signal in found.items():
+        for design, values in signals.designs(signal).items():
+            color, dashes = STYLES[len(curves) % len(STYLES)]
+            text = design or f"{signals.symbol(name)} ({signals.PIN_OF.get(name, "")})"
+            style = {"color": color, "linestyle": dashes}
+            curves.append(Curve(name, text, *signals.revolution(ds, values), style))
+    return curves
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(layout="constrained")[1]
+
+
+def _draw(ax: Axes, curves: Sequence[Curve]) -> None:
+    ax.grid(color=SHADE, linewidth=0.6, zorder=0.5)
+    ax.set_axisbelow(True)
+    for curve in curves:
+        ax.plot(curve.angles, curve.values, label=curve.text, **curve.style)
+
+
+def _angle_axis(ax: Axes, angles: np.ndarray) -> None:
+    """Crank angles with round ticks, as many as there is room for."""
+    from matplotlib.ticker import MultipleLocator
+
+    span = angles[-1] - angles[0]
+    if span >= 180.0:
+        wide = ax.get_window_extent().width / ax.figure.dpi > 4.0
+        ax.xaxis.set_major_locator(MultipleLocator(45.0 if wide else 90.0))
+        ax.xaxis.set_minor_locator(MultipleLocator(15.0 if wide else 30.0))
+    if span > 0.0:
+        ax.set_xlim(angles[0], angles[-1])
+    ax.set_xlabel("crank angle $\\theta_2$ [°]")
+
+
+def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
+    """Limits of a signed signal: zero and what is to be shown, with room for labels."""
+    shown = [float(np.clip(found.value, -size, size)) for found in extremes]
+    low, high = min([0.0, *shown]), max([0.0, *shown])
+    room = 0.18 * ((high - low) or 1.0)
+    ax.set_ylim(low - room, high + room)
+
+
+def _extremes(curve: Curve) -> dict[str, signals.Peak]:
+    high, low = (signals.peak(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
+    return {"max": high, "min": low._replace(value=-low.value)} if high and low else {}
+
+
+def _shade(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None:
+    """Shade the angles without a result and say why; the widest comes back. Several designs have gaps of their own."""
+    status = ds.get("status", signal)
+    if any(dim != signals.INDEX for dim in status.dims):
+        return None
+    found = signals.gaps(ds, signal)
+    for gap in found:
+        ax.axvspan(gap.start, gap.stop, facecolor=SHADE, linewidth=0.0, zorder=0.4)
+        width = gap.stop - gap.start
+        if width >= 12.0:  # degrees; a narrower one has no room for a word
+            upright = "horizontal" if width >= 75.0 else "vertical"
+            middle = 0.5 * (gap.start + gap.stop)
+            text = {"ha": "center", "va": "center", "rotation": upright, "fontsize": "small", "color": GREY}
+            text["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
+            ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **text)
+    return max(found, key=lambda gap: gap.stop - gap.start, default=None)
+
+
+def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None) -> None:
+    """In the room above the curves; where a curve runs through that, in the gap beside it."""
+    compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5}
+    if gap is None:
+        columns = len(curves) if max(len(curve.text) for curve in curves) < 22 else 2
+        ax.legend(loc="upper center", ncols=columns, frameon=False, borderaxespad=0.2, **compact)
+    else:
+        middle = (0.5 * (gap.start + gap.stop), 0.01)
+        place = {"bbox_to_anchor": middle, "bbox_transform": ax.get_xaxis_transform()}
+        ax.legend(loc="lower center", ncols=1, frameon=False, **place, **compact)
+
+
+def _mark(ax: Axes, found: signals.Peak, units: str, curve: Curve, said: str) -> None:
+    """A dot on a peak with its value and angle; an arrowhead at the edge for one that is off the scale."""
+    from linksweep.surface.labels import label
+
+    low, high = ax.get_ylim()
+    text = f"{said} {signals.number(found.value)} {units} at {signals.angle_text(found.angle)}".strip()
+    if low <= found.value <= high:
+        y, marker = found.value, "o"
+    else:
+        y, marker = (high, "^") if found.value > high else (low, "v")
+        text = text.replace(" at ", "\nat ") + ", off scale"
+    color = curve.style["color"]
+    ax.plot([found.angle], [y], marker, color=color, markersize=4.5, clip_on=False, label=f"_peak {curve.name}")
+    label(ax, found.angle, y, text, color)

@@ -1,0 +1,187 @@
+"""Signals of a cycle as plots take them: one design, sorted by crank angle, closed to a full turn, with its gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.four_bar import LINKS, PINS
+
+INDEX = "theta2"
+PIN_OF = {f"F{i}{j}": pin for pin, pair in PINS.items() for i, j in (pair, pair[::-1])}
+PIN_FORCES = tuple(f"F{i}{j}" for i, j in PINS.values())
+TORQUES = ("T12", "T13", "T14")
+MOST_LINES = 6  # designs that one plot still tells apart
+
+
+class Gap(NamedTuple):
+    """Crank angles [degree] between which there is no result, and why."""
+
+    start: float
+    stop: float
+    reason: str
+
+
+class Peak(NamedTuple):
+    """Where a signal is largest: crank angle [degree], value, and whether the cycle has a gap right beside it."""
+
+    angle: float
+    value: float
+    beside_gap: bool
+
+
+def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Components x and y of a pin force; of F23 as well where there is only F32."""
+    _known_pin(pin)
+    back = f"F{pin[2]}{pin[1]}"
+    for name, sign in ((pin, 1.0), (back, -1.0)):
+        if f"{name}x" in ds and f"{name}y" in ds:
+            return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
+    raise ValueError(
+        f"the Dataset has no {pin}x and {pin}y: sweep with outputs=[..., {pin + 'x'!r}, {pin + 'y'!r}]"
+    )
+
+
+def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
+    """Magnitude of a pin force: the Dataset's own, or from its components."""
+    _known_pin(pin)
+    for name in (pin, f"F{pin[2]}{pin[1]}"):
+        if name in ds:
+            return ds[name]
+    return np.hypot(*components(ds, pin))
+
+
+def has_pin(ds: xr.Dataset, pin: str) -> bool:
+    back = f"F{pin[2]}{pin[1]}"
+    return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, back))
+
+
+def _known_pin(pin: str) -> None:
+    if pin not in PIN_OF:
+        raise ValueError(f"pin = {pin!r}: must be one of {', '.join(PIN_OF)}")
+
+
+def torque_name(ds: xr.Dataset) -> str:
+    """The torque of the drive that the Dataset holds."""
+    for name in TORQUES:
+        if name in ds:
+            return name
+    raise ValueError(f"the Dataset has none of {', '.join(TORQUES)}: sweep with outputs=[..., 'T12']")
+
+
+def unit(signal: xr.DataArray, default: str) -> str:
+    return signal.attrs.get("units", default)
+
+
+def require_angles(ds: xr.Dataset) -> None:
+    if INDEX not in ds.dims:
+        raise ValueError("the Dataset has no dimension theta2: plots over the revolution take what ls.sweep returns")
+
+
+def require_one_design(signals: Iterable[xr.DataArray]) -> None:
+    """Raise ValueError where signals have other dims than theta2."""
+    sizes = {dim: n for signal in signals for dim, n in signal.sizes.items() if dim != INDEX}
+    if sizes:
+        said = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
+        choice = ", ".join(f"{dim}=0" for dim in sizes)
+        raise ValueError(
+            f"there are several designs, over {said}: a plot shows one; choose it, such as ds.isel({choice})"
+        )
+
+
+def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
+    """The signal of each design by a label: one, or up to six along one dim. Raises ValueError for more."""
+    extra = [dim for dim in signal.dims if dim != INDEX]
+    if len(extra) != 1 or signal.sizes[extra[0]] > MOST_LINES:
+        require_one_design([signal])
+        return {"": signal}
+    dim = extra[0]
+    labels = signal[dim].values  # positions where the dim has no coordinate
+    units = signal[dim].attrs.get("units", "") if dim in signal.coords else ""
+    return {f"{dim} = {_said(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
+
+
+def _said(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
+    """Angles and signals as arrays: sorted by angle, and a grid of a full turn closed by its first sample again."""
+    angles = ds[INDEX].values.astype(float)
+    order = np.argsort(angles, kind="stable")
+    rows = [angles[order], *(_spread(signal, len(angles))[order] for signal in signals)]
+    if not is_full_turn(angles[order]):
+        return tuple(rows)
+    return (np.append(rows[0], rows[0][0] + 360.0), *(np.append(row, row[0]) for row in rows[1:]))
+
+
+def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
+    """Values at every angle, also of a signal that does not depend on it."""
+    require_one_design([signal])
+    return np.broadcast_to(signal.values.astype(float), (count,))
+
+
+def is_full_turn(angles: np.ndarray) -> bool:
+    """Whether sorted angles divide one turn evenly."""
+    steps = np.diff(angles, append=angles[0] + 360.0)
+    return len(angles) > 2 and np.allclose(steps, 360.0 / len(angles))
+
+
+def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
+    """Where there is no result: by the status, or where that is not in the Dataset by the signal's NaN."""
+    status = ds["status"] if "status" in ds else xr.where(np.isnan(signal), 1, 0)
+    angles, bad = revolution(ds, status)
+    reasons = ds["status"].attrs.get("flag_meanings", "").split() if "status" in ds else []
+    edges = np.flatnonzero(np.diff(bad, prepend=0.0, append=0.0) != 0.0)
+    found = []
+    for start, stop in zip(edges, edges[1:], strict=False):
+        if code := int(bad[start]):
+            reason = reasons[code].replace("_", " ") if code < len(reasons) else "no result"
+            found.append(Gap(angles[max(start - 1, 0)], angles[min(stop, len(angles) - 1)], reason))
+    return found
+
+
+def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
+    """The largest sample, or None where there is no result at all."""
+    if np.isnan(values).all():
+        return None
+    k = int(np.nanargmax(values))
+    beside = values[max(k - 1, 0) : k + 2]
+    return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any()))
+
+
+def scale(values: np.ndarray, peaks: Iterable[Peak | None]) -> float:
+    """The largest size that a plot should show.
+
+    Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where
+    that would flatten all the rest, the rest is shown, and what lies beyond is marked as off the scale.
+    """
+    sizes = np.abs(values[np.isfinite(values)])
+    if not sizes.size:
+        return 1.0
+    usual = 1.5 * float(np.quantile(sizes, 0.85))
+    runaway = any(found and found.beside_gap and abs(found.value) > 3.0 * usual for found in peaks)
+    return usual if runaway else float(sizes.max())
+
+
+def number(value: float) -> str:
+    """Four significant digits, as one writes them."""
+    if value and not 1e-3 <= abs(value) < 1e7:
+        return f"{value:.3e}".replace("-", "−")
+    return np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="-").replace("-", "−")
+
+
+def angle_text(angle: float) -> str:
+    return f"{angle:.5g}°".replace("-", "−")
+
+
+def symbol(name: str) -> str:
+    """F32 as one writes it."""
+    return f"${name[0]}_{{{name[1:]}}}$"
+
+
+def link_symbol(k: int) -> str:
+    return f"link {k} ({LINKS[k]})"

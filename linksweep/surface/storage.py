@@ -1,0 +1,115 @@
+"""Files: Datasets written whole or not at all, and scenes read back from scene files and from results."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from pathlib import Path
+
+import xarray as xr
+
+from linksweep.mechanisms.validate import did_you_mean
+from linksweep.scene.file import parse_scene, read_scene
+from linksweep.scene.scene import Scene
+
+
+def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
+    """Write a Dataset to NetCDF whole or not at all: a temporary file beside it, flushed to disk, then renamed.
+
+    Parameters
+    ----------
+    ds : Dataset of linksweep, or any that NetCDF can hold
+    path : the file; one that exists is replaced only once the new one is complete
+
+    Raises
+    ------
+    OSError
+        When the folder is missing, cannot be written or is full; what was there before stays.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.example("press")
+    >>> import os, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = os.path.join(folder, "cycle.nc")
+    ...     ls.save(ls.sweep(scene), path)
+    ...     ls.load_scene(path).omega2
+    31.41592653589793
+    """
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no folder {path.parent}; make it first")
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    os.close(handle)
+    try:
+        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+        with open(temporary, "rb") as file:
+            os.fsync(file.fileno())
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+    _sync_folder(path.parent)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the rename itself last; not every system lets a folder be opened."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def load_scene(path: str | os.PathLike) -> Scene:
+    """The scene of a TOML file, or of a NetCDF file that linksweep wrote.
+
+    Parameters
+    ----------
+    path : "scene.toml" or "cycle.nc"
+
+    Returns
+    -------
+    Scene that gives equal arrays when swept again at the same angles. Functions of theta2 come back as DataArrays over the angles
+    at which they were sampled.
+
+    Raises
+    ------
+    ValueError
+        Naming the file and what is wrong: all errors of a scene file at once; a file that is no NetCDF or holds no scene.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.load_scene("press.toml")  # doctest: +SKIP
+    """
+    path = Path(path)
+    if path.suffix == ".toml":
+        return read_scene(path)
+    if not path.exists():
+        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
+        raise ValueError(f"{path}: no such file{near}")
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as ds:
+            return scene_of(ds.load(), str(path))
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read as NetCDF or as a scene (.toml): {error}") from error
+
+
+def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
+    """The scene that a Dataset of linksweep came from. Raises ValueError where it holds none."""
+    if "scene" not in ds.attrs:
+        raise ValueError(f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes")
+    arrays = {str(path): ds[path] for path in ds.variables}
+    return parse_scene(ds.attrs["scene"], name, {path: array.reset_coords(drop=True) for path, array in arrays.items()})
