@@ -60,17 +60,57 @@ class Grid(NamedTuple):
     table: np.ndarray
 
 
+class Slot(NamedTuple):
+    """Where a node's results lie: `count` rows of the block, or numbers, from `start`, for the designs of `dims`."""
+
+    node: Node
+    dims: tuple[str, ...]
+    start: int
+    size: int
+
+
+class Layout(NamedTuple):
+    """The places of all results for one set of sizes."""
+
+    sizes: np.ndarray
+    rows: tuple[Slot, ...]
+    singles: tuple[Slot, ...]
+
+    @staticmethod
+    def places(slots: tuple[Slot, ...]) -> tuple[np.ndarray, int]:
+        """Starts as the kernel takes them, and the size of all together."""
+        starts = np.array([slot.start for slot in slots], dtype=np.int64)
+        return starts, sum(slot.size for slot in slots)
+
+
 @dataclass(eq=False)
 class Runner:
     """One plan made ready to run, and how much of it has been interpreted so far."""
 
     plan: Plan
     fused: Fused
-    interpreted: int = field(default=0)
+    interpreted: int = 0
+    layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
     def should_interpret(self, samples: int) -> bool:
         self.interpreted += samples
         return self.interpreted <= COMPILE_AFTER
+
+    def layout(self, sizes: Mapping[str, int]) -> Layout:
+        key = tuple(sizes[dim] for dim in self.plan.loops)
+        if key not in self.layouts:
+            singles = [*self.fused.singles, *(self.plan.outputs[r.name] for r in self.fused.reductions for _ in "12")]
+            rows, alone = self._slots(list(self.fused.rows), sizes), self._slots(singles, sizes)
+            self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), rows, alone)
+        return self.layouts[key]
+
+    def _slots(self, nodes: list[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
+        slots, start = [], 0
+        for node in nodes:
+            dims = tuple(dim for dim in self.plan.dims(node) if dim != self.plan.index)
+            slots.append(Slot(node, dims, start, math.prod(sizes[dim] for dim in dims)))
+            start += slots[-1].size
+        return tuple(slots)
 
 
 @lru_cache(maxsize=256)
@@ -87,8 +127,10 @@ def evaluate(
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
         return {name: stored[node] for name, node in plan.outputs.items()}
-    block, single = _execute(ready, inputs, grid, sizes, threads)
-    stored = _stored_fields(ready, block, single, grid, sizes)
+    layout = ready.layout(sizes)
+    block, single = _execute(ready, layout, inputs, grid, sizes, threads)
+    stored = {slot.node: _rows_of(slot, block, sizes, grid) for slot in layout.rows}
+    stored |= {slot.node: _single_of(slot, single, sizes) for slot in layout.singles}
     if plan.late:
         values = {node: _align(plan, node.dims, field) for node, field in stored.items()}
         values |= {node: np.asarray(node.value) for node in plan.nodes if node.operator == "constant"}
@@ -114,11 +156,10 @@ def reduce_rows(
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         fields = {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
-    _, single = _execute(ready, inputs, grid, sizes, threads)
-    return {
-        r: (_from_single(ready, 2 * k, r, single, sizes), _from_single(ready, 2 * k + 1, r, single, sizes))
-        for k, r in enumerate(reductions)
-    }
+    layout = ready.layout(sizes)
+    _, single = _execute(ready, layout, inputs, grid, sizes, threads)
+    pairs = zip(reductions, layout.singles[::2], layout.singles[1::2], strict=True)
+    return {r: (_single_of(value, single, sizes), _single_of(at, single, sizes)) for r, value, at in pairs}
 
 
 # ------------------------------------------------------------------------------------------ interpreted
@@ -178,27 +219,31 @@ def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[
 # --------------------------------------------------------------------------------------------- compiled
 
 
-def _execute(ready: Runner, inputs: Mapping[str, Field], grid: Grid, sizes: Mapping[str, int], threads: int | None):
+def _execute(
+    ready: Runner,
+    layout: Layout,
+    inputs: Mapping[str, Field],
+    grid: Grid,
+    sizes: Mapping[str, int],
+    threads: int | None,
+) -> tuple[np.ndarray, np.ndarray]:
     """Lay the inputs out, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused = ready.plan, ready.fused
     kernel = compiled(fused.source, reductions_source() if fused.reductions else "")
-    loop_sizes = np.array([sizes[dim] for dim in plan.loops] or [1], dtype=np.int64)
     samples = len(grid.angles)
     parameters, parameter_at = _flat([_ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
-    block_at, block_rows = _places([_designs(plan, node, sizes) for node in fused.rows])
-    singles = [*fused.singles, *(plan.outputs[r.name] for r in fused.reductions for _ in range(2))]
-    single_at, single_size = _places([_designs(plan, node, sizes) for node in singles])
+    (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
         scratch, lanes = np.empty((fused.scratch_rows, samples)), np.empty(reduce.LANES)
         kernel(
-            first, last, samples, loop_sizes, parameters, parameter_at, profiles, profile_at,
+            first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
             block, block_at, single, single_at, scratch, grid.angles, grid.period, lanes,
         )  # fmt: skip
 
-    length = int(loop_sizes[0]) if plan.loops else samples
+    length = int(layout.sizes[0]) if plan.loops else samples
     workers = min(threads or os.cpu_count() or 1, 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD, length)
     if workers <= 1 or (fused.reductions and not plan.loops):
         work(0, length)
@@ -213,10 +258,6 @@ def _samples(plan: Plan, grid: Grid, sizes: Mapping[str, int]) -> int:
     return len(grid.angles) * math.prod(sizes[dim] for dim in plan.loops)
 
 
-def _designs(plan: Plan, node: Node, sizes: Mapping[str, int]) -> int:
-    return math.prod(sizes[dim] for dim in plan.dims(node) if dim != plan.index)
-
-
 def _ordered(plan: Plan, field: Field) -> np.ndarray:
     """A field's values with its loops outermost first and the index last, contiguous."""
     if len(field.dims) < 2:
@@ -226,13 +267,8 @@ def _ordered(plan: Plan, field: Field) -> np.ndarray:
     return np.ascontiguousarray(np.transpose(field.values, order), dtype=np.float64)
 
 
-def _places(counts: list[int]) -> tuple[np.ndarray, int]:
-    ends = np.cumsum([0, *counts], dtype=np.int64)
-    return ends, int(ends[-1])
-
-
 def _flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    at, _ = _places([array.size for array in arrays])
+    at = np.cumsum([0, *(array.size for array in arrays)], dtype=np.int64)
     return (np.concatenate([array.reshape(-1) for array in arrays]) if arrays else np.empty(0)), at
 
 
@@ -250,23 +286,10 @@ def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Mapping[str, Field], 
     return table, np.array([*at, rows], dtype=np.int64)
 
 
-def _stored_fields(ready: Runner, block, single, grid: Grid, sizes: Mapping[str, int]) -> dict[Node, Field]:
-    plan, fields, row, place = ready.plan, {}, 0, 0
-    for node in ready.fused.rows:
-        count = _designs(plan, node, sizes)
-        fields[node] = _field(plan, node, block[row : row + count], grid, sizes)
-        row += count
-    for node in ready.fused.singles:
-        count = _designs(plan, node, sizes)
-        fields[node] = _field(plan, node, single[place : place + count], grid, sizes)
-        place += count
-    return fields
+def _rows_of(slot: Slot, block: np.ndarray, sizes: Mapping[str, int], grid: Grid) -> Field:
+    shape = [*(sizes[dim] for dim in slot.dims), len(grid.angles)]
+    return Field((*slot.dims, grid.dim), block[slot.start : slot.start + slot.size].reshape(shape))
 
 
-def _from_single(ready: Runner, k: int, reduction: Reduction, single, sizes: Mapping[str, int]) -> Field:
-    plan = ready.plan
-    node = plan.outputs[reduction.name]
-    dims = tuple(dim for dim in plan.dims(node) if dim != plan.index)
-    counts = [_designs(plan, plan.outputs[r.name], sizes) for r in ready.fused.reductions for _ in range(2)]
-    start = sum(counts[:k])
-    return Field(dims, single[start : start + counts[k]].reshape([sizes[dim] for dim in dims]))
+def _single_of(slot: Slot, single: np.ndarray, sizes: Mapping[str, int]) -> Field:
+    return Field(slot.dims, single[slot.start : slot.start + slot.size].reshape([sizes[dim] for dim in slot.dims]))

@@ -180,6 +180,7 @@ def _position() -> list[Row | Total]:
         Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
+        Row(four_bar.assembly, ("assembly",)),
         Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
@@ -213,7 +214,6 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(four_bar.crank_balance, ("F12x", "F12y")),
         Row(four_bar.work_on_crank, ("work",)),
         Row(four_bar.balancing_torque, (FourBar.drives[drive],), ("work", ratios[drive])),
-        Row(four_bar.not_ok, ("not_ok",)),
     ]
 
 

@@ -5,7 +5,8 @@ With φ the angle from the line A→D to the crank, the four-bar closes while (s
     low  = (d−a−b+c)(d−a+b−c) + 4ad·sin²(φ/2) ≥ 0        low = 0: coupler folded back over the rocker, f = |b−c|
     high = (b+c−d−a)(b+c+d+a) + 4ad·cos²(φ/2) ≥ 0        high = 0: coupler and rocker stretched out, f = b+c
 
-so that φ lies between ±φ_folded and ±φ_stretched, each found from its half angle, without the loss that acos has near 0 and 180.
+so that φ lies between ±φ_folded and ±φ_stretched, each found from its half angle, without the loss that acos has
+near 0 and 180.
 """
 
 from __future__ import annotations
@@ -73,17 +74,20 @@ def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
 
 
 def arcs(found: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Start and end of the one or two arcs of θ2 [degree] that can be assembled; trailing axis: arc. End may exceed 360."""
-    none = np.full(np.shape(found.folded), np.nan)
-    whole = found.assembly == 0
-    two = np.isfinite(found.folded) & np.isfinite(found.stretched) & ~whole
+    """Start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
+
+    NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame line,
+    with one limit a single arc through the side where there is none.
+    """
     folded, stretched = np.isfinite(found.folded), np.isfinite(found.stretched)
-    start = np.select([whole, folded, stretched], [0.0 * none, found.folded, -found.stretched], np.nan)
-    start = np.where(whole, 0.0, start)
-    end = np.select([two, folded, stretched], [found.stretched, 360.0 - found.folded, found.stretched], np.nan)
-    end = np.where(whole, 360.0, end)
-    second = np.where(two, -found.stretched, np.nan), np.where(two, -found.folded, np.nan)
-    starts, ends = np.stack([start, second[0]], axis=-1), np.stack([end, second[1]], axis=-1)
-    shift = np.where(whole, 0.0, ground_angle)[..., None]
-    turned = np.mod(starts + shift, 360.0)
-    return turned, turned + (ends - starts)
+    whole, both = found.assembly == 0, folded & stretched
+    cases = [whole, both, folded, stretched]
+    nothing = np.full(whole.shape, np.nan)
+    first = (
+        np.select(cases, [np.zeros(whole.shape), found.folded, found.folded, -found.stretched], np.nan),
+        np.select(cases, [np.full(whole.shape, 360.0), found.stretched, 360.0 - found.folded, found.stretched], np.nan),
+    )
+    second = np.where(both, -found.stretched, nothing), np.where(both, -found.folded, nothing)
+    start, end = (np.stack(pair, axis=-1) for pair in zip(first, second, strict=True))
+    turned = np.mod(start + np.where(whole, 0.0, ground_angle)[..., None], 360.0)
+    return turned, turned + (end - start)

@@ -144,8 +144,9 @@ def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(str(word), list(known), n=1, cutoff=0.6)
-    return f'; did you mean "{close[0]}"?' if close else ""
+    spelled = {name.lower(): name for name in known}
+    close = difflib.get_close_matches(str(word).lower(), spelled, n=1, cutoff=0.6)
+    return f'; did you mean "{spelled[close[0]]}"?' if close else ""
 
 
 def refuse(found: list[str]) -> None:

@@ -57,6 +57,17 @@ def closure_factors(
     return low, high
 
 
+def assembly(
+    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
+) -> Number:
+    """0 where it closes at every angle, 1 where at some, 2 where at none: low is least at φ = 0, high at φ = 180°."""
+    lengths = (crank_length, coupler_length, rocker_length, ground_length)
+    least_low, largest_high = closure_factors(*lengths, 0.0, 1.0)
+    largest_low, least_high = closure_factors(*lengths, 1.0, 0.0)
+    partly = where(least_low < 0.0, 1.0, where(least_high < 0.0, 1.0, 0.0))
+    return where(largest_low < 0.0, 2.0, where(largest_high < 0.0, 2.0, partly))
+
+
 def crank_pin_acceleration(omega2: Number, alpha2: Number, r2x: Number, r2y: Number) -> tuple[Number, Number]:
     """a_B = α2 × r2 − ω2² r2."""
     centripetal = omega2 * omega2
@@ -106,8 +117,3 @@ def balancing_torque(work: Number, ratio: Number) -> Number:
 def drive_status(closure: Number, leverage: Number) -> Number:
     """The closure's status, or 3 (dead centre) where the driven link stands still and no torque on it can drive."""
     return where(abs(leverage) > 0.0, closure, where(closure > 0.0, closure, 3.0))
-
-
-def not_ok(status: Number) -> Number:
-    """1 where a sample is not ok, else 0."""
-    return where(status > 0.0, 1.0, 0.0)

@@ -18,11 +18,12 @@ from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.mechanisms.validate import name_problems, refuse
-from linksweep.results.record import design_coordinates, flags, scene_attributes, variable
+from linksweep.results.record import design_coordinates, flags, provenance, variable
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 MEANINGS = ("ok", "partial_revolution", "cannot_assemble")
+ASSEMBLY = Reduction("largest", "assembly")
 SUMMARIES = ("mean", "rms")
 
 
@@ -62,9 +63,9 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     grid = crank_grid(theta2, scene.mechanism.period)
     sampled = scene.at(grid)
     wanted = _wanted(scene, of)
-    signals = dict.fromkeys(r.name for _, _, rs in wanted for r in rs) | {"not_ok": None}
-    reductions = tuple(dict.fromkeys([r for _, _, rs in wanted for r in rs] + [Reduction("mean", "not_ok")]))
-    request = plan(scene.table, tuple(signals), sampled.inputs.forms)
+    reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), ASSEMBLY]))
+    signals = tuple(dict.fromkeys(reduction.name for reduction in reductions))
+    request = plan(scene.table, signals, sampled.inputs.forms)
     found = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
     order = tuple(sampled.inputs.sizes)
     variables: dict[str, xr.Variable] = {}
@@ -73,9 +74,12 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
             name: variable(field, units, said, order)
             for name, field, units, said in _named(quantity, summary, [found[r] for r in own])
         }
-    variables["status"] = _status(found[reductions[-1]][0], order)
+    status = variable(found[ASSEMBLY][0], "1", "", order).astype(np.int8)
+    status.attrs = flags("whether the mechanism can be assembled all the way round", MEANINGS)
+    variables["status"] = status
     command = f"linksweep.peaks(scene{'' if of is None else f', of={list(of)}'}, theta2={np.size(grid.angles)})"
-    return xr.Dataset(variables, design_coordinates(sampled), scene_attributes(sampled, command))
+    coordinates = design_coordinates(sampled)
+    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
 def _wanted(scene: Scene, of: Iterable[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
@@ -127,11 +131,3 @@ def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
 
 def _map(function, field: Field) -> Field:
     return Field(field.dims, function(field.values))
-
-
-def _status(fraction_not_ok: Field, order: tuple[str, ...]) -> xr.Variable:
-    values = fraction_not_ok.values
-    codes = np.where(values == 0.0, 0, np.where(values == 1.0, 2, 1)).astype(np.int8)
-    made = variable(Field(fraction_not_ok.dims, codes), "1", "whether the revolution is whole", order)
-    made.attrs = flags("whether the mechanism can be assembled all the way round", MEANINGS)
-    return made

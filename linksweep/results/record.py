@@ -26,8 +26,8 @@ def described(
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
     variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
-    coordinates = {grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE)} | design_coordinates(sampled)
-    return xr.Dataset(variables, coordinates, scene_attributes(sampled, command))
+    coordinates = cycle_coordinates(sampled) | {grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE)}
+    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
 def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:
@@ -50,7 +50,12 @@ def status_attributes(meanings: Iterable[str]) -> dict:
 
 
 def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
-    """Labels of the design dims, and every parameter that has dims, under its path."""
+    """Labels of the design dims, and every parameter that has design dims, under its path."""
+    return scene.labels | {path: array.variable for path, array in scene.arrays.items() if "theta2" not in array.dims}
+
+
+def cycle_coordinates(scene: Scene) -> dict[str, xr.Variable]:
+    """The same, and the parameters that change over the revolution."""
     return scene.labels | {path: array.variable for path, array in scene.arrays.items()}
 
 
@@ -63,9 +68,13 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
     }
 
 
-def scene_attributes(scene: Scene, command: str) -> dict[str, str]:
-    """Where a Dataset comes from, with the whole scene, so that it can be run again."""
-    return origin_attributes(scene, command) | {"scene": scene_text(scene)}
+def provenance(scene: Scene, command: str, coordinates: Mapping[str, xr.Variable]) -> dict[str, str]:
+    """Where a Dataset comes from, with the whole scene as TOML, so that it can be run again.
+
+    DataArrays that the Dataset has as coordinates are referred to by name; others stand in the text.
+    """
+    elsewhere = tuple(path for path in scene.arrays if path in coordinates)
+    return origin_attributes(scene, command) | {"scene": _text(scene, elsewhere)}
 
 
 @cache
@@ -73,8 +82,8 @@ def _version() -> str:
     return version("linksweep")
 
 
-def scene_text(scene: Scene) -> str:
-    """The scene as TOML, its DataArrays referred to by the names that `design_coordinates` gives them."""
-    if "text" not in scene.__dict__:
-        scene.__dict__["text"] = write_scene(scene, {})
-    return scene.__dict__["text"]
+def _text(scene: Scene, elsewhere: tuple[str, ...]) -> str:
+    texts = scene.__dict__.setdefault("texts", {})
+    if elsewhere not in texts:
+        texts[elsewhere] = write_scene(scene, elsewhere)
+    return texts[elsewhere]

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.engine.run import Field, Grid
 from linksweep.results.compute import blank, compute, sample_status
-from linksweep.results.record import ANGLE, design_coordinates, scene_attributes, status_attributes
+from linksweep.results.record import ANGLE, cycle_coordinates, provenance, status_attributes
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -28,7 +28,8 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     are in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
 
     Source: document 2 (ME 470), the matrix of R vectors, with weights and loads on every link added, R_23 read as
-    R_23x. With drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3, lecture 17).
+    R_23x. With drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3,
+    lecture 17).
 
     Examples
     --------
@@ -51,12 +52,13 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
         "rhs": xr.Variable(*both["rhs"], {"long_name": "right side; forces in N, moments in N m"}),
         "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
     }
-    coordinates = design_coordinates(sampled) | {
+    coordinates = cycle_coordinates(sampled) | {
         grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE),
-        "equation": [equation.label for equation in equations],
-        "unknown": list(scene.mechanism.unknowns(scene.drive)),
+        "equation": xr.Variable("equation", [equation.label for equation in equations]),
+        "unknown": xr.Variable("unknown", list(scene.mechanism.unknowns(scene.drive))),
     }
-    return xr.Dataset(variables, coordinates, scene_attributes(sampled, f"linksweep.system(scene, theta2={theta2})"))
+    command = f"linksweep.system(scene, theta2={theta2})"
+    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
 def assembled(scene: Scene, grid: Grid, threads: int | None = None) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:

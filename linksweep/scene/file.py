@@ -37,7 +37,7 @@ import difflib
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
@@ -53,7 +53,6 @@ from linksweep.scene.scene import Scene
 from linksweep.scene.units import KINDS, design_axis, quantity, shown
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
-Arrays = dict[str, xr.DataArray]
 
 # Stands in for a value with an error, so that the constructors can still look at the others.
 _UNREAD: Any = "(not read)"
@@ -211,15 +210,14 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
     return scene
 
 
-def write_scene(scene: Scene, arrays: Arrays | None = None) -> str:
+def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
     """Return the text of a scene file from which `parse_scene` makes an equal scene, to the bit.
 
     Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims.
 
     Parameters
     ----------
-    arrays : dict, optional
-        Where given, DataArrays go there under their paths; the text has ``{variable = "coupler.length"}``.
+    elsewhere : paths of DataArrays that are kept elsewhere: the text has ``{variable = "coupler.length"}``.
 
     Raises
     ------
@@ -228,7 +226,7 @@ def write_scene(scene: Scene, arrays: Arrays | None = None) -> str:
     """
     import tomli_w  # here: only those who write files need it
 
-    text = tomli_w.dumps(_written(scene, (), arrays))
+    text = tomli_w.dumps(_written(scene, (), elsewhere))
     # tomli_w gives each number of a list a line of its own; one line for all reads better.
     return re.sub(r"\[\n([-+.\w,\s]*),\n *\]", lambda found: f"[{' '.join(found[1].split())}]", text)
 
@@ -254,26 +252,25 @@ def _required(cls: Any) -> list[str]:
     return [item.name for item in dataclasses.fields(cls) if item.default is item.default_factory is none]
 
 
-def _written(value: Any, where: Where, arrays: Arrays | None) -> Any:
+def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
     """Return what stands in the file for a value of a scene."""
     if type(value) in SCHEMA:
         given = {key: getattr(value, key) for key in SCHEMA[type(value)]}
-        words = {k: _written(word, (*where, k), arrays) for k, word in given.items() if word is not None}
+        words = {k: _written(word, (*where, k), elsewhere) for k, word in given.items() if word is not None}
         named = type(value) in {*_LINKS.classes.values(), *_MECHANISMS.classes.values()}
         return {"type": type(value).__name__, **words} if named else words
     if isinstance(value, (tuple, list)):
-        return [_written(item, (*where, i), arrays) for i, item in enumerate(value)]
+        return [_written(item, (*where, i), elsewhere) for i, item in enumerate(value)]
     if isinstance(value, xr.DataArray):
-        return _array_written(value, _path(where), arrays)
+        return _array_written(value, _path(where), elsewhere)
     if callable(value):
         advice = "sample it first, as a DataArray over theta2"
         raise ValueError(f"{_path(where)} is a function of theta2 and cannot be written to a file: {advice}")
     return value if isinstance(value, str) else float(value)
 
 
-def _array_written(array: xr.DataArray, path: str, arrays: Arrays | None) -> dict[str, Any]:
-    if arrays is not None:
-        arrays[path] = array
+def _array_written(array: xr.DataArray, path: str, elsewhere: Collection[str]) -> dict[str, Any]:
+    if path in elsewhere:
         return {"variable": path}
     coords = {str(dim): array.coords[dim].values.tolist() for dim in array.dims if dim in array.coords}
     dims = {"dim": array.dims[0]} if array.ndim == 1 else {"dims": list(array.dims)}

@@ -76,7 +76,7 @@ def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.Dat
         values = np.concatenate([values, values[:1]])
     if len(angles) < 4 or angles[-1] - angles[0] > period or (np.diff(angles) <= 0.0).any():
         raise ValueError(
-            f"{path}: its {len(angles) - 1} angles from {angles[0]:g} to {angles[-2]:g} degrees cannot be interpolated; "
+            f"{path}: its {len(angles) - 1} angles from {angles[0]:g} to {angles[-2]:g} degrees cannot be joined; "
             f"give at least 3 different angles within one period of {period:g} degrees"
         )
     if not np.array_equal(values[0], values[-1]):

@@ -79,14 +79,15 @@ class Scene:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "loads", (self.loads,) if isinstance(self.loads, Load) else tuple(self.loads))
-        if not isinstance(self.mechanism, FourBar):
-            raise ValueError(f"mechanism = {self.mechanism!r}: must be a FourBar")
-        found = problems(self)
+        found = [] if isinstance(self.mechanism, FourBar) else [f"mechanism = {self.mechanism!r}: must be a FourBar"]
+        found += problems(self)
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s2")
-        found += choice_problems("drive", self.drive, self.mechanism.drives)
+        found += choice_problems("drive", self.drive, FourBar.drives)
         for k, load in enumerate(self.loads, 1):
-            sound = isinstance(load, Load)
-            found += load.problems(f"loads[{k}]", self.mechanism.links) if sound else [f"loads[{k}] is not a Load"]
+            known = isinstance(load, Load)
+            found += (
+                load.problems(f"loads[{k}]", FourBar.links) if known else [f"loads[{k}] = {load!r}: must be a Load"]
+            )
         refuse(found)
         refuse(_conflicts(self))
 
@@ -212,5 +213,5 @@ def _content(value: Any) -> Any:
         return type(value).__name__, tuple(_content(getattr(value, item.name)) for item in fields(value))
     if isinstance(value, xr.DataArray):
         coordinates = [(dim, value[dim].values.tolist()) for dim in value.dims if dim in value.coords]
-        return value.dims, value.values.tobytes(), repr(coordinates)
+        return value.dims, value.astype(float).values.tobytes(), repr(coordinates)
     return tuple(map(_content, value)) if isinstance(value, tuple | list) else value

@@ -12,8 +12,7 @@ from linksweep.mechanisms.four_bar import LINKS
 from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.sweep import sweep
 from linksweep.surface import signals
-from linksweep.surface.palette import BLUE, GREY, SHADE, VERMILION
-from linksweep.surface.storage import scene_of
+from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +58,7 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     link = int(pin[2]) if frame == "link" else 1
     if link != 1:
         x, y = _in_link_axes(ds, link, x, y)
-    ax = _axes(ax)
+    ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
     shown = signals.scale(size, [largest])
@@ -80,7 +79,7 @@ def _in_link_axes(ds: xr.Dataset, link: int, x: np.ndarray, y: np.ndarray) -> tu
     """Components of the same force in the axes of a link: turned back by the link's angle."""
     name = f"theta{link}"
     if name not in ds:
-        ds = sweep(scene_of(ds), theta2=ds[signals.INDEX].values, outputs=[name])
+        ds = sweep(signals.scene_of_design(ds), theta2=ds[signals.INDEX].values, outputs=[name])
     cos, sin = cos_sin(signals.revolution(ds, ds[name])[1])
     return cos * x + sin * y, cos * y - sin * x
 
@@ -93,14 +92,6 @@ def _axis(pin: str, link: int, axis: str) -> str:
     return f"{force} {way}" if axis == "x" else f"{force} across the {LINKS[link]}"
 
 
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt
-
-    return plt.subplots(figsize=(5.6, 5.2), layout="constrained")[1]
-
-
 def _cross(ax: Axes) -> None:
     """Equal scales, with a cross through the origin."""
     ax.set_aspect("equal", adjustable="datalim")
@@ -108,7 +99,7 @@ def _cross(ax: Axes) -> None:
     ax.grid(color=SHADE, linewidth=0.6)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
     ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
-    ax.plot([0.0], [0.0], "+", color="black", markersize=9.0, zorder=2.6, label="_origin")
+    ax.plot([0.0], [0.0], "+", color="black", markersize=11.0, markeredgewidth=1.6, zorder=2.6, label="_origin")
 
 
 def _limits(ax: Axes, x: np.ndarray, y: np.ndarray, shown: float) -> None:
@@ -134,7 +125,7 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: fl
     if named.sum() < 3:
         named[:] = True
     for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):
-        label(ax, *point, ("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE)
+        label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
 
 
 def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> None:
@@ -145,7 +136,10 @@ def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: s
     if largest.value > 0.0:
         arrow(ax, np.zeros(2), tip, VERMILION)
     direction = np.degrees(np.arctan2(force[1], force[0]))
-    said = f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}, direction {signals.number(round(direction, 1))}°\n"
-    said += f"at $\\theta_2$ = {signals.angle_text(largest.angle)}" + ", off the scale" * beyond
+    lines = (
+        f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}" + ", off scale" * beyond,
+        f"at $\\theta_2$ = {signals.angle_text(largest.angle)}",
+        f"direction {signals.number(round(direction, 1))}°",
+    )
     ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {pin}")
-    label(ax, *tip, said, VERMILION)
+    label(ax, *tip, *((line, VERMILION) for line in lines))

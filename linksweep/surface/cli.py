@@ -13,7 +13,6 @@ from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example
-from linksweep.scene.scene import Scene
 from linksweep.surface.report import check_lines, peak_table
 from linksweep.surface.storage import load_scene, save
 
@@ -33,7 +32,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="linksweep", description="How hard are my pins loaded, and where is the worst of it?")
+    parser = argparse.ArgumentParser(
+        prog="linksweep", description="How hard are my pins loaded, and where is the worst of it?"
+    )
     commands = parser.add_subparsers(required=True, metavar="command")
 
     demo = commands.add_parser("demo", help="a built-in press: peak table, demo.nc, demo.png")

@@ -13,14 +13,15 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.offsetbox import AnnotationBbox, TextArea, VPacker
 from matplotlib.patheffects import withStroke
-from matplotlib.text import Annotation, Text
 
 CURVES = 2.0  # zorder from which lines are curves, to be kept clear; grids and reference lines lie below
 CELL = 3.0  # pixels to which points of curves are rounded before they are counted
-DISTANCES = (5.0, 12.0, 20.0, 30.0, 42.0, 58.0, 78.0, 105.0, 140.0)  # points from the labelled point to the label's box
-SPACE = 2.0  # points kept free around a label
-LEADER = 15.0  # points from which on a thin line leads back
+DISTANCES = (6.0, 12.0, 20.0, 30.0, 42.0, 58.0, 78.0, 105.0, 140.0)  # points from the labelled point to the label's box
+SPACE = 3.0  # points kept free around a label
+LEADER = 10.0  # points from which on a thin line leads back
+Line = tuple[str, str]  # text and colour
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
 
 
@@ -48,21 +49,43 @@ class Box(NamedTuple):
         return max(width, 0.0) * max(height, 0.0) / smaller if smaller else 0.0
 
 
-def label(axes: Axes, x: float, y: float, text: str, color: str = "black", **style: Any) -> Annotation:
-    """Write a text near the point (x, y) of the data, where there is room when the figure is drawn."""
+def label(axes: Axes, x: float, y: float, *lines: Line, **style: Any) -> AnnotationBbox:
+    """Write lines of text, each with its colour, near the point (x, y) of the data, where there is room when drawn."""
     halo = withStroke(linewidth=2.5, foreground=axes.get_facecolor())
-    leader = {"arrowstyle": "-", "color": color, "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 2.0}
-    style = {"fontsize": "small", "path_effects": [halo], "arrowprops": leader, "annotation_clip": False} | style
-    note = axes.annotate(
-        text, (x, y), (0.0, 0.0), textcoords="offset points", color=color, ha="center", va="center", **style
+    style = {"fontsize": "small", "path_effects": [halo]} | style
+    texts = [TextArea(text, textprops=style | {"color": color}) for text, color in lines]
+    leader = {"arrowstyle": "-", "color": lines[0][1], "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 2.0}
+    note = AnnotationBbox(
+        VPacker(children=texts, pad=0.0, sep=1.5),
+        (x, y),
+        (0.0, 0.0),
+        boxcoords="offset points",
+        arrowprops=leader,
+        frameon=False,
+        pad=0.0,
+        annotation_clip=False,
     )
     note.set_in_layout(False)
+    axes.add_artist(note)
+    _placer(axes).notes.append(note)
+    return note
+
+
+def labels_of(axes: Axes) -> list[AnnotationBbox]:
+    """The labels written so far."""
+    return _placer(axes).notes
+
+
+def text_of(note: AnnotationBbox) -> str:
+    return "\n".join(line.get_text() for line in note.offsetbox.get_children())
+
+
+def _placer(axes: Axes) -> Placer:
     placer = next((artist for artist in axes.artists if isinstance(artist, Placer)), None)
     if placer is None:
         placer = Placer()
         axes.add_artist(placer)
-    placer.notes.append(note)
-    return note
+    return placer
 
 
 def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, color: str) -> None:
@@ -79,13 +102,13 @@ class Placer(Artist):
 
     def __init__(self) -> None:
         super().__init__()
-        self.notes: list[Annotation] = []
-        self.set_zorder(CURVES + 0.5)  # texts are drawn after this, at 3
+        self.notes: list[AnnotationBbox] = []
+        self.set_zorder(CURVES + 0.5)  # labels are drawn after this, at 3
         self.set_in_layout(False)
 
     def draw(self, renderer: Any) -> None:
         notes = [note for note in self.notes if note.axes is self.axes and note.get_visible()]
-        curves, taken = _curves(self.axes), list(_boxes(self.axes, notes, renderer))
+        curves, taken = _curves(self.axes), list(_boxes(self.axes, renderer))
         frame = Box(*self.axes.get_window_extent(renderer).extents)
         anchors = np.array([note.axes.transData.transform(note.xy) for note in notes]).reshape(-1, 2)
         curves = np.concatenate([curves, anchors])
@@ -125,9 +148,9 @@ def _breadth(line: Line2D) -> np.ndarray:
     return radius * np.array([np.zeros((2,)), *np.transpose([np.cos(around), np.sin(around)])])
 
 
-def _boxes(axes: Axes, notes: list[Annotation], renderer: Any) -> Iterator[Box]:
+def _boxes(axes: Axes, renderer: Any) -> Iterator[Box]:
     """What else is written in the axes."""
-    others: list[Any] = [text for text in axes.texts if text not in notes and text.get_text()]
+    others: list[Any] = [text for text in axes.texts if text.get_text()]
     if axes.get_legend() is not None:
         others.append(axes.get_legend())
     for other in others:
@@ -135,11 +158,11 @@ def _boxes(axes: Axes, notes: list[Annotation], renderer: Any) -> Iterator[Box]:
 
 
 def _place(
-    note: Annotation, anchor: np.ndarray, curves: np.ndarray, taken: list[Box], frame: Box, renderer: Any
+    note: AnnotationBbox, anchor: np.ndarray, curves: np.ndarray, taken: list[Box], frame: Box, renderer: Any
 ) -> tuple[Box, np.ndarray]:
     """Move a label to its cheapest place; its box and the points of its leader come back."""
     point = renderer.points_to_pixels(1.0)
-    size = np.array(Text.get_window_extent(note, renderer).size) + SPACE * point
+    size = np.array(note.offsetbox.get_bbox(renderer).size) + SPACE * point
     best: Any = (np.inf,)
     for distance in DISTANCES:
         if distance >= best[0]:  # all that is farther costs more
@@ -153,7 +176,7 @@ def _place(
             if cost < best[0]:
                 best = (cost, distance, centre, box, leader)
     _, distance, centre, box, leader = best
-    note.set_position((centre - anchor) / point)
+    note.xybox = tuple((centre - anchor) / point)
     note.arrow_patch.set_visible(distance >= LEADER)
     return box, leader
 
@@ -162,4 +185,4 @@ def _cost(box: Box, leader: np.ndarray, curves: np.ndarray, taken: list[Box], fr
     """How bad a place is: on another text or outside the axes worst, then on a curve."""
     on_texts = sum(float(box.overlap(other) > 0.0) + box.overlap(other) + 0.05 * other.count(leader) for other in taken)
     outside = 1.0 - box.overlap(frame)
-    return 500.0 * (on_texts + outside) + 6.0 * box.count(curves)
+    return 500.0 * (on_texts + outside) + 12.0 * box.count(curves)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.four_bar import PINS
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.surface import signals
-from linksweep.surface.palette import BLACK, FORCES, GREY, SHADE, SKY
-from linksweep.surface.storage import scene_of
+from linksweep.surface.style import BLACK, FORCES, GREY, SKY, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,38 +60,64 @@ def mechanism(
     --------
     >>> ax = linksweep.surface.plot.mechanism(scene, theta2=30.0, forces=True)  # doctest: +SKIP
     """
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
-    names = [*POSITIONS, *(f"{pin}{axis}" for pin in signals.PIN_FORCES * forces for axis in "xy")]
-    turn = np.arange(CURVE) * (360.0 / CURVE)
-    cycle = sweep(scene, theta2=[*turn, theta2], outputs=names)
-    signals.require_one_design(cycle.values())
-    _require_assembled(cycle)
-    ax = _axes(ax)
+    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else signals.scene_of_design(ds_or_scene)
+    angle = _angle(theta2)
+    cycle = _positions(scene, angle)
     pins, curve, marked = _shape(scene, cycle, point)
+    acting = _pin_forces(scene, angle) if forces else {}
+    ax = axes_or_new(ax)
     _ground(ax, scene, pins)
     _curve(ax, scene, curve)
     _links(ax, pins, marked)
     ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.16)
-    if forces:
-        _forces(ax, cycle, pins)
+    ax.margins(0.2)
+    _forces(ax, acting, pins)
     _names(ax, pins, marked, "P" if point else "$G_3$")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
-    ax.set_title(f"$\\theta_2$ = {signals.angle_text(float(theta2))}", loc="left")
+    ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
     return ax
 
 
-def _require_assembled(cycle: xr.Dataset) -> None:
-    """Raise ValueError if the last angle has no result."""
+def _angle(theta2: Any) -> float:
+    try:
+        return float(theta2)
+    except (TypeError, ValueError):
+        raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
+
+
+def _positions(scene: Scene, angle: float) -> xr.Dataset:
+    """Positions of the pins over the revolution and, last, at the angle. Raises ValueError where it has none."""
+    geometry = replace(scene, omega2=0.0, alpha2=0.0, loads=(), drive="crank")
+    turn = np.arange(CURVE) * (360.0 / CURVE)
+    cycle = sweep(geometry, theta2=[*turn, angle], outputs=POSITIONS)
+    signals.require_one_design(cycle.values())
     status, angles = cycle.status.values, cycle[signals.INDEX].values
-    if status[-1] == 0:
-        return
-    reason = cycle.status.attrs["flag_meanings"].split()[status[-1]].replace("_", " ")
-    possible = angles[:-1][status[:-1] == 0]
-    off = np.abs((possible - angles[-1] + 180.0) % 360.0 - 180.0)
-    advice = f"the nearest angle at which it stands is {possible[np.argmin(off)]:.5g}" if possible.size else "nor at any angle"
-    raise ValueError(f"theta2 = {angles[-1]:.6g} degree: the mechanism has no position there ({reason}); {advice}")
+    if status[-1]:
+        possible = angles[:-1][status[:-1] == 0]
+        off = np.abs((possible - angle + 180.0) % 360.0 - 180.0)
+        nearest = f"choose another, such as {possible[np.argmin(off)]:.5g}" if possible.size else "nor at any other"
+        raise ValueError(f"theta2 = {angle:.6g} degree: the mechanism {_meaning(cycle)} there; {nearest}")
+    return cycle
+
+
+def _meaning(cycle: xr.Dataset) -> str:
+    """What the last status says, to follow a subject."""
+    word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values[-1])]
+    said = {"cannot_assemble": "cannot be assembled", "toggle": "is at a toggle", "dead_centre": "is at a dead centre"}
+    return said.get(word, word.replace("_", " "))
+
+
+def _pin_forces(scene: Scene, angle: float) -> dict[str, np.ndarray]:
+    """Components (x, y) of each pin force at the angle [N]. Raises ValueError where there are none."""
+    found = sweep(scene, theta2=[angle], outputs=[f"{pin}{axis}" for pin in signals.PIN_FORCES for axis in "xy"])
+    signals.require_one_design(found.values())
+    if found.status.values[-1]:
+        raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(found)}")
+    return {
+        pin: np.array([part.values.reshape(-1)[0] for part in signals.components(found, pin)])
+        for pin in signals.PIN_FORCES
+    }
 
 
 def _shape(scene: Scene, cycle: xr.Dataset, point: Any) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
@@ -116,14 +141,6 @@ def _one(number: Any) -> float:
     return float(number)
 
 
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt
-
-    return plt.subplots(layout="constrained")[1]
-
-
 def _ground(ax: Axes, scene: Scene, pins: dict[str, np.ndarray]) -> None:
     """The frame's line, a hatched support under each ground pin, and the circle that pin B runs on."""
     from matplotlib.path import Path
@@ -140,12 +157,11 @@ def _ground(ax: Axes, scene: Scene, pins: dict[str, np.ndarray]) -> None:
     around = np.radians(np.linspace(0.0, 360.0, 181))
     radius = _one(scene.mechanism.crank.length)
     circle = radius * np.array([np.cos(around), np.sin(around)])
-    ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=1.1, label="_crank circle")
+    ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label="_crank circle")
 
 
 def _curve(ax: Axes, scene: Scene, curve: np.ndarray) -> None:
-    ax.grid(color=SHADE, linewidth=0.6)
-    ax.set_axisbelow(True)
+    grid(ax)
     ax.plot(*curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
 
 
@@ -168,23 +184,20 @@ def _names(ax: Axes, pins: dict[str, np.ndarray], marked: np.ndarray, point: str
     from linksweep.surface.labels import label
 
     for name, position in pins.items():
-        label(ax, *position, name, BLACK, fontweight="bold")
-    label(ax, *marked, point, BLACK)
+        label(ax, *position, (name, BLACK), fontweight="bold")
+    label(ax, *marked, (point, BLACK))
 
 
-def _forces(ax: Axes, cycle: xr.Dataset, pins: dict[str, np.ndarray]) -> None:
-    """An arrow at each pin, to one scale, with its value."""
+def _forces(ax: Axes, forces: dict[str, np.ndarray], pins: dict[str, np.ndarray]) -> None:
+    """An arrow at each pin, to one scale, with its value [N]."""
     from linksweep.surface.labels import arrow, label
 
-    last = cycle.isel({signals.INDEX: -1})
-    vectors = {name: np.array([float(part) for part in signals.components(last, name)]) for name in signals.PIN_FORCES}
-    sizes = {name: float(np.hypot(*vector)) for name, vector in vectors.items()}
     extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))
-    largest = max(sizes.values())
-    for (pin, (i, j)) in PINS.items():
-        name = f"F{i}{j}"
-        if sizes[name] > 0.0:
-            tip = pins[pin] + vectors[name] * (ARROW * extent / largest)
-            arrow(ax, pins[pin], tip, FORCES[name])
-            units = signals.unit(cycle[f"{name}x"], "N")
-            label(ax, *tip, f"{signals.symbol(name)} {signals.number(sizes[name])} {units}", FORCES[name])
+    largest = max((float(np.hypot(*vector)) for vector in forces.values()), default=0.0)
+    for name, vector in forces.items():
+        size = float(np.hypot(*vector))
+        if size > 0.0:
+            start = pins[signals.PIN_OF[name]]
+            tip = start + vector * (ARROW * extent / largest)
+            arrow(ax, start, tip, FORCES[name])
+            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", FORCES[name]))

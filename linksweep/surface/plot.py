@@ -16,7 +16,7 @@ import xarray as xr
 from linksweep.surface import signals
 from linksweep.surface.bearing_plot import bearing
 from linksweep.surface.mechanism_plot import mechanism
-from linksweep.surface.palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION
+from linksweep.surface.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, VERMILION, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,6 +38,15 @@ class Curve(NamedTuple):
     angles: np.ndarray
     values: np.ndarray
     style: dict[str, Any]
+    said: str  # at its peak
+
+
+class Mark(NamedTuple):
+    """A peak to be marked on a curve, and what to call it."""
+
+    peak: signals.Peak
+    curve: Curve
+    said: str
 
 
 def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
@@ -76,7 +85,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     curves = _curves(ds, found)
     peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
     top = signals.scale(np.concatenate([curve.values for curve in curves]), peaks)
-    ax = _axes(ax)
+    ax = axes_or_new(ax)
     _draw(ax, curves)
     ax.set_ylim(0.0, HEADROOM * top or 1.0)
     units = signals.unit(found[wanted[0]], "N")
@@ -86,9 +95,8 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     _angle_axis(ax, curves[0].angles)
     runaway = any(found and found.value > HEADROOM * top for found in peaks)
     _legend(ax, curves, widest if runaway else None)
-    marks = [(found, curve) for found, curve in zip(peaks, curves, strict=True) if found]
-    for found_peak, curve in sorted(marks, key=lambda mark: -mark[0].value):  # labels then stand in the order of the dots
-        _mark(ax, found_peak, units, curve, signals.symbol(curve.name) if len(wanted) > 1 else "")
+    marks = [Mark(found, curve, curve.said) for found, curve in zip(peaks, curves, strict=True) if found]
+    _mark(ax, marks, units)
     return ax
 
 
@@ -123,7 +131,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     extremes = [(curve, _extremes(curve)) for curve in curves]
     every = [found for _, pair in extremes for found in pair.values()]
     size = signals.scale(np.concatenate([curve.values for curve in curves]), every)
-    ax = _axes(ax)
+    ax = axes_or_new(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
     _draw(ax, curves)
     _span(ax, every, size)
@@ -132,9 +140,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _angle_axis(ax, curves[0].angles)
     if len(curves) > 1:
         _legend(ax, curves, widest if any(abs(found.value) > size for found in every) else None)
-    for curve, pair in extremes:
-        for said, found in pair.items():
-            _mark(ax, found, units, curve, said)
+    _mark(ax, [Mark(found, curve, said) for curve, pair in extremes for said, found in pair.items()], units)
     return ax
 
 
@@ -207,23 +213,15 @@ def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
     for name, signal in found.items():
         for design, values in signals.designs(signal).items():
             color, dashes = STYLES[len(curves) % len(STYLES)]
-            text = design or f"{signals.symbol(name)} ({signals.PIN_OF.get(name, "")})"
+            text = design or f"{signals.symbol(name)} ({signals.PIN_OF.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
-            curves.append(Curve(name, text, *signals.revolution(ds, values), style))
+            said = signals.symbol(name) if len(found) > 1 else ""
+            curves.append(Curve(name, text, *signals.revolution(ds, values), style, said))
     return curves
 
 
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt
-
-    return plt.subplots(layout="constrained")[1]
-
-
 def _draw(ax: Axes, curves: Sequence[Curve]) -> None:
-    ax.grid(color=SHADE, linewidth=0.6, zorder=0.5)
-    ax.set_axisbelow(True)
+    grid(ax)
     for curve in curves:
         ax.plot(curve.angles, curve.values, label=curve.text, **curve.style)
 
@@ -285,17 +283,30 @@ def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None) -> None:
         ax.legend(loc="lower center", ncols=1, frameon=False, **place, **compact)
 
 
-def _mark(ax: Axes, found: signals.Peak, units: str, curve: Curve, said: str) -> None:
-    """A dot on a peak with its value and angle; an arrowhead at the edge for one that is off the scale."""
+def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
+    """A dot on each peak with its value and angle; an arrowhead at the edge for one that is off the scale.
+
+    Peaks that lie close together, as those of two pins of one link often do, share a label with a line for each.
+    """
     from linksweep.surface.labels import label
 
-    low, high = ax.get_ylim()
-    text = f"{said} {signals.number(found.value)} {units} at {signals.angle_text(found.angle)}".strip()
-    if low <= found.value <= high:
-        y, marker = found.value, "o"
-    else:
-        y, marker = (high, "^") if found.value > high else (low, "v")
-        text = text.replace(" at ", "\nat ") + ", off scale"
-    color = curve.style["color"]
-    ax.plot([found.angle], [y], marker, color=color, markersize=4.5, clip_on=False, label=f"_peak {curve.name}")
-    label(ax, found.angle, y, text, color)
+    limits = ax.get_ylim()
+    reach = (0.06 * np.ptp(ax.get_xlim()), 0.15 * np.ptp(limits))
+    groups: list[list[tuple[float, float, Mark]]] = []
+    for mark in sorted(marks, key=lambda mark: -mark.peak.value):
+        x, y = mark.peak.angle, float(np.clip(mark.peak.value, *limits))
+        edge = "^" if mark.peak.value > y else "v"
+        dot = {"color": mark.curve.style["color"], "markersize": 4.5, "clip_on": False}
+        ax.plot([x], [y], edge if y != mark.peak.value else "o", label=f"_peak {mark.curve.name}", **dot)
+        near = (g for g in groups if abs(g[-1][0] - x) < reach[0] and abs(g[-1][1] - y) < reach[1])
+        group = next(near, None)
+        groups.append([(x, y, mark)]) if group is None else group.append((x, y, mark))
+    for group in groups:
+        x, y, first = group[0]
+        heading = [] if y == first.peak.value else [("off scale:", GREY)]
+        label(ax, x, y, *heading, *((_said(mark, units), mark.curve.style["color"]) for *_, mark in group))
+
+
+def _said(mark: Mark, units: str) -> str:
+    text = f"{mark.said} {signals.number(mark.peak.value)} {units} at {signals.angle_text(mark.peak.angle)}"
+    return text.strip()

@@ -78,15 +78,10 @@ def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
 
 def _remarks(found: xr.Dataset) -> list[str]:
     status = np.asarray(found.status.values).reshape(-1)
-    said = []
-    if (status == 1).any():
-        said.append(
-            "It cannot be assembled at every angle: peaks are those of the angles at which it can (linksweep check)."
-            if status.size == 1
-            else f"{int((status == 1).sum())} of {status.size} designs cannot be assembled at every angle (linksweep check)."
-        )
-    if (status == 2).any():
-        said.append(f"{int((status == 2).sum())} of {status.size} designs cannot be assembled at any angle.")
+    partly, never = int((status == 1).sum()), int((status == 2).sum())
+    who = "It" if status.size == 1 else f"{partly} of {status.size} designs"
+    said = [f"{who} cannot be assembled at every angle: peaks are those of the angles at which it can."] * bool(partly)
+    said += [f"{never} of {status.size} designs cannot be assembled at any angle."] * bool(never)
     return ["", *said] if said else []
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.four_bar import LINKS, PINS
+from linksweep.mechanisms.four_bar import PINS
+from linksweep.scene.scene import Scene
+from linksweep.surface.storage import scene_of
 
 INDEX = "theta2"
 PIN_OF = {f"F{i}{j}": pin for pin, pair in PINS.items() for i, j in (pair, pair[::-1])}
@@ -33,6 +36,14 @@ class Peak(NamedTuple):
     beside_gap: bool
 
 
+def scene_of_design(ds: xr.Dataset) -> Scene:
+    """The scene of a Dataset from which one branch has been chosen, or of any other."""
+    scene = scene_of(ds)
+    if scene.mechanism.branch == "both" and "branch" in ds.coords and not ds["branch"].dims:
+        return replace(scene, mechanism=replace(scene.mechanism, branch=str(ds["branch"].item())))
+    return scene
+
+
 def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Components x and y of a pin force; of F23 as well where there is only F32."""
     _known_pin(pin)
@@ -40,9 +51,7 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     for name, sign in ((pin, 1.0), (back, -1.0)):
         if f"{name}x" in ds and f"{name}y" in ds:
             return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
-    raise ValueError(
-        f"the Dataset has no {pin}x and {pin}y: sweep with outputs=[..., {pin + 'x'!r}, {pin + 'y'!r}]"
-    )
+    raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with outputs=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
 
 
 def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
@@ -171,7 +180,11 @@ def number(value: float) -> str:
     """Four significant digits, as one writes them."""
     if value and not 1e-3 <= abs(value) < 1e7:
         return f"{value:.3e}".replace("-", "−")
-    return np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="-").replace("-", "−")
+    return (
+        np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
+        .rstrip(".")
+        .replace("-", "−")
+    )
 
 
 def angle_text(angle: float) -> str:
@@ -181,7 +194,3 @@ def angle_text(angle: float) -> str:
 def symbol(name: str) -> str:
     """F32 as one writes it."""
     return f"${name[0]}_{{{name[1:]}}}$"
-
-
-def link_symbol(k: int) -> str:
-    return f"link {k} ({LINKS[k]})"

@@ -81,13 +81,14 @@ def load_scene(path: str | os.PathLike) -> Scene:
 
     Returns
     -------
-    Scene that gives equal arrays when swept again at the same angles. Functions of theta2 come back as DataArrays over the angles
-    at which they were sampled.
+    Scene that gives equal arrays when swept again at the same angles. Functions of theta2 come back as DataArrays
+    over the angles at which they were sampled.
 
     Raises
     ------
     ValueError
-        Naming the file and what is wrong: all errors of a scene file at once; a file that is no NetCDF or holds no scene.
+        Naming the file and what is wrong: all errors of a scene file at once; a file that is no NetCDF or holds no
+        scene.
 
     Examples
     --------
@@ -110,6 +111,8 @@ def load_scene(path: str | os.PathLike) -> Scene:
 def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
     """The scene that a Dataset of linksweep came from. Raises ValueError where it holds none."""
     if "scene" not in ds.attrs:
-        raise ValueError(f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes")
+        raise ValueError(
+            f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes"
+        )
     arrays = {str(path): ds[path] for path in ds.variables}
     return parse_scene(ds.attrs["scene"], name, {path: array.reset_coords(drop=True) for path, array in arrays.items()})
