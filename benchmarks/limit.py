@@ -15,7 +15,8 @@ from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
-from peers import Array, Design, grid
+
+from .peers import Array, Design, grid
 
 # sqrt is vectorised only with -fno-math-errno; -fno-trapping-math makes the comparisons of peaks cheaper.
 # Neither changes a value. -ffast-math would (it reorders sums): left out. a * b + c is contracted by default.
@@ -47,9 +48,7 @@ def bind_store(lib: ctypes.CDLL, design: Design, theta2: Array) -> tuple[Callabl
     return _bind(lib.store, [len(theta2)], [*_tables(theta2), _pack(design), out]), out
 
 
-def bind_peaks(
-    lib: ctypes.CDLL, designs: Design, n_angles: int
-) -> tuple[Callable[[], object], tuple[Array, Array]]:
+def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callable[[], object], tuple[Array, Array]]:
     """A call that computes the grid peaks of many designs, and the two arrays (n_designs, 6) it fills.
 
     Columns: largest F12, F32, F43, F14, largest T12, smallest T12; the second array holds the samples

@@ -75,12 +75,18 @@ def _position(q: Design, t2: Array) -> tuple[Array, Array]:
     return t3, t4
 
 
+def _rates(q: Design, t2: Array, t3: Array, t4: Array) -> tuple[Array, Array]:
+    """omega3 and omega4 [rad/s]."""
+    omega3 = q.a * q.omega2 * np.sin(t4 - t2) / (q.b * np.sin(t3 - t4))
+    omega4 = q.a * q.omega2 * np.sin(t2 - t3) / (q.c * np.sin(t4 - t3))
+    return omega3, omega4
+
+
 def _system(q: Design, t2: Array) -> tuple[Array, Array]:
     """Document 2 from theta2 [rad] to the matrix (..., 9, 9) and right-hand side (..., 9)."""
     t3, t4 = _position(q, t2)
     w2, al2 = q.omega2, q.alpha2
-    w3 = q.a * w2 * np.sin(t4 - t2) / (q.b * np.sin(t3 - t4))
-    w4 = q.a * w2 * np.sin(t2 - t3) / (q.c * np.sin(t4 - t3))
+    w3, w4 = _rates(q, t2, t3, t4)
 
     (ax, ay), (bx, by), (cx, cy) = _polar(q.a, t2), _polar(q.b, t3), _polar(q.c, t4)
     C = al2 * ay + w2**2 * ax + w3**2 * bx - w4**2 * cx
@@ -96,7 +102,8 @@ def _system(q: Design, t2: Array) -> tuple[Array, Array]:
     a3y = al2 * ax - w2**2 * ay - al3 * r23x + w3**2 * r23y
     a4x, a4y = al4 * r14y + w4**2 * r14x, -al4 * r14x + w4**2 * r14y
 
-    matrix = np.empty((*t3.shape, 9, 9))
+    shape = np.broadcast_shapes(np.shape(t2), *map(np.shape, vars(q).values()))
+    matrix = np.empty((*shape, 9, 9))
     matrix[...] = FORCE_BALANCE
     matrix[..., 2, 0], matrix[..., 2, 1] = -r12y, r12x
     matrix[..., 2, 2], matrix[..., 2, 3] = -(ay + r12y), ax + r12x
@@ -104,11 +111,17 @@ def _system(q: Design, t2: Array) -> tuple[Array, Array]:
     matrix[..., 5, 4], matrix[..., 5, 5] = -(by + r23y), bx + r23x
     matrix[..., 8, 4], matrix[..., 8, 5] = cy + r14y, -(cx + r14x)
     matrix[..., 8, 6], matrix[..., 8, 7] = -r14y, r14x
-    rhs = np.empty((*t3.shape, 9))
+    rhs = np.empty((*shape, 9))
     rhs[..., 0], rhs[..., 1], rhs[..., 2] = q.m2 * (a2x - q.gx), q.m2 * (a2y - q.gy), q.I2 * al2
     rhs[..., 3], rhs[..., 4], rhs[..., 5] = q.m3 * (a3x - q.gx), q.m3 * (a3y - q.gy), q.I3 * al3
     rhs[..., 6], rhs[..., 7], rhs[..., 8] = q.m4 * (a4x - q.gx), q.m4 * (a4y - q.gy), q.I4 * al4
     return matrix, rhs
+
+
+def numpy_rates(design: Design, theta2: Array) -> Array:
+    """omega3 and omega4 [rad/s] (2, n) at theta2 [degree]."""
+    t2 = np.radians(theta2)
+    return np.stack(_rates(design, t2, *_position(design, t2)))
 
 
 def numpy_lapack(design: Design, theta2: Array) -> Array:
@@ -133,6 +146,27 @@ def _grid_peaks(nine: Array) -> tuple[Array, Array]:
     at = np.stack([*magnitudes.argmax(axis=-1), nine[8].argmax(axis=-1), nine[8].argmin(axis=-1)], axis=-1)
     signals = np.stack([*magnitudes, nine[8], nine[8]], axis=-2)
     return np.take_along_axis(signals, at[..., None], axis=-1)[..., 0], at
+
+
+def parabola_peaks(designs: Design, n_angles: int, chunk: int = 10) -> Array:
+    """The same peaks, each improved by the parabola through it and its neighbours; forces as squares meanwhile."""
+    theta2 = grid(n_angles)
+    chunks = (designs[i : i + chunk] for i in range(0, len(designs.a), chunk))
+    return np.concatenate([_vertices(numpy_lapack(part, theta2)) for part in chunks])
+
+
+def _vertices(nine: Array) -> Array:
+    squares = nine[0:8:2] ** 2 + nine[1:8:2] ** 2
+    signals = np.stack([*squares, nine[8], -nine[8]], axis=-2)
+    at = signals.argmax(axis=-1)[..., None]
+    left, top, right = (np.take_along_axis(np.roll(signals, k, axis=-1), at, axis=-1)[..., 0] for k in (1, 0, -1))
+    top = top + (right - left) ** 2 / (8 * (2 * top - left - right))
+    return np.concatenate([np.sqrt(top[..., :4]), top[..., 4:5], -top[..., 5:]], axis=-1)
+
+
+def difference(found: Array, expected: Array) -> float:
+    """Largest difference of two arrays (..., angles), relative to the largest of its own row."""
+    return float(np.max(np.abs(found - expected).max(axis=-1) / np.abs(expected).max(axis=-1)))
 
 
 def numpy_closed_form(design: Design, theta2: Array) -> Array:
@@ -165,9 +199,7 @@ def numpy_closed_form(design: Design, theta2: Array) -> Array:
     return np.stack([-F32x - Q2x, -F32y - Q2y, F32x, F32y, F43x, F43y, F43x - Q4x, F43y - Q4y, T12])
 
 
-def _effective(
-    m, inertia, distance, delta, length, ex, ey, w_squared, alpha, gx, gy
-) -> tuple[Array, Array, Array]:
+def _effective(m, inertia, distance, delta, length, ex, ey, w_squared, alpha, gx, gy) -> tuple[Array, Array, Array]:
     """d'Alembert force of a link with pin vector (ex, ey), and its moment about the first pin."""
     k, j = _polar(m * distance / length, np.radians(delta))
     hx, hy = k * ex - j * ey, k * ey + j * ex

@@ -9,6 +9,8 @@ from linksweep.results.system import system
 from linksweep.scene.examples import example
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
+from linksweep.surface import accessor as _accessor  # noqa: F401  (registers Dataset.linksweep)
+from linksweep.surface import plot
 from linksweep.surface.storage import load_scene, save
 
 __all__ = [
@@ -22,6 +24,7 @@ __all__ = [
     "example",
     "load_scene",
     "peaks",
+    "plot",
     "save",
     "sweep",
     "system",

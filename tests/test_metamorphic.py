@@ -5,7 +5,7 @@ long rocker becomes, and the drive that takes over another's torque.
 """
 
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ from oracle import (
 
 import linksweep as ls
 
-SEEDS = [pytest.param(*case, id="-".join(map(str, case))) for case in product(BRANCHES, LINKS, range(4))]
+SEEDS = [pytest.param(*case, id="-".join(map(str, case))) for case in product(BRANCHES, LINKS, range(3))]
 random_scenes = pytest.mark.parametrize(("branch", "drive", "seed"), SEEDS)
 ANGLES = ("theta3", "theta4")
 PINS = ("F12", "F32", "F43", "F14")
@@ -42,7 +42,7 @@ EVERYTHING = (*ANGLES, *RATES, "transmission_angle", *COMPONENTS, *PINS, "power"
 
 def random_case(branch: str, drive: str, seed: int, **given) -> tuple[FourBarData, np.ndarray]:
     """A scene and five crank angles away from its toggles."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng([seed, BRANCHES.index(branch), LINKS.index(drive)])
     data = random_data(rng, branch=branch, drive=drive, **given)
     return data, np.array([random_theta2(rng, data) for _ in range(5)])
 
@@ -262,7 +262,7 @@ def virtual_work(data: FourBarData, theta2: float):
 @random_scenes
 def test_a_machine_at_rest_is_balanced_by_virtual_work(branch, drive, seed):
     """Only positions enter the expected torque."""
-    moving, theta2 = random_case(branch, drive, seed)
+    moving, theta2 = random_case(branch, drive, seed, loads=2)
     data = replace(moving, omega2=0.0, alpha2=0.0)
     rest = swept(data, theta2[:2])
     for name in (*RATES, "aG2x", "aG3y", "aG4x", "power"):
@@ -315,7 +315,7 @@ def test_parallelogram_turns_as_one(branch, first, ground_angle):
     same = {"theta3": ground_angle, "omega3": 0.0, "omega4": 3.0, "alpha3": 0.0, "alpha4": -4.0}
     same["theta4"] = (theta2 + 180.0) % 360.0 - 180.0
     for name, value in same.items():
-        np.testing.assert_allclose(cycle[name], np.broadcast_to(value, 9), rtol=0.0, atol=1e-12, err_msg=name)
+        np.testing.assert_allclose(cycle[name], np.broadcast_to(value, 9), rtol=0.0, atol=1e-11, err_msg=name)
 
 
 @pytest.mark.parametrize("ground_angle", [0.0, 10.0, 33.3])
@@ -441,7 +441,7 @@ def test_a_long_rocker_is_a_slider():
     for name, value in expected.items():
         errors = [np.abs(found[name] - value).max() for found in off]
         assert errors[-1] < 1e-4 * max(1.0, abs(value).max()), name
-        for before, after in zip(errors, errors[1:], strict=False):
+        for before, after in pairwise(errors):
             assert 9.0 < before / after < 11.0, (name, errors)
 
 
@@ -478,7 +478,8 @@ def test_a_known_torque_leaves_nothing_for_another_drive(driver, other, seed):
     driven = ls.sweep(scene, theta2)
     idle = ls.sweep(replace(scene, drive=other, loads=(*scene.loads, as_load(driver, driven))), theta2)
     size = largest_force(driven)
-    assert theta2.size and not idle.status.any()
+    assert theta2.size == 5
+    assert not idle.status.any()
     for name in (name for name in COMPONENTS if name.startswith("F")):
         assert abs(idle[name] - driven[name]).max() < 1e-11 * size, name
     assert abs(idle[f"T1{NUMBER[other]}"]).max() < 1e-11 * size * longest_link(data)
@@ -494,4 +495,5 @@ def test_two_drives_share_the_work(driver, other):
     found = ls.sweep(replace(scene, loads=(*scene.loads, ls.Load(other, torque=brake))), theta2)
     back = ls.sweep(replace(scene, drive=other, loads=(*scene.loads, as_load(driver, found))), theta2)
     error = abs(back[f"T1{NUMBER[other]}"] - brake).max()
-    assert theta2.size and error < 1e-11 * largest_force(found) * longest_link(data)
+    assert theta2.size == 5
+    assert error < 1e-11 * largest_force(found) * longest_link(data)

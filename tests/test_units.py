@@ -7,7 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from linksweep.scene.units import KINDS, accepted_unit, design_axis, quantity
+from linksweep.scene.axis import design_axis
+from linksweep.scene.units import KINDS, accepted_unit, quantity
 
 # International definitions, all exact: the inch, the pound, standard gravity.
 INCH, FOOT, POUND, G0 = Fraction("0.0254"), Fraction("0.3048"), Fraction("0.45359237"), Fraction("9.80665")

@@ -6,7 +6,7 @@ is shared by deeper loops is kept in a row of `scratch` and read back from cache
 plain inner loop over contiguous rows: that is what vectorises.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
-           block, block_at, single, single_at, scratch, angles, period, lanes)
+           block, block_at, single, single_at, scratch, angles, period, work)
 
 `parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each
 input starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost
@@ -27,7 +27,7 @@ from linksweep.engine.trace import Node
 
 ARGUMENTS = (
     "first, last, samples, sizes, parameters, parameter_at, profiles, profile_at, "
-    "block, block_at, single, single_at, scratch, angles, period, lanes"
+    "block, block_at, single, single_at, scratch, angles, period, work"
 )
 INFIX = {"+", "-", "*", "/", "<"}
 
@@ -176,13 +176,12 @@ class _Writer:
             if self.level(node) != level or node.operator == "constant":
                 continue
             if self.per_sample(node):
-                call = f"{reduction.kind}({self._row(node)}, angles, period, lanes)"
+                call = f"{reduction.kind}({self._row(node)}, angles, period, work)"
             else:
                 call = f"({name(node)}, angles[0])"
             self.write(depth, f"value, at = {call}")
-            place = self._at("single", 2 * k, node)
-            self.write(depth, f"single[{place}] = value")
-            self.write(depth, f"single[{place.replace(f'[{2 * k}]', f'[{2 * k + 1}]')}] = at")
+            self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
+            self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
 
 
 def name(node: Node) -> str:

@@ -3,33 +3,32 @@ stands."""
 
 import math
 
-LANES = 64
+WORK = 80
+"""Numbers of working memory that a reduction may use: 64 lanes and 16 to fold them into."""
 
 
-def largest(row, angles, period, lanes):
+def largest(row, angles, period, work):
     """Largest sample of a row and its angle, improved by the parabola through it and its two neighbours.
 
     NaN samples are passed over; all NaN gives NaN. `period` joins the row's ends [as `angles`]; 0 leaves them apart.
-    `lanes` (64 numbers) keeps the running maxima of every 64th sample, so that the search compiles to vector
-    instructions.
+    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions, and the
+    winning lane says where to look for its sample.
     """
     n = len(row)
     for k in range(64):
-        lanes[k] = -math.inf
+        work[k] = -math.inf
     whole = n - n % 64
     for start in range(0, whole, 64):
         for k in range(64):
             value = row[start + k]
-            lanes[k] = value if value > lanes[k] else lanes[k]
+            work[k] = value if value > work[k] else work[k]
     for k in range(n - whole):
         value = row[whole + k]
-        lanes[k] = value if value > lanes[k] else lanes[k]
-    peak = -math.inf
-    for k in range(64):
-        peak = lanes[k] if lanes[k] > peak else peak
+        work[k] = value if value > work[k] else work[k]
+    peak = largest_lane(work)
     at = n
     for k in range(64):
-        if lanes[k] == peak:
+        if work[k] == peak:
             j = k
             while j < at and row[j] != peak:
                 j += 64
@@ -37,6 +36,20 @@ def largest(row, angles, period, lanes):
     if at >= n or peak == -math.inf:
         return math.nan, math.nan
     return parabola_peak(row, angles, period, at)
+
+
+def largest_lane(work):
+    """The largest of the 64 lanes, by folding them into 16."""
+    for k in range(16):
+        work[64 + k] = work[k]
+    for start in range(16, 64, 16):
+        for k in range(16):
+            value = work[start + k]
+            work[64 + k] = value if value > work[64 + k] else work[64 + k]
+    peak = -math.inf
+    for k in range(64, 80):
+        peak = work[k] if work[k] > peak else peak
+    return peak
 
 
 def parabola_peak(row, angles, period, at):
@@ -62,7 +75,7 @@ def parabola_peak(row, angles, period, at):
     return y + 0.5 * slope * shift, angle
 
 
-def mean(row, angles, period, lanes):
+def mean(row, angles, period, work):
     """Mean of the samples that are not NaN, and how many they are."""
     total, count = 0.0, 0
     for j in range(len(row)):
@@ -72,7 +85,7 @@ def mean(row, angles, period, lanes):
     return (total / count if count else math.nan), float(count)
 
 
-def mean_square(row, angles, period, lanes):
+def mean_square(row, angles, period, work):
     """Mean of the squares of the samples that are not NaN, and how many they are."""
     total, count = 0.0, 0
     for j in range(len(row)):

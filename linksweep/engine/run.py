@@ -208,11 +208,11 @@ def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[
     if grid.dim not in field.dims:
         return field, Field(field.dims, np.full(field.values.shape, grid.angles[0]))
     dims, shape = field.dims[:-1], field.values.shape[:-1]
-    lanes = np.empty(reduce.LANES)
+    working = np.empty(reduce.WORK)
     function = getattr(reduce, reduction.kind)
     rows = field.values.reshape(-1, len(grid.angles)).tolist()
     angles = grid.angles.tolist()
-    both = np.array([function(row, angles, grid.period, lanes) for row in rows])
+    both = np.array([function(row, angles, grid.period, working) for row in rows])
     return Field(dims, both[:, 0].reshape(shape)), Field(dims, both[:, 1].reshape(shape))
 
 
@@ -237,10 +237,10 @@ def _execute(
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
-        scratch, lanes = np.empty((fused.scratch_rows, samples)), np.empty(reduce.LANES)
+        scratch, working = np.empty((fused.scratch_rows, samples)), np.empty(reduce.WORK)
         kernel(
             first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
-            block, block_at, single, single_at, scratch, grid.angles, grid.period, lanes,
+            block, block_at, single, single_at, scratch, grid.angles, grid.period, working,
         )  # fmt: skip
 
     length = int(layout.sizes[0]) if plan.loops else samples

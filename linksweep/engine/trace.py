@@ -8,7 +8,7 @@ evaluates the graph.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 COMMUTATIVE = {"+", "*"}
@@ -79,6 +79,11 @@ class Node:
         return self.operator == "constant" and self.value == value
 
 
+def squared(name: str) -> str:
+    """Name of the input that holds the square of another, where a grid has tabulated it."""
+    return f"{name}_squared"
+
+
 class Key(NamedTuple):
     operator: str
     operands: tuple[int, ...]
@@ -88,7 +93,8 @@ class Key(NamedTuple):
 class Graph:
     """Nodes in the order of their making, so that operands come before what uses them."""
 
-    def __init__(self) -> None:
+    def __init__(self, tabulated: Iterable[str] = ()) -> None:
+        self.tabulated = frozenset(tabulated)
         self.nodes: list[Node] = []
         self._known: dict[Key, Node] = {}
 
@@ -149,6 +155,8 @@ class Graph:
             return self.negate(self.multiply(x.operands[0], y))
         if y.operator == "negate":
             return self.negate(self.multiply(x, y.operands[0]))
+        if x is y and x.operator == "input" and squared(x.value) in self.tabulated:
+            return self._make("input", (), x.dims, squared(x.value))
         return self.operation("*", x, y)
 
     def divide(self, x: Node, y: Node) -> Node:

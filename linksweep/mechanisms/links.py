@@ -5,6 +5,7 @@ Mass and moment of inertia of a bar and of a disk are document 2's (ME 470): m(L
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -122,7 +123,7 @@ class Disk:
 
     @property
     def mass(self) -> Number:
-        return self.density * (3.141592653589793 * self.radius * self.radius) * self.thickness
+        return self.density * (math.pi * self.radius * self.radius) * self.thickness
 
     @property
     def inertia(self) -> Number:

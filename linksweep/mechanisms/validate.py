@@ -13,14 +13,15 @@ import numpy as np
 UNITS = {
     "length": "m",
     "mass": "kg",
-    "inertia": "kg m2",
+    "inertia": "kg m^2",
     "angle": "degree",
     "angular_velocity": "rad/s",
-    "angular_acceleration": "rad/s2",
+    "angular_acceleration": "rad/s^2",
     "force": "N",
     "torque": "N m",
-    "acceleration": "m/s2",
-    "density": "kg/m3",
+    "acceleration": "m/s^2",
+    "density": "kg/m^3",
+    "dimensionless": "1",
 }
 """Unit in which each kind of number is given and stored."""
 

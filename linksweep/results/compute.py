@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from linksweep.engine.plan import plan
@@ -9,11 +11,19 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.scene.scene import Scene
 
 
-def compute(scene: Scene, grid: Grid, names: tuple[str, ...], threads: int | None = None) -> dict[str, Field]:
-    """The named quantities of a scene that has been brought to the grid's angles."""
+def compute(
+    scene: Scene,
+    grid: Grid,
+    names: tuple[str, ...],
+    threads: int | None = None,
+    given: Mapping[str, Field] | None = None,
+) -> dict[str, Field]:
+    """The named quantities of a scene that has been brought to the grid's angles; what is `given` is not computed."""
+    given = given or {}
     inputs = scene.inputs
-    request = plan(scene.table, names, inputs.forms)
-    return evaluate(request, inputs.fields, grid, inputs.sizes, threads)
+    forms = (*inputs.forms, *((name, field.dims) for name, field in given.items()))
+    request = plan(scene.table, names, forms)
+    return evaluate(request, {**inputs.fields, **given}, grid, inputs.sizes, threads)
 
 
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:

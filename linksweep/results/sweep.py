@@ -62,19 +62,15 @@ def sweep(
     refuse(choice_problems("solver", solver, SOLVERS))
     grid = crank_grid(theta2, scene.mechanism.period)
     names = _names(scene, outputs)
-    dense = [
-        name
-        for name in names
-        if name == "cond" or (solver == "dense" and name in scene.mechanism.unknowns(scene.drive))
-    ]
     sampled = scene.at(grid)
-    fields = compute(sampled, grid, tuple(name for name in names if name not in dense), threads)
     status = sample_status(sampled, grid, threads)
-    if dense:
-        fields |= dense_solution(sampled, grid, status, threads)
+    given = {}
+    if solver == "dense" or "cond" in names:
+        solution = dense_solution(sampled, grid, status, threads)
+        given = solution if solver == "dense" else {"cond": solution["cond"]}
+    fields = compute(sampled, grid, names, threads, given)
     blank(fields, status)
-    found = {name: fields[name] for name in names}
-    return described(scene, sampled, grid, found, status, _command(theta2, outputs, solver))
+    return described(scene, sampled, grid, fields, status, _command(theta2, outputs, solver))
 
 
 def _names(scene: Scene, outputs: Iterable[str] | None) -> tuple[str, ...]:

@@ -33,13 +33,9 @@ mean "length"?``. Paths are those of the constructors; lists count from one, as 
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import re
-import tomllib
-from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -48,14 +44,11 @@ import xarray as xr
 from linksweep.mechanisms.four_bar import FourBar
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.mechanisms.validate import choice_problems, did_you_mean
+from linksweep.scene.axis import design_axis
+from linksweep.scene.file_log import Log, Where, document, path_of
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
-from linksweep.scene.units import KINDS, design_axis, quantity, shown
-
-Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
-
-# Stands in for a value with an error, so that the constructors can still look at the others.
-_UNREAD: Any = "(not read)"
+from linksweep.scene.units import KINDS, quantity, shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +57,7 @@ class Field:
 
     example: str = '"..."'
 
-    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
         return raw
 
     def advice(self, where: Where) -> str:
@@ -77,7 +70,7 @@ class Number(Field):
 
     kind: str
 
-    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
         if isinstance(raw, list):
             axis = f'{{dim = "{where[-1]}", values = [...]}}'
             return log.problem(where, f" = {shown(raw)}: must be one number; for a design axis write {axis}")
@@ -101,7 +94,7 @@ class Pair(Field):
     first: Number
     second: Number
 
-    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
         if not isinstance(raw, list) or len(raw) != 2:
             return raw  # the constructor says what the two are
         return self.first.read(raw[0], (*where, 0), log), self.second.read(raw[1], (*where, 1), log)
@@ -114,7 +107,7 @@ class Table(Field):
     classes: dict[str, type]
     default: str | None = None
 
-    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
         if not isinstance(raw, dict):
             return log.problem(where, f" = {shown(raw)}: {self.advice(where)}")
         words = {key: value for key, value in raw.items() if key != "type"}
@@ -136,7 +129,7 @@ class Tables(Field):
 
     cls: type
 
-    def read(self, raw: Any, where: Where, log: _Log) -> Any:
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
         if not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
             return log.problem(where, f": must be a list of tables; write [[{where[-1]}]] above each")
         return tuple(_built(self.cls, item, (*where, i), log) for i, item in enumerate(raw))
@@ -202,9 +195,10 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
     ValueError
         As `read_scene`.
     """
-    document = _document(text, name)
-    log = _Log(document, arrays or {})
-    scene: Scene = _built(Scene, document, (), log)
+    raw = document(text, name)
+    machine = {key for kind in _MECHANISMS.classes.values() for key in SCHEMA[kind]}
+    log = Log(raw, arrays or {}, SCHEMA[Scene], machine)
+    scene: Scene = _built(Scene, raw, (), log)
     if log.problems:
         raise ValueError(log.report(text, name))
     return scene
@@ -231,12 +225,14 @@ def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
     return re.sub(r"\[\n([-+.\w,\s]*),\n *\]", lambda found: f"[{' '.join(found[1].split())}]", text)
 
 
-def _built(cls: Any, raw: dict[str, Any], where: Where, log: _Log) -> Any:
+def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
     """Read the fields of a table and construct its class."""
     schema = SCHEMA[cls]
-    log.unknown(raw, cls, where)
+    for key in [key for key in raw if key not in schema]:
+        log.unknown(key, schema, cls.__name__, where)
     words = {key: schema[key].read(raw[key], (*where, key), log) for key in schema if key in raw}
-    words |= {key: log.missing((*where, key), schema[key]) for key in _required(cls) if key not in raw}
+    for key in [key for key in _required(cls) if key not in raw]:
+        words[key] = log.missing((*where, key), schema[key].advice((*where, key)))
     try:
         return cls(**words)
     except ValueError as error:
@@ -262,10 +258,10 @@ def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
     if isinstance(value, (tuple, list)):
         return [_written(item, (*where, i), elsewhere) for i, item in enumerate(value)]
     if isinstance(value, xr.DataArray):
-        return _array_written(value, _path(where), elsewhere)
+        return _array_written(value, path_of(where), elsewhere)
     if callable(value):
         advice = "sample it first, as a DataArray over theta2"
-        raise ValueError(f"{_path(where)} is a function of theta2 and cannot be written to a file: {advice}")
+        raise ValueError(f"{path_of(where)} is a function of theta2 and cannot be written to a file: {advice}")
     return value if isinstance(value, str) else float(value)
 
 
@@ -275,123 +271,3 @@ def _array_written(array: xr.DataArray, path: str, elsewhere: Collection[str]) -
     coords = {str(dim): array.coords[dim].values.tolist() for dim in array.dims if dim in array.coords}
     dims = {"dim": array.dims[0]} if array.ndim == 1 else {"dims": list(array.dims)}
     return {**dims, "values": array.values.tolist(), "coords": coords}
-
-
-class _Log:
-    """What is wrong with a file, and where; and what numbers in it refer to."""
-
-    def __init__(self, document: dict[str, Any], arrays: Mapping[str, xr.DataArray]) -> None:
-        named = [str(item) for at, item in _places(document) if "dim" in at[-1:] or "dims" in at[-2:-1]]
-        self.arrays, self.dims = arrays, Counter(named)
-        self.problems: list[tuple[Where, str]] = []
-        self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
-
-    def problem(self, where: Where, text: str) -> Any:
-        self.problems.append((where, _path(where) + text))
-        return _UNREAD
-
-    def missing(self, where: Where, field: Field) -> Any:
-        known = where in self.misplaced
-        return _UNREAD if known else self.problem(where, f": missing; {field.advice(where)}")
-
-    def unknown(self, raw: dict[str, Any], cls: type, where: Where) -> None:
-        """Log the keys that a class does not have: the scene's or the mechanism's, or misspelt."""
-        for key in [key for key in raw if key not in SCHEMA[cls]]:
-            if key in SCHEMA[Scene]:
-                self.misplaced.add((key,))
-                self.problem((*where, key), ": belongs at the top of the file, above the first [table]")
-            elif any(key in SCHEMA[kind] for kind in _MECHANISMS.classes.values()):
-                self.misplaced.add(("mechanism", key))
-                self.problem((*where, key), ": belongs to the mechanism, right below [mechanism]")
-            else:
-                near = difflib.get_close_matches(key, SCHEMA[cls], n=1)
-                self.misplaced |= {(*where, meant) for meant in near}
-                listed = f"; a {cls.__name__} has {', '.join(SCHEMA[cls])}"
-                self.problem((*where, key), f": unknown key{did_you_mean(key, SCHEMA[cls]) or listed}")
-
-    def variable(self, name: Any, where: Where) -> Any:
-        if str(name) in self.arrays:
-            return self.arrays[name]
-        return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
-
-    def refused(self, error: ValueError, where: Where) -> Any:
-        """Log what a constructor says, one problem a line with its path first, but for what was not read."""
-        known = [*self.misplaced, *(place for place, _ in self.problems)]
-        for line in str(error).splitlines():
-            path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
-            keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
-            place = (*where, *keys) if where or {*keys[:1]} <= SCHEMA[Scene].keys() else ("mechanism", *keys)
-            if not any(place[: len(other)] == other[: len(place)] for other in known):
-                self.problem(place, line[len(path) :])
-        return _UNREAD
-
-    def report(self, text: str, name: str) -> str:
-        """Return the problems, one a line, in the order of the file."""
-        lines = _key_lines(text)
-
-        def line(where: Where) -> int:  # what is missing has the line of what it is missing in
-            return lines.get(where) or line(where[:-1])
-
-        placed = sorted(((line(where), problem) for where, problem in self.problems), key=lambda p: p[0])
-        return "\n".join(f"{name}:{number}: {problem}" for number, problem in placed)
-
-
-def _document(text: str, name: str) -> dict[str, Any]:
-    """Parse the TOML; an error says file, line and, for the commonest slip, what to write."""
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        lines = text.rstrip().split("\n")
-        reason, at = str(error).partition(" (at ")[0], re.search(r"at line (\d+)", str(error))
-        number = min(int(at[1]) if at else len(lines), len(lines))
-        bare = re.match(r"\s*([\w.]+)\s*=\s*([-+.]?\d[^#\"\[{]*[^#\"\[{\s])", lines[number - 1])
-        advice = f'; a number with a unit stands in quotes, {bare[1]} = "{bare[2]}"' if bare else ""
-        if bare and "," in bare[2]:
-            advice = "; a number has a decimal point, no comma; a list stands in brackets"
-        raise ValueError(f"{name}:{number}: not TOML: {reason}{advice}") from None
-
-
-def _key_lines(text: str) -> dict[Where, int]:
-    """Find the line of every key: the text is cut into the smallest pieces that are TOML by themselves."""
-    lines: dict[Where, int] = {(): 1}
-    table: Where = ()
-    start, piece = 1, ""
-    for number, line in enumerate(text.split("\n"), 1):
-        piece += line + "\n"
-        try:
-            places = [place for place, _ in _places(tomllib.loads(piece))]
-        except tomllib.TOMLDecodeError:
-            continue  # the value goes on in the next line
-        if piece.lstrip().startswith("["):
-            table, places = _opened(places[-1], start, lines), []
-        for place in places:
-            lines.setdefault((*table, *place), start)
-        start, piece = number + 1, ""
-    return lines
-
-
-def _opened(header: Where, start: int, lines: dict[Where, int]) -> Where:
-    """Note the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
-    table: Where = ()
-    for key, following in zip(header, (*header[1:], ""), strict=True):
-        if key != 0:
-            table = (*table, key)
-            so_far = next(n for n in count() if (*table, n) not in lines)
-            lines.setdefault(table, start)
-            table = (*table, so_far) if following == 0 else (*table, so_far - 1) if so_far else table
-            lines.setdefault(table, start)
-    return table
-
-
-def _places(raw: Any, where: Where = ()) -> Iterator[tuple[Where, Any]]:
-    """Yield the place and value of every key and list item."""
-    items = raw.items() if isinstance(raw, dict) else enumerate(raw) if isinstance(raw, list) else ()
-    for key, item in items:
-        yield (*where, key), item
-        yield from _places(item, (*where, key))
-
-
-def _path(where: Where) -> str:
-    """Return the path as the constructors name it: without "mechanism", lists counted from one."""
-    keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
-    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")

@@ -11,7 +11,7 @@ import numpy as np
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.degrees import cos_sin
 
-NAMES = ("cos2", "sin2", "cos2_half", "sin2_half")
+NAMES = ("cos2", "sin2", "cos2_half", "sin2_half", "cos2_half_squared", "sin2_half_squared")
 
 
 def crank_grid(theta2: Any, period: float) -> Grid:
@@ -42,5 +42,6 @@ def _angles(theta2: Any) -> np.ndarray:
 
 
 def _grid(angles: np.ndarray, period: float) -> Grid:
-    table = np.array([*cos_sin(angles), *cos_sin(0.5 * angles)])
+    half = cos_sin(0.5 * angles)
+    table = np.array([*cos_sin(angles), *half, *(number * number for number in half)])
     return Grid("theta2", angles, period, NAMES, table)

@@ -1,4 +1,4 @@
-"""Numbers as a scene file has them: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``; a design axis of such.
+"""Numbers as a scene file has them: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``.
 
 The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then its
 divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors, ``²``, ``**2`` for ``^2``.
@@ -22,10 +22,7 @@ from functools import cache, lru_cache
 from numbers import Real
 from typing import Any
 
-import numpy as np
-import xarray as xr
-
-from linksweep.mechanisms.validate import did_you_mean
+from linksweep.mechanisms.validate import UNITS, did_you_mean
 
 
 @dataclass(frozen=True)
@@ -39,19 +36,19 @@ class Kind:
 
 _INERTIAS = "kg m^2, kg cm^2, kg mm^2, g cm^2, g mm^2, lb in^2, lb ft^2, slug ft^2, blob in^2, lbf in s^2, lbf ft s^2"
 KINDS = {
-    name: Kind(unit, example, tuple(spellings.split(", ")))
-    for name, unit, example, spellings in (
-        ("length", "m", "8 cm", "m, mm, cm, km, um, in, ft"),
-        ("mass", "kg", "0.7 kg", "kg, g, tonne, lb, oz, slug, blob, lbf s^2/ft, lbf s^2/in"),
-        ("inertia", "kg m^2", "2.8e-3 kg m^2", _INERTIAS),
-        ("angle", "deg", "45 deg", "deg, rad, rev"),
-        ("angular_velocity", "rad/s", "1500 rpm", "rad/s, deg/s, rpm, rev/min, rev/s"),
-        ("angular_acceleration", "rad/s^2", "100 rad/s^2", "rad/s^2, deg/s^2, rev/s^2, rpm/s"),
-        ("force", "N", "80 N", "N, kN, MN, mN, lbf, kgf"),
-        ("torque", "N m", "12 N m", "N m, N cm, N mm, kN m, lbf in, lbf ft, kgf m, kgf cm"),
-        ("acceleration", "m/s^2", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
-        ("density", "kg/m^3", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
-        ("dimensionless", "1", "10 %", "%"),
+    name: Kind(UNITS[name], example, tuple(spellings.split(", ")))
+    for name, example, spellings in (
+        ("length", "8 cm", "m, mm, cm, km, um, in, ft"),
+        ("mass", "0.7 kg", "kg, g, tonne, lb, oz, slug, blob, lbf s^2/ft, lbf s^2/in"),
+        ("inertia", "2.8e-3 kg m^2", _INERTIAS),
+        ("angle", "45 deg", "deg, rad, rev"),
+        ("angular_velocity", "1500 rpm", "rad/s, deg/s, rpm, rev/min, rev/s"),
+        ("angular_acceleration", "100 rad/s^2", "rad/s^2, deg/s^2, rev/s^2, rpm/s"),
+        ("force", "80 N", "N, kN, MN, mN, lbf, kgf"),
+        ("torque", "12 N m", "N m, N cm, N mm, kN m, lbf in, lbf ft, kgf m, kgf cm"),
+        ("acceleration", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
+        ("density", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
+        ("dimensionless", "10 %", "%"),
     )
 }
 
@@ -61,14 +58,13 @@ _NOT_IN_PINT = ("blob = lbf * s^2 / in", "rev = revolution")
 # What is often written for a unit of another kind, or of none: "ft lb" for a torque, "1/s" for rad/s.
 _MEANT = {r"\blbm?\b": "lbf", r"\bHz\b": "rev/s", r"^1/s\b": "rad/s", r"^[gG]$": "g0"}
 
-_AXIS_KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2")
-
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _FRACTION = re.compile(r"([+-]?)(?:([0-9]+)[\s-]+)?([0-9]+)\s*/\s*0*([1-9][0-9]*)(.*)", re.DOTALL)
 _COMMAS = re.compile(r"([+-]?[0-9][0-9.]*(?:,[0-9][0-9.]*)+)(.*)", re.DOTALL)
 _THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}(,[0-9]{3})+(\.[0-9]*)?")
 _UNIT = re.compile(r"[a-z%]\w*(\^-?[0-9]+)?( [a-z%]\w*(\^-?[0-9]+)?)*(/[a-z%]\w*(\^[0-9]+)?)*", re.ASCII | re.I)
-_SYMBOLS = {"**": "^", "*": " ", "·": " ", "⋅": " ", "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "u"}
+_SYMBOLS = {"**": "^", "*": " ", "·": " ", "⋅": " ", "²": "^2", "³": "^3", "µ": "u", "μ": "u"}
+_SYMBOLS |= {"°": "deg", "degrees": "deg", "degree": "deg"}
 
 
 def quantity(value: Any, kind: str, unit: str | None = None) -> float:
@@ -116,49 +112,6 @@ def accepted_unit(unit: str, kind: str) -> str:
         if _factors(spelling) == key:
             return spelling
     raise ValueError(_not_accepted(unit, kind))
-
-
-def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.DataArray:
-    """Read the inline table that stands in place of a number: ``{dim = "length", values = ["8 cm", 0.09]}``.
-
-    Parameters
-    ----------
-    table : dict
-        `dim` or `dims`; `values`, nested as deep as the dims, or `start`, `stop`, `num`; the `unit` of plain
-        numbers; `coords`, a list for each dim with labels; `theta2`, short for angles [degree] in `coords`.
-    kind : str
-        What is measured: a key of `KINDS`.
-    alone : bool
-        Whether no other number has this one dim: without `coords` the values are then its labels.
-
-    Returns
-    -------
-    DataArray
-        The values [`KINDS[kind].unit`], with the dims named.
-
-    Raises
-    ------
-    ValueError
-        One problem a line, each starting with its place in the table.
-
-    Examples
-    --------
-    >>> design_axis({"dim": "length", "values": [8, 9], "unit": "cm"}, "length").values.tolist()
-    [0.08, 0.09]
-    """
-    listed = f"; a design axis has {', '.join(_AXIS_KEYS)}"
-    unknown = [key for key in table if key not in _AXIS_KEYS]
-    problems = [f"{key}: unknown key{did_you_mean(key, _AXIS_KEYS) or listed}" for key in unknown]
-    dims = _axis_dims(table, problems)
-    values = _axis_values(table, kind, problems)
-    if not problems and values.ndim != len(dims):
-        problems.append(f"values: lists nested {values.ndim} deep for {len(dims)} dims, {', '.join(dims)}")
-    coords = {} if problems else _axis_coords(table, dims, values, alone, problems)
-    if unknown:  # one of them may be what is missing
-        problems = [problem for problem in problems if ": missing" not in problem]
-    if problems:
-        raise ValueError("\n".join(problems))
-    return xr.DataArray(values, dims=dims, coords=coords)
 
 
 def shown(value: object) -> str:
@@ -296,85 +249,3 @@ def _pint() -> Any:
 
 def _words(kind: str) -> str:
     return "a dimensionless number" if kind == "dimensionless" else kind.replace("_", " ")
-
-
-def _axis_dims(table: dict[str, Any], problems: list[str]) -> list[str]:
-    key = "dims" if "dims" in table else "dim"
-    dims = table.get("dims", [table.get("dim")])
-    if key not in table:
-        problems.append('dim: missing; write dim = "name of the design axis"')
-    elif not isinstance(dims, list) or len({dim for dim in dims if isinstance(dim, str)}) < len(dims):
-        must = "a list of different names" if key == "dims" else "a name"
-        problems.append(f"{key} = {shown(table[key])}: must be {must}")
-    return dims
-
-
-def _axis_values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
-    """Read `values`, or `start`, `stop` and `num`."""
-    unit = _axis_unit(table, kind, problems)
-    if "values" in table:
-        values = _read_nested(table["values"], "values", kind, unit, problems)
-        return np.array([]) if problems else _array(values, problems)
-    if not table.keys() >= {"start", "stop", "num"}:
-        problems.append("values: missing; write values = [...], or start, stop and num")
-        return None
-    start, stop = (_read_nested(table[key], key, kind, unit, problems) for key in ("start", "stop"))
-    if not isinstance(num := table["num"], int) or isinstance(num, bool) or num < 1:
-        problems.append(f"num = {shown(num)}: must be a count, 1 or more")
-    return None if problems else _evenly(start, stop, num)
-
-
-def _evenly(start: float, stop: float, num: int) -> Any:
-    """Space numbers as decimals: four from 0.06 to 0.09 have 0.07, where floats give 0.06999999999999999."""
-    first, last = Fraction(repr(start)), Fraction(repr(stop))
-    return np.array([float(first + (last - first) * Fraction(i, max(num - 1, 1))) for i in range(num)])
-
-
-def _axis_unit(table: dict[str, Any], kind: str, problems: list[str]) -> str | None:
-    try:
-        return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
-    except ValueError as error:
-        problems.append(f"unit = {shown(table['unit'])}: {error}")
-        return None
-
-
-def _read_nested(item: Any, at: str, kind: str, unit: str | None, problems: list[str]) -> Any:
-    if isinstance(item, list):
-        return [_read_nested(part, f"{at}[{i}]", kind, unit, problems) for i, part in enumerate(item, 1)]
-    try:
-        return quantity(item, kind, unit)
-    except ValueError as error:
-        problems.append(f"{at} = {error}")
-        return math.nan
-
-
-def _array(values: Any, problems: list[str]) -> Any:
-    try:
-        array = np.array(values, dtype=float)
-    except ValueError:
-        problems.append("values: the rows differ in length")
-        return None
-    if not array.size:
-        problems.append("values: is empty")
-    return array
-
-
-def _axis_coords(
-    table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]
-) -> dict[str, Any]:
-    """Read the labels of the dims; those of theta2 are angles."""
-    sizes = dict(zip(dims, values.shape, strict=True))
-    if "coords" not in table and "theta2" not in table:
-        return {dims[0]: values} if alone and len(dims) == 1 and dims != ["theta2"] else {}
-    if not isinstance(coords := table.get("coords", {}), dict):
-        problems.append(f"coords = {shown(coords)}: must be a table, {{{dims[0]} = [...]}}")
-        return {}
-    coords = coords | ({"theta2": table["theta2"]} if "theta2" in table else {})
-    if isinstance(angles := coords.get("theta2"), list) and any(isinstance(angle, str) for angle in angles):
-        coords["theta2"] = _read_nested(angles, "theta2", "angle", None, problems)
-    for dim, labels in coords.items():
-        if dim not in sizes:
-            problems.append(f"coords: {dim} is no dim of these values; they have {', '.join(dims)}")
-        elif not isinstance(labels, list) or [type(label) is list for label in labels] != [False] * sizes[dim]:
-            problems.append(f"coords: {dim} must be a list of {sizes[dim]} labels, one for each position")
-    return coords

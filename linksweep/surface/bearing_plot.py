@@ -1,4 +1,4 @@
-"""The bearing load diagram: the locus that a pin's force draws over a revolution, as bearing catalogues and texts show it."""
+"""The bearing load diagram: the locus that a pin's force draws over a revolution."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.four_bar import LINKS
 from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.sweep import sweep
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
 
 TICK = 30.0  # degrees of the crank between marks on the locus
 LABELLED = 90.0  # degrees between marks with a number
+BEYOND = 1.1  # of the largest load shown: loads larger than that are off the scale
 LINES_OF_PINS = {2: "A→B", 3: "B→C", 4: "D→C"}
 
 
@@ -40,7 +40,7 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     Returns
     -------
     matplotlib Axes
-        With equal scales; dots on the locus every 30 degrees of the crank, and an arrow from the origin to the largest load.
+        With equal scales; dots on the locus every 30 degrees of the crank, an arrow from the origin to the peak.
 
     Raises
     ------
@@ -61,15 +61,17 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
-    shown = signals.scale(size, [largest])
+    shown = signals.scale([size], [largest])
     _cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
     units = signals.unit(pair[0], "N")
-    if largest:
+    tip = np.zeros(2)
+    if largest and largest.value > 0.0:
         at = int(np.nanargmax(size))
-        _peak(ax, pin, largest, np.array([x[at], y[at]]), units, shown)
+        tip = _peak(ax, pin, largest, np.array([x[at], y[at]]), units, shown)
     _ticks(ax, angles, x, y, shown)
-    _limits(ax, x, y, shown)
+    near = size <= BEYOND * shown
+    _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
     ax.set_xlabel(f"{_axis(pin, link, 'x')} [{units}]")
     ax.set_ylabel(f"{_axis(pin, link, 'y')} [{units}]")
     return ax
@@ -80,7 +82,8 @@ def _in_link_axes(ds: xr.Dataset, link: int, x: np.ndarray, y: np.ndarray) -> tu
     name = f"theta{link}"
     if name not in ds:
         ds = sweep(signals.scene_of_design(ds), theta2=ds[signals.INDEX].values, outputs=[name])
-    cos, sin = cos_sin(signals.revolution(ds, ds[name])[1])
+    angle = np.radians(signals.revolution(ds, ds[name])[1])
+    cos, sin = np.cos(angle), np.sin(angle)
     return cos * x + sin * y, cos * y - sin * x
 
 
@@ -95,19 +98,17 @@ def _axis(pin: str, link: int, axis: str) -> str:
 def _cross(ax: Axes) -> None:
     """Equal scales, with a cross through the origin."""
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_axisbelow(True)
-    ax.grid(color=SHADE, linewidth=0.6)
-    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
-    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+    grid(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     ax.plot([0.0], [0.0], "+", color="black", markersize=11.0, markeredgewidth=1.6, zorder=2.6, label="_origin")
 
 
-def _limits(ax: Axes, x: np.ndarray, y: np.ndarray, shown: float) -> None:
-    """Limits around what is to be shown, which equal scales may still widen."""
-    near = np.hypot(x, y) <= shown * (1.0 + 1e-9)
+def _limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
+    """Limits around these points and the origin, which equal scales may still widen."""
     for values, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
-        low, high = np.min(values, initial=0.0, where=near), np.max(values, initial=0.0, where=near)
-        room = 0.16 * ((high - low) or shown or 1.0)
+        low, high = np.min(values, initial=0.0), np.max(values, initial=0.0)
+        room = 0.16 * ((high - low) or 1.0)
         set_limits(low - room, high + room, auto=True)
 
 
@@ -118,7 +119,7 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: fl
     at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
     at = at[:-1] if len(at) and at[-1] == angles[0] + 360.0 else at
     points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
-    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= 1.1 * shown)
+    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * shown)
     at, points = at[there], points[:, there]
     ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
     named = at % LABELLED == 0.0
@@ -128,18 +129,19 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: fl
         label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
 
 
-def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> None:
+def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> np.ndarray:
+    """An arrow from the origin to the largest load, with value and angles; where it was drawn to comes back."""
     from linksweep.surface.labels import arrow, label
 
-    beyond = largest.value > 1.1 * shown
-    tip = force * (1.1 * shown / largest.value) if beyond else force
-    if largest.value > 0.0:
-        arrow(ax, np.zeros(2), tip, VERMILION)
+    beyond = largest.value > BEYOND * shown
+    tip = force * (BEYOND * shown / largest.value) if beyond else force
     direction = np.degrees(np.arctan2(force[1], force[0]))
     lines = (
         f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}" + ", off scale" * beyond,
         f"at $\\theta_2$ = {signals.angle_text(largest.angle)}",
-        f"direction {signals.number(round(direction, 1))}°",
+        f"direction {direction:.1f}°".replace("-", "−"),
     )
+    arrow(ax, np.zeros(2), tip, VERMILION)
     ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {pin}")
     label(ax, *tip, *((line, VERMILION) for line in lines))
+    return tip

@@ -51,9 +51,9 @@ class Box(NamedTuple):
 
 def label(axes: Axes, x: float, y: float, *lines: Line, **style: Any) -> AnnotationBbox:
     """Write lines of text, each with its colour, near the point (x, y) of the data, where there is room when drawn."""
-    halo = withStroke(linewidth=2.5, foreground=axes.get_facecolor())
+    halo = withStroke(linewidth=2.0, alpha=0.7, foreground=axes.get_facecolor())
     style = {"fontsize": "small", "path_effects": [halo]} | style
-    texts = [TextArea(text, textprops=style | {"color": color}) for text, color in lines]
+    texts: list[Artist] = [TextArea(text, textprops=style | {"color": color}) for text, color in lines]
     leader = {"arrowstyle": "-", "color": lines[0][1], "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 2.0}
     note = AnnotationBbox(
         VPacker(children=texts, pad=0.0, sep=1.5),
@@ -77,7 +77,7 @@ def labels_of(axes: Axes) -> list[AnnotationBbox]:
 
 
 def text_of(note: AnnotationBbox) -> str:
-    return "\n".join(line.get_text() for line in note.offsetbox.get_children())
+    return "\n".join(line.get_text() for line in note.offsetbox.get_children() if isinstance(line, TextArea))
 
 
 def _placer(axes: Axes) -> Placer:
@@ -93,7 +93,7 @@ def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, color: str) -> None:
     shaft = np.array([start, end])
     axes.plot(*shaft.T, color=color, linewidth=1.6, zorder=CURVES + 0.4, solid_capstyle="butt")
     head = {"arrowstyle": "-|>", "color": color, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 11.0}
-    note = axes.annotate("", end, start, arrowprops=head | {"linewidth": 0.0}, annotation_clip=False)
+    note = axes.annotate("", tuple(end), tuple(start), arrowprops=head | {"linewidth": 0.0}, annotation_clip=False)
     note.set_in_layout(False)
 
 
@@ -108,9 +108,10 @@ class Placer(Artist):
 
     def draw(self, renderer: Any) -> None:
         notes = [note for note in self.notes if note.axes is self.axes and note.get_visible()]
-        curves, taken = _curves(self.axes), list(_boxes(self.axes, renderer))
-        frame = Box(*self.axes.get_window_extent(renderer).extents)
-        anchors = np.array([note.axes.transData.transform(note.xy) for note in notes]).reshape(-1, 2)
+        axes: Any = self.axes
+        curves, taken = _curves(axes), list(_boxes(axes, renderer))
+        frame = Box(*axes.get_window_extent(renderer).extents)
+        anchors = axes.transData.transform(np.reshape([note.xy for note in notes], (-1, 2)))
         curves = np.concatenate([curves, anchors])
         for note, anchor in zip(notes, anchors, strict=True):
             box, leader = _place(note, anchor, curves, taken, frame, renderer)
@@ -119,14 +120,23 @@ class Placer(Artist):
 
 
 def _curves(axes: Axes) -> np.ndarray:
-    """Points of all curves, close enough together that no box slips between them [pixel]."""
+    """Points of all that is drawn of curves and markers, so close together that no box slips between them [pixel]."""
     found = [np.empty((0, 2))]
     for line in axes.lines:
         if line.get_visible() and line.get_zorder() >= CURVES:
-            points = _dense(line.get_transform().transform(line.get_xydata()))
-            found.append((points[:, None] + _breadth(line)).reshape(-1, 2))
+            found += _drawn(line)
     points = np.concatenate(found)
     return np.unique(np.rint(points[np.isfinite(points).all(axis=1)] / CELL), axis=0) * CELL
+
+
+def _drawn(line: Line2D) -> Iterator[np.ndarray]:
+    points = line.get_transform().transform(line.get_xydata())
+    figure: Any = line.figure
+    pixels = figure.dpi / 72.0
+    if line.get_linestyle() != "None":
+        yield _broad(_dense(points), 0.5 * line.get_linewidth() * pixels)
+    if line.get_marker() not in ("", " ", "None", None):
+        yield _broad(points, 0.5 * line.get_markersize() * pixels)
 
 
 def _dense(points: np.ndarray) -> np.ndarray:
@@ -137,15 +147,13 @@ def _dense(points: np.ndarray) -> np.ndarray:
     return np.concatenate([filled.reshape(-1, 2), points])
 
 
-def _breadth(line: Line2D) -> np.ndarray:
-    """Offsets that make points of a line as broad as it is drawn: a bar, or a marker [pixel]."""
-    marked = line.get_marker() not in ("", " ", "None", None)
-    points = max(line.get_linewidth() if line.get_linestyle() != "None" else 0.0, line.get_markersize() * marked)
-    radius = 0.5 * points * line.get_figure(root=True).dpi / 72.0
+def _broad(points: np.ndarray, radius: float) -> np.ndarray:
+    """The points with those of a square around each."""
     if radius < CELL:
-        return np.zeros((1, 2))
-    around = np.radians(np.arange(0.0, 360.0, 30.0))
-    return radius * np.array([np.zeros((2,)), *np.transpose([np.cos(around), np.sin(around)])])
+        return points
+    ticks = np.linspace(-radius, radius, 2 + int(radius / CELL))
+    square = np.array([(x, y) for x in ticks for y in ticks])
+    return (points[:, None] + square).reshape(-1, 2)
 
 
 def _boxes(axes: Axes, renderer: Any) -> Iterator[Box]:
@@ -177,7 +185,8 @@ def _place(
                 best = (cost, distance, centre, box, leader)
     _, distance, centre, box, leader = best
     note.xybox = tuple((centre - anchor) / point)
-    note.arrow_patch.set_visible(distance >= LEADER)
+    if note.arrow_patch is not None:
+        note.arrow_patch.set_visible(distance >= LEADER)
     return box, leader
 
 

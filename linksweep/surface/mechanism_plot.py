@@ -151,8 +151,8 @@ def _ground(ax: Axes, scene: Scene, pins: dict[str, np.ndarray]) -> None:
     lines = [outline, [(-0.9, -1.0), (0.9, -1.0)], *strokes]
     codes = [Path.MOVETO if k == 0 else Path.LINETO for line in lines for k in range(len(line))]
     support = Path([vertex for line in lines for vertex in line], codes)
-    ax.plot(*ends.T, color=GREY, linewidth=0.8, linestyle=(0.0, (8.0, 3.0, 1.0, 3.0)), zorder=1.0)
-    style = {"markersize": 30.0, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
+    ax.plot(*ends.T, color=GREY, linewidth=0.8, linestyle=(0.0, (8.0, 3.0, 1.0, 3.0)), zorder=2.0)
+    style: dict[str, Any] = {"markersize": 30.0, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
     ax.plot(*ends.T, linestyle="none", marker=support, label="_ground", **style)
     around = np.radians(np.linspace(0.0, 360.0, 181))
     radius = _one(scene.mechanism.crank.length)
@@ -169,13 +169,14 @@ def _links(ax: Axes, pins: dict[str, np.ndarray], marked: np.ndarray) -> None:
     """Bars from pin to pin with their numbers, the coupler point tied to its link, and the pins on top."""
     plate = np.array([pins["B"], marked, pins["C"]])
     ax.fill(*plate.T, facecolor=BAR, edgecolor=EDGE, linewidth=0.8, alpha=0.6, zorder=2.15)
-    for number, (start, end) in {2: "AB", 3: "BC", 4: "DC"}.items():
+    for number, (start, end) in {2: ("A", "B"), 3: ("B", "C"), 4: ("D", "C")}.items():
         bar = np.array([pins[start], pins[end]])
         for width, color in ((9.0, EDGE), (7.2, BAR)):
             ax.plot(*bar.T, color=color, linewidth=width, solid_capstyle="round", zorder=2.2, label=f"_link {number}")
-        middle = {"ha": "center", "va": "center", "fontsize": 6.5, "zorder": 2.3, "color": EDGE}
-        ax.text(*(bar[0] + 0.4 * (bar[1] - bar[0])), str(number), **middle)
-    circles = {"markerfacecolor": "white", "markeredgecolor": EDGE, "markersize": 6.0, "zorder": 2.45}
+        middle: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 6.5, "zorder": 2.3, "color": EDGE}
+        x, y = bar[0] + 0.4 * (bar[1] - bar[0])
+        ax.text(x, y, str(number), **middle)
+    circles: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": EDGE, "markersize": 6.0, "zorder": 2.45}
     ax.plot(*np.array(list(pins.values())).T, "o", label="_pins", **circles)
     ax.plot(*marked, "o", color=SKY, markeredgecolor=EDGE, markersize=4.5, zorder=2.45, label="_point")
 

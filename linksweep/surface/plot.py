@@ -65,8 +65,8 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     Returns
     -------
     matplotlib Axes
-        Angles at which there is no result are a gap in the lines, shaded. Where forces grow without bound beside it, the
-        axis ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
+        Angles without a result are a gap in the lines, shaded. Where forces grow without bound beside it, the axis
+        ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
         signals.require_one_design(found.values())
     curves = _curves(ds, found)
     peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
-    top = signals.scale(np.concatenate([curve.values for curve in curves]), peaks)
+    top = signals.scale([curve.values for curve in curves], peaks)
     ax = axes_or_new(ax)
     _draw(ax, curves)
     ax.set_ylim(0.0, HEADROOM * top or 1.0)
@@ -95,7 +95,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     _angle_axis(ax, curves[0].angles)
     runaway = any(found and found.value > HEADROOM * top for found in peaks)
     _legend(ax, curves, widest if runaway else None)
-    marks = [Mark(found, curve, curve.said) for found, curve in zip(peaks, curves, strict=True) if found]
+    marks = [Mark(found, curve, curve.said) for found, curve in zip(peaks, curves, strict=True) if found and found.value > 0.0]
     _mark(ax, marks, units)
     return ax
 
@@ -130,9 +130,9 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     curves = _curves(ds, {name: ds[name]})
     extremes = [(curve, _extremes(curve)) for curve in curves]
     every = [found for _, pair in extremes for found in pair.values()]
-    size = signals.scale(np.concatenate([curve.values for curve in curves]), every)
+    size = signals.scale([curve.values for curve in curves], every)
     ax = axes_or_new(ax)
-    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=1.0)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     _draw(ax, curves)
     _span(ax, every, size)
     ax.set_ylabel(f"drive torque {signals.symbol(name)} [{units}]")
@@ -145,7 +145,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
 
 def cycle(ds: xr.Dataset) -> Figure:
-    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, torque, and that pin's bearing.
+    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, torque, that pin's bearing.
 
     Parameters
     ----------
@@ -167,12 +167,13 @@ def cycle(ds: xr.Dataset) -> Figure:
     >>> linksweep.sweep(scene).linksweep.cycle().savefig("cycle.png", dpi=200)  # doctest: +SKIP
     """
     import matplotlib.pyplot as plt
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     signals.require_angles(ds)
     pin, angle = _most_loaded(ds)
     with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
-        figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout="constrained")
-        figure.get_layout_engine().set(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
+        layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
+        figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout=layout)
         mechanism(ds, theta2=angle, ax=panels[0, 0], forces=True)
         forces(ds, ax=panels[0, 1])
         bearing(ds, pin, ax=panels[1, 0])
@@ -216,7 +217,8 @@ def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
             text = design or f"{signals.symbol(name)} ({signals.PIN_OF.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
             said = signals.symbol(name) if len(found) > 1 else ""
-            curves.append(Curve(name, text, *signals.revolution(ds, values), style, said))
+            angles, row = signals.revolution(ds, values)
+            curves.append(Curve(name, text, angles, row, style, said))
     return curves
 
 
@@ -250,7 +252,9 @@ def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
 
 def _extremes(curve: Curve) -> dict[str, signals.Peak]:
     high, low = (signals.peak(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
-    return {"max": high, "min": low._replace(value=-low.value)} if high and low else {}
+    if not high or not low or high.value == -low.value:  # a constant has no extremes
+        return {}
+    return {"max": high, "min": low._replace(value=-low.value)}
 
 
 def _shade(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None:
@@ -265,9 +269,15 @@ def _shade(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None
         if width >= 12.0:  # degrees; a narrower one has no room for a word
             upright = "horizontal" if width >= 75.0 else "vertical"
             middle = 0.5 * (gap.start + gap.stop)
-            text = {"ha": "center", "va": "center", "rotation": upright, "fontsize": "small", "color": GREY}
-            text["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
-            ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **text)
+            style: dict[str, Any] = {
+                "ha": "center",
+                "va": "center",
+                "rotation": upright,
+                "fontsize": "small",
+                "color": GREY,
+            }
+            style["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
+            ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **style)
     return max(found, key=lambda gap: gap.stop - gap.start, default=None)
 
 
@@ -291,7 +301,7 @@ def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
     from linksweep.surface.labels import label
 
     limits = ax.get_ylim()
-    reach = (0.06 * np.ptp(ax.get_xlim()), 0.15 * np.ptp(limits))
+    reach = (0.05 * np.ptp(ax.get_xlim()), 0.1 * np.ptp(limits))
     groups: list[list[tuple[float, float, Mark]]] = []
     for mark in sorted(marks, key=lambda mark: -mark.peak.value):
         x, y = mark.peak.angle, float(np.clip(mark.peak.value, *limits))

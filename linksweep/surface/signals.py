@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -60,7 +61,8 @@ def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
     for name in (pin, f"F{pin[2]}{pin[1]}"):
         if name in ds:
             return ds[name]
-    return np.hypot(*components(ds, pin))
+    x, y = components(ds, pin)
+    return xr.apply_ufunc(np.hypot, x, y, keep_attrs=True)
 
 
 def has_pin(ds: xr.Dataset, pin: str) -> bool:
@@ -146,7 +148,7 @@ def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
     reasons = ds["status"].attrs.get("flag_meanings", "").split() if "status" in ds else []
     edges = np.flatnonzero(np.diff(bad, prepend=0.0, append=0.0) != 0.0)
     found = []
-    for start, stop in zip(edges, edges[1:], strict=False):
+    for start, stop in pairwise(edges.tolist()):
         if code := int(bad[start]):
             reason = reasons[code].replace("_", " ") if code < len(reasons) else "no result"
             found.append(Gap(angles[max(start - 1, 0)], angles[min(stop, len(angles) - 1)], reason))
@@ -162,23 +164,35 @@ def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
     return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any()))
 
 
-def scale(values: np.ndarray, peaks: Iterable[Peak | None]) -> float:
-    """The largest size that a plot should show.
+def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
+    """The largest size that a plot of these rows should show.
 
-    Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where
-    that would flatten all the rest, the rest is shown, and what lies beyond is marked as off the scale.
+    Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where that
+    would flatten all the rest, the rest is shown, and what lies beyond is to be marked as off the scale.
     """
-    sizes = np.abs(values[np.isfinite(values)])
-    if not sizes.size:
-        return 1.0
-    usual = 1.5 * float(np.quantile(sizes, 0.85))
+    largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for row in rows), default=0.0)
+    usual = max((_largest_away_from_gaps(np.abs(row)) for row in rows), default=0.0)
     runaway = any(found and found.beside_gap and abs(found.value) > 3.0 * usual for found in peaks)
-    return usual if runaway else float(sizes.max())
+    return usual if runaway and usual > 0.0 else largest
+
+
+def _largest_away_from_gaps(sizes: np.ndarray) -> float:
+    """The largest of a row without the last fifth of each arc before a gap, where the mechanism nears a toggle."""
+    there = np.isfinite(sizes)
+    edges = np.flatnonzero(np.diff(there, prepend=False, append=False)).tolist()
+    kept = [0.0]
+    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        near = (stop - start + 4) // 5
+        arc = sizes[start + near * (start > 0) : stop - near * (stop < len(sizes))]
+        kept.append(float(arc.max(initial=0.0)))
+    return max(kept)
 
 
 def number(value: float) -> str:
     """Four significant digits, as one writes them."""
-    if value and not 1e-3 <= abs(value) < 1e7:
+    if value == 0.0:
+        return "0"
+    if not 1e-3 <= abs(value) < 1e7:
         return f"{value:.3e}".replace("-", "−")
     return (
         np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")

@@ -9,15 +9,15 @@ if TYPE_CHECKING:
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
-GREY, SHADE = "#666666", "#E4E4E4"
+GREY, SHADE = "#666666", "#EBEBEB"
 FORCES = {"F12": BLUE, "F32": VERMILION, "F43": GREEN, "F14": PURPLE}
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
-    """The axes given, or those of a new figure. matplotlib is imported here, so that only those who plot wait for it."""
+    """The axes given, or those of a new figure."""
     if ax is not None:
         return ax
-    import matplotlib.pyplot as plt
+    import matplotlib.pyplot as plt  # here: only those who plot need wait for it
 
     return plt.subplots(layout="constrained", **figure)[1]
 

@@ -1,0 +1,90 @@
+"""The front door: python -m benchmarks [--quick] [--only GROUP] [--json FILE] [--write]."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import NamedTuple
+
+from . import latency, peaks, skipping, threads, unknowns
+from .cases import FULL, QUICK, Size
+from .report import Groups, as_json, machine, markdown
+from .timing import Row, can_pin, one_core
+
+RESULTS = Path(__file__).with_name("RESULTS.md")
+AGREEMENT = 1e-10
+
+
+class Group(NamedTuple):
+    """Rows of one kind; `one_core` where they are timed pinned to one core."""
+
+    title: str
+    rows: Callable[[Size], list[Row]]
+    one_core: bool = True
+
+
+GROUPS = {
+    "unknowns": Group("All nine unknowns, {angles} angles, one core", unknowns.rows),
+    "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
+    "skipping": Group("What is not asked for is not paid for, {angles} angles, one core", skipping.rows),
+    "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
+    "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),
+    "threads": Group("Two threads against one", threads.rows, one_core=False),
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the benchmarks and print their table; 1 when rivals disagree on a result, never for a time."""
+    options = _parser().parse_args(arguments)
+    size = QUICK if options.quick else FULL
+    groups = {}
+    for name in options.only or GROUPS:
+        title = GROUPS[name].title.format_map(vars(size))
+        groups[title] = measured(name, size)
+        print(markdown({title: groups[title]}), end="\n\n", flush=True)
+    print(_footer(size))
+    if options.json:
+        options.json.write_text(json.dumps(as_json(groups), indent=1) + "\n")
+    if options.write:
+        RESULTS.write_text(_results(groups, size))
+    return int(_disagree(groups))
+
+
+def measured(name: str, size: Size) -> list[Row]:
+    group = GROUPS[name]
+    with one_core() if group.one_core else nullcontext():
+        return group.rows(size)
+
+
+def _disagree(groups: Groups) -> bool:
+    return any(row.error is not None and row.error > AGREEMENT for rows in groups.values() for row in rows)
+
+
+def _results(groups: Groups, size: Size) -> str:
+    title = "# Results\n\nWritten by `python -m benchmarks --write`; README.md says what each row means."
+    facts = "\n".join(f"- {name}: {value}" for name, value in machine().items())
+    return f"{title}\n\n{facts}\n\n{markdown(groups)}\n\n{_footer(size)}\n"
+
+
+def _footer(size: Size) -> str:
+    if size is QUICK:
+        return "Tiny sizes, timed once: the errors count, the times mean nothing."
+    pinned = "were pinned to one core" if can_pin() else "could not be pinned to one core here"
+    return f"Rows on one core {pinned}; on a busy machine keep that core free for them, e.g. `taskset -c 1`."
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description="linksweep's speed, as ratios.")
+    parser.add_argument("--quick", action="store_true", help="tiny sizes, once: to see that all works, not how fast")
+    parser.add_argument("--only", action="append", choices=GROUPS, help="this group; may be given more than once")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the rows and the machine to FILE")
+    parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/RESULTS.md")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,92 @@
+"""What a person waits for: one warm call, and the first minutes in fresh processes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest import mock
+
+import linksweep as ls
+from linksweep.engine.compile import compiled
+
+from . import peers
+from .cases import GENERAL, NINE, Size, scene, stacked
+from .kernel import kernel_of, way
+from .timing import WALL, Race, Row, race, timed
+
+LAPACK = "numpy + LAPACK"
+FIRST_COMPILED = """
+import time
+import linksweep as ls
+from linksweep.engine import run
+run.COMPILE_AFTER = -1
+scene = ls.example("press")
+start = time.perf_counter()
+ls.sweep(scene)
+print(time.perf_counter() - start)
+"""
+
+
+def warm_calls(size: Size) -> list[Row]:
+    return [row for name in ("interpreted", "compiled") for row in _warm(name, size)]
+
+
+def _warm(name: str, size: Size) -> list[Row]:
+    """One revolution of one design, kinematics and unknowns; the press carries a load."""
+    machine, press, theta2 = scene(GENERAL), ls.example("press"), peers.grid(size.turn)
+    sweep, peaks = partial(ls.sweep, machine, size.turn), partial(ls.peaks, machine, theta2=size.turn)
+    jobs = {
+        f"ls.sweep, {name}": (sweep, 1e-3),
+        f"ls.sweep of the press, {name}": (partial(ls.sweep, press, size.turn), 1e-3),
+        f"ls.sweep, scene built anew, {name}": (lambda: ls.sweep(scene(GENERAL), size.turn), None),
+        f"ls.peaks, {name}": (peaks, None),
+    }
+    calls = {job: call for job, (call, _) in jobs.items()}
+    calls[LAPACK] = partial(peers.numpy_lapack, GENERAL, theta2)
+    with way(name):
+        error = peers.difference(stacked(sweep(), NINE), calls[LAPACK]())
+        found = race(calls, size)
+    return [
+        found.row(WALL, job, LAPACK, goal, error=None if "press" in job or "peaks" in job else error)
+        for job, (_, goal) in jobs.items()
+    ]
+
+
+def first_minutes(size: Size) -> list[Row]:
+    rounds = [_first_round() for _ in range(size.processes)]
+    found = Race({job: [seconds[job] for seconds in rounds] for job in rounds[0]})
+    return [
+        found.row(WALL, "import linksweep", "import xarray", 1.0),
+        found.row(WALL, "linksweep demo, second", "linksweep demo, first", 3.0),
+        found.row(WALL, "first compiled ls.sweep, kernel from disk", "first compiled ls.sweep"),
+        found.row(WALL, "one kernel from disk, numba awake", "one kernel compiled, numba awake"),
+    ]
+
+
+def _first_round() -> dict[str, float]:
+    """Every job once, from empty caches of linksweep and matplotlib."""
+    kernel = kernel_of(partial(ls.sweep, scene(GENERAL), 72, NINE, threads=1))
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        caches = {"LINKSWEEP_CACHE_DIR": f"{folder}/kernels", "MPLCONFIGDIR": f"{folder}/matplotlib"}
+        with mock.patch.dict(os.environ, caches):
+            python = partial(_python, Path(folder))
+            return {
+                "import xarray": timed(lambda: python("-c", "import xarray")),
+                "import linksweep": timed(lambda: python("-c", "import linksweep")),
+                "linksweep demo, first": timed(lambda: python("-m", "linksweep", "demo")),
+                "linksweep demo, second": timed(lambda: python("-m", "linksweep", "demo")),
+                "first compiled ls.sweep": float(python("-c", FIRST_COMPILED)),
+                "first compiled ls.sweep, kernel from disk": float(python("-c", FIRST_COMPILED)),
+                "one kernel compiled, numba awake": timed(lambda: compiled.__wrapped__(*kernel.sources)),
+                "one kernel from disk, numba awake": timed(lambda: compiled.__wrapped__(*kernel.sources)),
+            }
+
+
+def _python(folder: Path, *arguments: str) -> str:
+    """What a fresh Python prints."""
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout

@@ -1,0 +1,96 @@
+"""Rows as a Markdown table and as JSON, and the machine that they are of."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import subprocess
+from collections.abc import Mapping
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+
+from . import limit
+from .timing import FASTER, WALL, Row
+
+HEADER = ("ours", "against", "figure", "goal", "met", "ours takes", "the other takes", "error", "note")
+Groups = Mapping[str, list[Row]]
+
+
+def markdown(groups: Groups) -> str:
+    return "\n\n".join(f"## {title}\n\n{_table(rows)}" for title, rows in groups.items())
+
+
+def _table(rows: list[Row]) -> str:
+    cells = [HEADER, *map(_cells, rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    lines = ["| " + " | ".join(map(str.ljust, line, widths)) + " |" for line in cells]
+    return "\n".join([lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    met = {None: "", True: "yes", False: "no"}[row.met]
+    times = (_time(seconds, row.samples) for seconds in (row.seconds, row.against_seconds))
+    error = "" if row.error is None else f"{row.error:.0e}"
+    return (row.job, row.against, _figure(row), _goal(row), met, *times, error, row.note)
+
+
+def _figure(row: Row) -> str:
+    if row.ratio is None:
+        return ""
+    if row.kind == WALL:
+        return f"{_time(row.seconds)}, {row.ratio:.2g} of the other"
+    return f"{row.ratio:.3g} {row.kind}"
+
+
+def _goal(row: Row) -> str:
+    if row.goal is None:
+        return ""
+    sign = "≥" if row.kind == FASTER else "≤"
+    return f"{sign} {_time(row.goal)}" if row.kind == WALL else f"{sign} {row.goal:g}"
+
+
+def _time(seconds: float | None, samples: int | None = None) -> str:
+    """A time per sample in ns, or a time."""
+    if seconds is None:
+        return ""
+    if samples:
+        return f"{seconds / samples * 1e9:.3g} ns"
+    unit, scale = ("s", 1.0) if seconds >= 1 else ("ms", 1e3)
+    return f"{seconds * scale:.3g} {unit}"
+
+
+def as_json(groups: Groups) -> dict:
+    return {
+        "machine": machine(),
+        "rows": [{"group": title} | asdict(row) | {"met": row.met} for title, rows in groups.items() for row in rows],
+    }
+
+
+def machine() -> dict[str, str]:
+    """What the figures depend on; no names of hosts, no paths."""
+    return {
+        "processor": _processor(),
+        "cores": str(os.cpu_count()),
+        "system": f"{platform.system()} {platform.machine()}",
+        "Python": platform.python_version(),
+        **{name: version(name) for name in ("linksweep", "numpy", "numba", "xarray")},
+        "C compiler": _compiler(),
+    }
+
+
+def _processor() -> str:
+    try:
+        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    except OSError:
+        found = None
+    return found[1] if found else platform.processor() or platform.machine()
+
+
+def _compiler() -> str:
+    cc = limit.compiler()
+    if cc is None:
+        return "none"
+    said = subprocess.run([cc, "--version"], capture_output=True, text=True, check=False).stdout.splitlines()
+    return said[0] if said else Path(cc).name

@@ -1,0 +1,105 @@
+"""Rivals timed in turn, A B A B …, so that a machine's drift falls on all alike and only their ratios remain."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from statistics import median
+from time import perf_counter
+
+from .cases import Size
+
+Call = Callable[[], object]
+FASTER, SHARE, WALL = "times as fast", "of the time", "s"
+"""What a row's figure is: their time over ours, ours over theirs, or ours as it is."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table: a job, its rival, and how they compare. No ratio: not measured, `note` says why."""
+
+    job: str
+    against: str
+    kind: str
+    ratio: float | None = None
+    seconds: float | None = None
+    against_seconds: float | None = None
+    samples: int | None = None
+    goal: float | None = None
+    error: float | None = None
+    note: str = ""
+
+    @property
+    def figure(self) -> float | None:
+        return self.seconds if self.kind == WALL else self.ratio
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the goal is reached; None without a goal or a measurement."""
+        if self.goal is None or self.figure is None:
+            return None
+        return self.figure >= self.goal if self.kind == FASTER else self.figure <= self.goal
+
+
+@dataclass(frozen=True)
+class Race:
+    """Seconds of each rival, round by round, for the same number of samples (angles × designs)."""
+
+    seconds: Mapping[str, list[float]]
+    samples: int | None = None
+
+    def row(self, kind: str, ours: str, theirs: str, goal: float | None = None, **more) -> Row:
+        """Our median time, theirs, and the median over the rounds of their ratio."""
+        if not {ours, theirs} <= self.seconds.keys():
+            return Row(ours, theirs, kind, goal=goal, **more | {"note": "not measured: no C compiler found"})
+        rounds = zip(self.seconds[ours], self.seconds[theirs], strict=True)
+        ratio = median(b / a if kind == FASTER else a / b for a, b in rounds)
+        times = median(self.seconds[ours]), median(self.seconds[theirs])
+        return Row(ours, theirs, kind, ratio, *times, self.samples, goal, **more)
+
+
+def race(calls: Mapping[str, Call], size: Size, samples: int | None = None) -> Race:
+    """Time the calls in turn: in every round each runs for a short burst, and its best counts."""
+    repeats = {name: _repeats(call, size.burst) for name, call in calls.items()}
+    seconds: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(size.rounds):
+        for name, call in calls.items():
+            seconds[name].append(min(timed(call) for _ in range(repeats[name])))
+    return Race(seconds, samples)
+
+
+def timed(call: Call) -> float:
+    start = perf_counter()
+    call()
+    return perf_counter() - start
+
+
+def _repeats(call: Call, burst: float) -> int:
+    """As many as fill a burst, at least three; one for a burst of 0 s."""
+    call()  # to warm up
+    return max(3, round(burst / timed(call))) if burst else 1
+
+
+@contextmanager
+def one_core() -> Iterator[None]:
+    """Keep this thread on one core, where the system can (Linux)."""
+    if not can_pin():
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def can_pin() -> bool:
+    return hasattr(os, "sched_setaffinity")
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if can_pin() else os.cpu_count() or 1

@@ -1,0 +1,153 @@
+"""What is wrong with a scene file, and in which line: TOML keeps no line numbers, so they are found again here."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
+from itertools import count
+from typing import Any
+
+import xarray as xr
+
+from linksweep.mechanisms.validate import did_you_mean
+from linksweep.scene.units import shown
+
+Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
+
+UNREAD: Any = "(not read)"
+"""Stands in for a value with an error, so that the constructors can still look at the others."""
+
+
+def path_of(where: Where) -> str:
+    """Return the path as the constructors name it: without "mechanism", lists counted from one."""
+    keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
+    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
+
+
+class Log:
+    """What is wrong with a file, and where; and what numbers in it refer to.
+
+    Parameters
+    ----------
+    raw : the whole file
+    arrays : what ``{variable = "coupler.length"}`` in it refers to
+    top : keys that belong at the top of a file
+    machine : keys that belong to a mechanism, whose paths leave out "mechanism"
+    """
+
+    def __init__(
+        self,
+        raw: dict[str, Any],
+        arrays: Mapping[str, xr.DataArray],
+        top: Collection[str],
+        machine: Collection[str],
+    ) -> None:
+        named = [str(item) for at, item in _places(raw) if "dim" in at[-1:] or "dims" in at[-2:-1]]
+        self.arrays, self.dims = arrays, Counter(named)
+        self.top, self.machine = top, machine
+        self.problems: list[tuple[Where, str]] = []
+        self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
+
+    def problem(self, where: Where, text: str) -> Any:
+        self.problems.append((where, path_of(where) + text))
+        return UNREAD
+
+    def missing(self, where: Where, advice: str) -> Any:
+        return UNREAD if where in self.misplaced else self.problem(where, f": missing; {advice}")
+
+    def unknown(self, key: str, known: Collection[str], owner: str, where: Where) -> None:
+        """Log a key that a table does not have: the scene's or the mechanism's, or misspelt."""
+        if key in self.top:
+            self.misplaced.add((key,))
+            self.problem((*where, key), ": belongs at the top of the file, above the first [table]")
+        elif key in self.machine:
+            self.misplaced.add(("mechanism", key))
+            self.problem((*where, key), ": belongs to the mechanism, right below [mechanism]")
+        else:
+            self.misplaced |= {(*where, meant) for meant in difflib.get_close_matches(key, known, n=1)}
+            listed = f"; a {owner} has {', '.join(known)}"
+            self.problem((*where, key), f": unknown key{did_you_mean(key, known) or listed}")
+
+    def variable(self, name: Any, where: Where) -> Any:
+        if str(name) in self.arrays:
+            return self.arrays[name]
+        return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
+
+    def refused(self, error: ValueError, where: Where) -> Any:
+        """Log what a constructor says, one problem a line with its path first, but for what was not read."""
+        known = [*self.misplaced, *(place for place, _ in self.problems)]
+        for line in str(error).splitlines():
+            path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
+            keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
+            place = (*where, *keys) if where or {*keys[:1]} <= {*self.top} else ("mechanism", *keys)
+            if not any(place[: len(other)] == other[: len(place)] for other in known):
+                self.problem(place, line[len(path) :])
+        return UNREAD
+
+    def report(self, text: str, name: str) -> str:
+        """Return the problems, one a line, in the order of the file."""
+        lines = _key_lines(text)
+
+        def line(where: Where) -> int:  # what is missing has the line of what it is missing in
+            return lines.get(where) or line(where[:-1])
+
+        placed = sorted(((line(where), problem) for where, problem in self.problems), key=lambda p: p[0])
+        return "\n".join(f"{name}:{number}: {problem}" for number, problem in placed)
+
+
+def document(text: str, name: str) -> dict[str, Any]:
+    """Parse the TOML; an error says file, line and, for the commonest slip, what to write."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        lines = text.rstrip().split("\n")
+        reason, at = str(error).partition(" (at ")[0], re.search(r"at line (\d+)", str(error))
+        number = min(int(at[1]) if at else len(lines), len(lines))
+        bare = re.match(r"\s*([\w.]+)\s*=\s*([-+.]?\d[^#\"\[{]*[^#\"\[{\s])", lines[number - 1])
+        advice = f'; a number with a unit stands in quotes, {bare[1]} = "{bare[2]}"' if bare else ""
+        if bare and "," in bare[2]:
+            advice = "; a number has a decimal point, no comma; a list stands in brackets"
+        raise ValueError(f"{name}:{number}: not TOML: {reason}{advice}") from None
+
+
+def _key_lines(text: str) -> dict[Where, int]:
+    """Find the line of every key: the text is cut into the smallest pieces that are TOML by themselves."""
+    lines: dict[Where, int] = {(): 1}
+    table: Where = ()
+    start, piece = 1, ""
+    for number, line in enumerate(text.split("\n"), 1):
+        piece += line + "\n"
+        try:
+            places = [place for place, _ in _places(tomllib.loads(piece))]
+        except tomllib.TOMLDecodeError:
+            continue  # the value goes on in the next line
+        if piece.lstrip().startswith("["):
+            table, places = _opened(places[-1], start, lines), []
+        for place in places:
+            lines.setdefault((*table, *place), start)
+        start, piece = number + 1, ""
+    return lines
+
+
+def _opened(header: Where, start: int, lines: dict[Where, int]) -> Where:
+    """Note the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
+    table: Where = ()
+    for key, following in zip(header, (*header[1:], ""), strict=True):
+        if key != 0:
+            table = (*table, key)
+            so_far = next(n for n in count() if (*table, n) not in lines)
+            lines.setdefault(table, start)
+            table = (*table, so_far) if following == 0 else (*table, so_far - 1) if so_far else table
+            lines.setdefault(table, start)
+    return table
+
+
+def _places(raw: Any, where: Where = ()) -> Iterator[tuple[Where, Any]]:
+    """Yield the place and value of every key and list item."""
+    items = raw.items() if isinstance(raw, dict) else enumerate(raw) if isinstance(raw, list) else ()
+    for key, item in items:
+        yield (*where, key), item
+        yield from _places(item, (*where, key))
