@@ -7,6 +7,7 @@ import json
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,9 +29,9 @@ class Group(NamedTuple):
 
 
 GROUPS = {
-    "unknowns": Group("All nine unknowns, {angles} angles, one core", unknowns.rows),
+    "unknowns": Group("All nine unknowns, {angles:,} angles, one core", unknowns.rows),
     "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
-    "skipping": Group("What is not asked for is not paid for, {angles} angles, one core", skipping.rows),
+    "skipping": Group("What is not asked for is not paid for, {angles:,} angles, one core", skipping.rows),
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
     "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),
     "threads": Group("Two threads against one", threads.rows, one_core=False),
@@ -44,7 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     groups = {}
     for name in options.only or GROUPS:
         title = GROUPS[name].title.format_map(vars(size))
-        groups[title] = measured(name, size)
+        rows = measured(name, size)
+        groups[title] = [replace(row, goal=None) for row in rows] if options.quick else rows
         print(markdown({title: groups[title]}), end="\n\n", flush=True)
     print(_footer(size))
     if options.json:
@@ -73,8 +75,9 @@ def _results(groups: Groups, size: Size) -> str:
 def _footer(size: Size) -> str:
     if size is QUICK:
         return "Tiny sizes, timed once: the errors count, the times mean nothing."
-    pinned = "were pinned to one core" if can_pin() else "could not be pinned to one core here"
-    return f"Rows on one core {pinned}; on a busy machine keep that core free for them, e.g. `taskset -c 1`."
+    if can_pin():
+        return "The rows on one core were pinned to it. To choose the core: `taskset -c 1 python -m benchmarks`."
+    return "The rows on one core could not be pinned to it here."
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from time import perf_counter
 
 import numpy as np
 import xarray as xr
@@ -30,7 +31,7 @@ def _row(job: str, call: Call, size: Size, samples: int) -> Row:
     calls = {alone: partial(call, threads=1), both: partial(call, threads=2)}
     with way("compiled"):
         error = _difference(calls[both](), calls[alone]())
-        return race(calls, size, samples).row(FASTER, both, alone, error=error)
+        return race(calls, size, samples, perf_counter).row(FASTER, both, alone, error=error)
 
 
 def _difference(found: xr.Dataset, expected: xr.Dataset) -> float:

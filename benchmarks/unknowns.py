@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
+
 import linksweep as ls
 
 from . import limit, peers
@@ -12,7 +14,7 @@ from .kernel import kernel_of, way
 from .timing import FASTER, SHARE, Row, race
 
 SWEEP, KERNEL, LAPACK, CLOSED, C = "ls.sweep", "kernel alone", "numpy + LAPACK", "numpy closed form", "limit.c"
-ANEW, DEFAULT = "ls.sweep, scene built anew", "ls.sweep, kinematics too"
+BLOCKS, ANEW, DEFAULT = "numpy + LAPACK, a tenth at a time", "ls.sweep, scene built anew", "ls.sweep, kinematics too"
 
 
 def rows(size: Size) -> list[Row]:
@@ -27,6 +29,7 @@ def rows(size: Size) -> list[Row]:
         KERNEL: kernel_of(sweeps[SWEEP]).call,
         CLOSED: partial(peers.numpy_closed_form, GENERAL, theta2),
         LAPACK: partial(peers.numpy_lapack, GENERAL, theta2),
+        BLOCKS: lambda: [peers.numpy_lapack(GENERAL, block) for block in np.split(theta2, 10)],
     }
     with way("compiled"):
         found = {name: stacked(call()) for name, call in sweeps.items()} | {CLOSED: calls[CLOSED]()}
@@ -34,7 +37,7 @@ def rows(size: Size) -> list[Row]:
         if lib := limit.build():
             calls[C], found[C] = limit.bind_store(lib, GENERAL, theta2)
             calls[C]()
-        dense = calls[LAPACK]()
+        dense, found[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
         error = {name: peers.difference(nine, dense) for name, nine in found.items()}
         timed = race(calls, size, size.angles)
 
@@ -46,6 +49,7 @@ def rows(size: Size) -> list[Row]:
         row(FASTER, KERNEL, LAPACK, 250),
         row(SHARE, KERNEL, C, 1.3),
         row(FASTER, C, LAPACK),
+        row(FASTER, BLOCKS, LAPACK),
         row(FASTER, CLOSED, LAPACK),
         row(FASTER, SWEEP, CLOSED),
         row(FASTER, ANEW, LAPACK),

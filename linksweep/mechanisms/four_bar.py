@@ -154,8 +154,8 @@ class FourBar:
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""
         a, b, c, d = self.lengths().values()
-        low = (d - a - b + c) * (d - a + b - c)
-        high = (b + c - d - a) * (b + c + d + a)
+        low = ((d - b) + (c - a)) * ((d - c) + (b - a))
+        high = ((b - d) + (c - a)) * (b + c + d + a)
         margin = 1e-9 * (a + b + c + d) ** 2
         return bool(np.all(low > margin) and np.all(high > margin))
 
@@ -225,6 +225,7 @@ def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
     """The crank's moment equation takes the place of the driven link's."""
     crank, coupler, rocker = ("r2x", "r2y", "moment_r2"), ("r3x", "r3y", "moment_r3"), ("r4x", "r4y", "N4")
     p, q = {"coupler": (crank, rocker), "rocker": (coupler, crank)}[drive]
+    other = {"coupler": "rocker_length", "rocker": "coupler_length"}[drive]
     return [
         Row(planar.opposite, ("moment_r3",), ("N3",)),
         Row(four_bar.moment_on_crank, ("moment_r2",)),
@@ -232,7 +233,7 @@ def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
         Row(inertia.inverse_cross, ("inverse_leverage",), (*p[:2], *q[:2])),
         Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*p, *q, "inverse_leverage")),
         Row(dyad_rrr.rrr_status, ("closure",)),
-        Row(four_bar.drive_status, ("status",)),
+        Row(four_bar.drive_status, ("status",), ("closure", "leverage", "crank_length", other)),
     ]
 
 

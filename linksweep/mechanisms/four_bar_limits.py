@@ -5,8 +5,8 @@ With φ the angle from the line A→D to the crank, the four-bar closes while (s
     low  = (d−a−b+c)(d−a+b−c) + 4ad·sin²(φ/2) ≥ 0        low = 0: coupler folded back over the rocker, f = |b−c|
     high = (b+c−d−a)(b+c+d+a) + 4ad·cos²(φ/2) ≥ 0        high = 0: coupler and rocker stretched out, f = b+c
 
-so that φ lies between ±φ_folded and ±φ_stretched, each found from its half angle, without the loss that acos has
-near 0 and 180.
+so that φ lies between ±φ_folded and ±φ_stretched. With 1 = cos² + sin² each is x·cos²(φ/2) + y·sin²(φ/2) = 0, whose x
+and y factor into sums of lengths: tan(φ/2) = √(−x/y), without the loss that acos has near 0 and 180.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+
+from linksweep.physics.four_bar import closure_factors
 
 GRASHOF = (
     "crank_rocker",
@@ -40,23 +42,30 @@ class Limits(NamedTuple):
 
 def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
     """Limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        low = (d - a - b + c) * (d - a + b - c)
-        high = (b + c - d - a) * (b + c + d + a)
-        folded = np.where(low <= 0.0, 2.0 * np.degrees(np.arcsin(np.sqrt(-low / (4.0 * a * d)))), np.nan)
-        stretched = np.where(high <= 0.0, 2.0 * np.degrees(np.arccos(np.sqrt(-high / (4.0 * a * d)))), np.nan)
-        never = np.maximum.reduce([a, b, c, d]) > 0.5 * (a + b + c + d)
-        assembly = np.where(never, 2, np.where((low < 0.0) | (high < 0.0), 1, 0)).astype(np.int8)
-        folded, stretched = (np.where(never, np.nan, angle) for angle in (folded, stretched))
-        return Limits(_grashof(a, b, c, d), assembly, folded, stretched, _least_transmission_angle(a, b, c, d, never))
+    low, high = closure_factors(a, b, c, d, 0.0, 0.0)
+    largest_low = ((d - b) + (c + a)) * ((d - c) + (b + a))  # low + 4ad
+    largest_high = ((b - d) + (c + a)) * ((c - a) + (b + d))  # high + 4ad
+    never = (largest_low < 0.0) | (largest_high < 0.0)
+    folded = _where_zero(low, largest_low, never)
+    stretched = _where_zero(largest_high, high, never)
+    assembly = np.where(never, 2, np.where((low < 0.0) | (high < 0.0), 1, 0)).astype(np.int8)
+    return Limits(_grashof(a, b, c, d), assembly, folded, stretched, _least_transmission_angle(a, b, c, d, never))
 
 
-def _grashof(a, b, c, d) -> np.ndarray:
-    """Shortest + longest against the sum of the other two."""
+def _where_zero(x: np.ndarray, y: np.ndarray, never: np.ndarray) -> np.ndarray:
+    """Angle φ in [0, 180] where x cos²(φ/2) + y sin²(φ/2) is 0; NaN where x and y have the same sign."""
+    crossing = (np.minimum(x, y) <= 0.0) & (np.maximum(x, y) >= 0.0) & ~never
+    half = np.arctan2(np.sqrt(np.abs(x)), np.sqrt(np.abs(y)))
+    return np.where(crossing, 2.0 * np.degrees(half), np.nan)
+
+
+def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Shortest + longest against the sum of the other two; equal if so but for the rounding of the lengths."""
     links = np.stack(np.broadcast_arrays(a, d, b, c))
-    margin = 0.5 * links.sum(axis=0) - links.min(axis=0) - links.max(axis=0)
-    kind = np.where(margin > 0.0, links.argmin(axis=0), np.where(margin < 0.0, 4, 5))
-    return kind.astype(np.int8)
+    shortest, p, q, longest = np.sort(links, axis=0)
+    margin = (p + q) - (shortest + longest)
+    borderline = np.abs(margin) <= 2.0 * np.finfo(float).eps * (p + q)
+    return np.select([borderline, margin > 0.0], [5, links.argmin(axis=0)], 4).astype(np.int8)
 
 
 def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
@@ -76,11 +85,12 @@ def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
 def arcs(found: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
 
-    NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame line,
-    with one limit a single arc through the side where there is none.
+    NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame
+    line, with one limit a single arc through the side where there is none.
     """
     folded, stretched = np.isfinite(found.folded), np.isfinite(found.stretched)
-    whole, both = found.assembly == 0, folded & stretched
+    whole = found.assembly == 0
+    both = folded & stretched & ~whole
     cases = [whole, both, folded, stretched]
     nothing = np.full(whole.shape, np.nan)
     first = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import numbers
+import re
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any
@@ -39,10 +40,23 @@ class Rule:
     over_angle: bool = False
 
     @property
-    def bound(self) -> str:
-        if self.above is not None:
-            return f"greater than {self.above:g}"
-        return f"at least {self.at_least:g}" if self.at_least is not None else "finite"
+    def number(self) -> str:
+        """What is wanted, in words."""
+        unit = {"1": "", "degree": " in degrees"}.get(UNITS[self.kind], f" in {UNITS[self.kind]}")
+        return f"a number{unit}"
+
+    def measured(self, value: float) -> str:
+        return f"{value:.15g} {UNITS[self.kind]}".removesuffix(" 1")
+
+    def allowed(self, value: float) -> str:
+        """What would have been allowed in place of this value, and what to do."""
+        bound = f"greater than {self.above:g}" if self.above is not None else ""
+        bound = f"at least {self.at_least:g}" if self.at_least is not None else bound
+        finite = "" if bound and np.isfinite(value) else "finite"
+        # a length that may be 0 is the distance of a point in polar coordinates
+        turned = self.kind == "length" and self.at_least is not None and np.isfinite(value)
+        advice = "; for a point on the other side turn its angle by 180 degrees" if turned else ""
+        return " and ".join(filter(None, (finite, bound))) + advice
 
     def broken_by(self, values: np.ndarray) -> np.ndarray:
         broken = ~np.isfinite(values)
@@ -71,34 +85,55 @@ def problems(owner: Any, prefix: str = "") -> list[str]:
 
 def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) -> list[str]:
     if not (isinstance(pair, tuple | list) and len(pair) == 2):
-        return [f"{path} = {pair!r}: must be a pair {meaning}"]
+        return [f"{path} = {said(pair)}: must be a pair {meaning}"]
     return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
 
 
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
-    unit = UNITS[rule.kind]
-    if isinstance(value, bool | np.bool_):
-        return [f"{path} = {value}: must be a number in {unit}, not a truth value"]
-    if isinstance(value, str):
-        return [f"{path} = {value!r}: must be a number in {unit}, not text; strings with units belong in scene files"]
-    if callable(value) and not hasattr(value, "dims"):
-        return [] if rule.over_angle else [f"{path} is a function: must be a number in {unit}; {_over_angle_only()}"]
-    if hasattr(value, "dims"):
+    if is_array(value):
         return _array_problems(path, value, rule)
-    if isinstance(value, numbers.Real):
-        if rule.broken_by(np.asarray(float(value))):
-            return [f"{path} = {float(value):.15g} {unit}: must be {_allowed(rule, float(value))}"]
-        return []
+    if callable(value):
+        function = f"{path} = {said(value)}: must be {rule.number}, not a function; {_over_angle_only()}"
+        return [] if rule.over_angle else [function]
     if isinstance(value, np.ndarray | list | tuple):
-        return [
-            f"{path} is a bare array of shape {np.shape(value)}: name its dimensions, "
-            f'as in xarray.DataArray(values, dims="design")'
-        ]
-    return [f"{path} = {value!r}: must be a number in {unit} or an xarray.DataArray of them"]
+        scalar = isinstance(value, np.ndarray) and value.ndim == 0
+        named = 'name its dimensions, as in xarray.DataArray(values, dims="design")'
+        return [f"{path} = {said(value)} is a bare array: {'write float(...) of it' if scalar else named}"]
+    if isinstance(value, bool | np.bool_):
+        return [f"{path} = {value}: must be {rule.number}, not a truth value"]
+    if isinstance(value, str):
+        return [f"{path} = {value!r}: must be {rule.number}, not text; numbers with units stand in scene files"]
+    number = _as_float(value)
+    if number is None:
+        return [f"{path} = {said(value)}: must be {rule.number}, or an xarray.DataArray of them"]
+    if rule.broken_by(np.asarray(number)):
+        return [f"{path} = {rule.measured(number)}: must be {rule.allowed(number)}"]
+    return []
 
 
-def _allowed(rule: Rule, value: float) -> str:
-    return rule.bound if np.isfinite(value) or rule.bound == "finite" else f"finite and {rule.bound}"
+def is_array(value: Any) -> bool:
+    """Whether a value is a DataArray: known by what it can do, since xarray starts at the scene."""
+    return all(hasattr(value, name) for name in ("dims", "coords", "dtype"))
+
+
+def _as_float(value: Any) -> float | None:
+    """A real number as a float, infinite where it is too large for one; None for anything else."""
+    if not isinstance(value, numbers.Real) or isinstance(value, np.timedelta64):
+        return None
+    real: Any = value
+    try:
+        return float(real)
+    except OverflowError:
+        return np.inf if real > 0 else -np.inf
+
+
+def said(value: Any) -> str:
+    """A value in one short line of a message, the same in every run."""
+    try:
+        text = re.sub(r" at 0x\w+", "", " ".join(repr(value).split()))
+    except Exception:  # an int of too many digits, or whatever somebody's class does
+        text = f"<{type(value).__name__}>"
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _over_angle_only() -> str:
@@ -106,26 +141,46 @@ def _over_angle_only() -> str:
 
 
 def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
-    unit = UNITS[rule.kind]
     if value.dtype.kind not in "fiu":
-        return [f"{path} holds {value.dtype} values: must be numbers in {unit}"]
+        return [f"{path} holds {value.dtype} values: each must be {rule.number}"]
+    if value.size == 0:
+        return [f"{path} is empty, {dict(value.sizes)}: give each dimension at least one value"]
     found = []
-    if "theta2" in value.dims and not rule.over_angle:
-        found.append(f"{path} depends on theta2: it must be the same at every angle; {_over_angle_only()}")
+    if "theta2" in value.dims:
+        problem = f"{path} depends on theta2: it must be the same at every angle; {_over_angle_only()}"
+        found += _angle_problems(path, value) if rule.over_angle else [problem]
     if "branch" in value.dims:
         found.append(f'{path} has a dimension "branch": that name is kept for branch="both"; rename it')
     if len(set(value.dims)) < len(value.dims):
-        found.append(f"{path} has dimensions {value.dims}: each name may appear once; rename one")
+        return [*found, f"{path} has dimensions {value.dims}: each name may appear once; rename one"]
     broken = rule.broken_by(np.asarray(value.values, dtype=float))
     if broken.any():
         first = np.unravel_index(int(np.argmax(broken)), broken.shape)
-        place = ", ".join(f"{dim}={index}" for dim, index in zip(value.dims, first, strict=True))
         worst = float(value.values[first])
-        found.append(
-            f"{path} = {worst:.15g} {unit} at [{place}] ({int(broken.sum())} of {broken.size} values are not allowed): "
-            f"must be {_allowed(rule, worst)}"
-        )
+        found.append(f"{path} = {rule.measured(worst)}{_place(value, first, broken)}: must be {rule.allowed(worst)}")
     return found
+
+
+def _place(array: Any, first: tuple, broken: np.ndarray) -> str:
+    """Where the first value that is not allowed stands: by label where its dimension has labels."""
+    places = [
+        f"{dim} = {array.coords[dim].values[k]}" if dim in array.coords else f"{dim}[{k}]"
+        for dim, k in zip(array.dims, first, strict=True)
+    ]
+    others = f" (and {int(broken.sum()) - 1} more of {broken.size})" if broken.sum() > 1 else ""
+    return f" at {', '.join(places)}{others}" if places else ""
+
+
+def _angle_problems(path: str, value: Any) -> list[str]:
+    """What is wrong with the angles at which a DataArray over theta2 is given."""
+    if "theta2" not in value.coords:
+        return []  # its values are those of the sweep's own angles
+    angles = value.coords["theta2"].values
+    if angles.dtype.kind not in "fiu" or not np.isfinite(angles).all():
+        return [f"{path} has theta2 = {said(angles.tolist())}: its coordinate must hold finite angles in degrees"]
+    different, counts = np.unique(angles, return_counts=True)
+    twice = different[counts > 1]
+    return [f"{path} has theta2 = {twice[0]:.15g} more than once: give one value for each angle"] if twice.size else []
 
 
 def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
@@ -133,15 +188,22 @@ def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
     allowed = list(allowed)
     if isinstance(value, str) and value in allowed:
         return []
-    return [f"{path} = {value!r}: must be one of {', '.join(allowed)}{did_you_mean(value, allowed)}"]
+    return [f"{path} = {said(value)}: must be one of {', '.join(allowed)}{did_you_mean(value, allowed)}"]
+
+
+def count_problems(path: str, value: Any) -> list[str]:
+    """A whole number of things, 1 or more; None is for the owner to judge."""
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    sound = value is None or (whole and value >= 1)
+    return [] if sound else [f"{path} = {said(value)}: must be a whole number, 1 or more"]
 
 
 def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
     """A name that must be one of many; the message lists them all only where none is close."""
     known = list(known)
-    if name in known:
+    if isinstance(name, str) and name in known:
         return []
-    return [f"{path}: nothing is named {name!r}{did_you_mean(name, known) or '; there are ' + ', '.join(known)}"]
+    return [f"{path}: nothing is named {said(name)}{did_you_mean(name, known) or '; there are ' + ', '.join(known)}"]
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:

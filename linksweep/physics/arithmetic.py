@@ -6,6 +6,9 @@ from typing import Any
 Number = Any
 """A float, or whatever stands in for one: a traced value, a numpy array, a 50-digit number."""
 
+NOISE = 32.0 * 2.0**-52
+"""A cross product of two links, relative to their lengths, below which it is nothing but rounding."""
+
 
 def sqrt(x: Number) -> Number:
     return math.sqrt(x) if isinstance(x, float) else x.sqrt()

@@ -5,12 +5,13 @@ With φ the angle from the frame line to the crank, f² = |BD|² = (d−a)² + 4
     low  = f² − (b−c)² = (d−a−b+c)(d−a+b−c) + 4ad·sin²(φ/2)
     high = (b+c)² − f² = (b+c−d−a)(b+c+d+a) + 4ad·cos²(φ/2)
 
-Half angles keep every digit where cos φ would drop them. Open or crossed, the mechanism closes while low·high > 0.
+Half angles keep every digit where cos φ would drop them, and lengths subtracted in these pairs are exactly 0 at a
+change point with equal links. Open or crossed, the mechanism closes while low·high > 0.
 """
 
 import math
 
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.arithmetic import NOISE, Number, where
 from linksweep.physics.planar import cross
 
 
@@ -52,14 +53,12 @@ def closure_factors(
     """low and high, as the module's equations write them."""
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
     four_ad = 4.0 * a * d
-    low = (d - a - b + c) * (d - a + b - c) + four_ad * (sin_half * sin_half)
-    high = (b + c - d - a) * (b + c + d + a) + four_ad * (cos_half * cos_half)
+    low = ((d - b) + (c - a)) * ((d - c) + (b - a)) + four_ad * (sin_half * sin_half)
+    high = ((b - d) + (c - a)) * (b + c + d + a) + four_ad * (cos_half * cos_half)
     return low, high
 
 
-def assembly(
-    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
-) -> Number:
+def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number) -> Number:
     """0 where it closes at every angle, 1 where at some, 2 where at none: low is least at φ = 0, high at φ = 180°."""
     lengths = (crank_length, coupler_length, rocker_length, ground_length)
     least_low, largest_high = closure_factors(*lengths, 0.0, 1.0)
@@ -114,6 +113,9 @@ def balancing_torque(work: Number, ratio: Number) -> Number:
     return where(abs(ratio) > 0.0, -work / ratio, math.nan)
 
 
-def drive_status(closure: Number, leverage: Number) -> Number:
-    """The closure's status, or 3 (dead centre) where the driven link stands still and no torque on it can drive."""
-    return where(abs(leverage) > 0.0, closure, where(closure > 0.0, closure, 3.0))
+def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:
+    """The closure's status, or 3 (dead centre) where the driven link stands still and no torque on it can drive.
+
+    The leverage is the cross product of the two other links, of lengths p and q.
+    """
+    return where(abs(leverage) > NOISE * p * q, closure, where(closure > 0.0, closure, 3.0))

@@ -1,5 +1,4 @@
-"""check(scene): Grashof class, where the mechanism can be assembled, and its toggles, in closed form for every
-design."""
+"""check(scene): Grashof class, where it can be assembled, and its toggles, in closed form for every design."""
 
 from __future__ import annotations
 
@@ -24,12 +23,10 @@ def check(scene: Scene) -> xr.Dataset:
     -------
     Dataset over the design dims that the lengths depend on:
 
-    - `grashof`: by the shortest link, crank_rocker, double_crank, double_rocker, rocker_crank; triple_rocker (no
-    link turns fully);
-      change_point (shortest + longest equals the other two exactly)
+    - `grashof`: by the shortest link, crank_rocker, double_crank, double_rocker, rocker_crank; triple_rocker (no link
+      turns fully); change_point (shortest + longest equals the other two, but for rounding)
     - `assembly`: everywhere, partly, never
-    - `arc_start`, `arc_end` (arc) [degree]: the one or two arcs of theta2 that can be assembled; NaN where there is
-    none
+    - `arc_start`, `arc_end` (arc) [degree]: the one or two arcs of theta2 that can be assembled; NaN where there is none
     - `toggle_angle` (toggle) [degree]: theta2 at which coupler and rocker lie in one line; NaN where there is none
     - `transmission_angle_min` [degree]: smallest acute angle between coupler and rocker on those arcs
 

@@ -38,12 +38,13 @@ def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field
 
 
 def blank(fields: dict[str, Field], status: Field) -> None:
-    """NaN where the status is not 0, in every field that has the dims to know."""
+    """NaN where the status is not 0: where it is so for every design that shares the sample."""
     bad = status.values != 0
     if not bad.any():
         return
     for name, (dims, values) in fields.items():
-        if set(status.dims) <= set(dims):
-            there = bad.transpose([status.dims.index(dim) for dim in dims if dim in status.dims])
-            shape = [n if dim in status.dims else 1 for dim, n in zip(dims, values.shape, strict=True)]
-            fields[name] = Field(dims, np.where(there.reshape(shape), np.nan, values))
+        beyond = tuple(k for k, dim in enumerate(status.dims) if dim not in dims)
+        shared = [dim for dim in status.dims if dim in dims]
+        there = bad.all(axis=beyond).transpose([shared.index(dim) for dim in dims if dim in shared])
+        shape = [n if dim in shared else 1 for dim, n in zip(dims, values.shape, strict=True)]
+        fields[name] = Field(dims, np.where(there.reshape(shape), np.nan, values))

@@ -17,7 +17,7 @@ from linksweep.engine.fuse import Reduction
 from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
-from linksweep.mechanisms.validate import name_problems, refuse
+from linksweep.mechanisms.validate import count_problems, name_problems, refuse
 from linksweep.results.record import design_coordinates, flags, provenance, variable
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -60,6 +60,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
     """
+    refuse(count_problems("threads", threads))
     grid = crank_grid(theta2, scene.mechanism.period)
     sampled = scene.at(grid)
     wanted = _wanted(scene, of)

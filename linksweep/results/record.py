@@ -27,7 +27,8 @@ def described(
     }
     variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
     coordinates = cycle_coordinates(sampled) | {grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE)}
-    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
+    attributes = provenance(sampled, command, coordinates)
+    return xr.Dataset(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
 
 
 def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:

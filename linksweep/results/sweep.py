@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import choice_problems, name_problems, refuse
+from linksweep.mechanisms.validate import choice_problems, count_problems, name_problems, refuse
 from linksweep.results.compute import blank, compute, sample_status
 from linksweep.results.record import described
 from linksweep.results.system import dense_solution
@@ -59,7 +59,7 @@ def sweep(
     >>> dict(cycle.sizes), cycle.T12.units
     ({'theta2': 360}, 'N m')
     """
-    refuse(choice_problems("solver", solver, SOLVERS))
+    refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
     grid = crank_grid(theta2, scene.mechanism.period)
     names = _names(scene, outputs)
     sampled = scene.at(grid)

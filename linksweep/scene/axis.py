@@ -119,9 +119,7 @@ def _array(values: Any, problems: list[str]) -> Any:
     return array
 
 
-def _coords(
-    table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]
-) -> dict[str, Any]:
+def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]) -> dict[str, Any]:
     """Read the labels of the dims; those of theta2 are angles."""
     sizes = dict(zip(dims, values.shape, strict=True))
     if "coords" not in table and "theta2" not in table:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -10,15 +9,16 @@ import numpy as np
 
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.validate import said
 
 NAMES = ("cos2", "sin2", "cos2_half", "sin2_half", "cos2_half_squared", "sin2_half_squared")
 
 
 def crank_grid(theta2: Any, period: float) -> Grid:
     """The grid of a count (arange(N)·360/N) or of given angles [degree]. Raises ValueError for anything else."""
-    if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool):
+    if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
         if theta2 < 1:
-            raise ValueError(f"theta2 = {theta2}: a count of angles must be at least 1")
+            raise ValueError(f"theta2 = {said(theta2)}: a count of angles must be at least 1")
         return _uniform(int(theta2), period)
     return _grid(_angles(theta2), period=0.0)
 
@@ -30,15 +30,19 @@ def _uniform(count: int, period: float) -> Grid:
 
 def _angles(theta2: Any) -> np.ndarray:
     try:
-        angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
-    except (TypeError, ValueError):
-        angles = None
-    if angles is None or isinstance(theta2, str | bool | Mapping) or angles.ndim > 1 or angles.size == 0:
-        raise ValueError(f"theta2 = {theta2!r}: must be a count of angles, or a list of angles in degrees")
-    if not np.isfinite(angles).all():
-        k = int(np.argmin(np.isfinite(angles)))
-        raise ValueError(f"theta2[{k}] = {angles.reshape(-1)[k]}: every angle must be a finite number of degrees")
-    return np.array(angles, ndmin=1)
+        angles = np.asarray(getattr(theta2, "values", theta2))
+    except ValueError:  # rows that differ in length
+        angles = np.empty(0)
+    if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:
+        raise ValueError(f"theta2 = {said(theta2)}: must be a count of angles, or a list of angles in degrees")
+    if angles.ndim == 0:
+        raise ValueError(f"theta2 = {said(theta2)}: a count is a whole number; for one angle write [{angles}]")
+    angles = angles.astype(float)
+    sound = np.isfinite(angles)
+    if not sound.all():
+        k = int(np.argmin(sound))
+        raise ValueError(f"theta2[{k}] = {angles[k]}: every angle must be a finite number of degrees")
+    return angles
 
 
 def _grid(angles: np.ndarray, period: float) -> Grid:

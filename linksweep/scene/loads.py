@@ -12,6 +12,7 @@ from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_pr
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
+FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
 AT = (Rule("length", at_least=0.0), Rule("angle"))
 
 
@@ -57,7 +58,7 @@ class Load:
         if self.force is None and self.torque is None:
             found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
         if self.force is not None:
-            found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), "(Fx, Fy) in N")
+            found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), FORCE_PAIR)
         return (
             found
             + problems(self, path + ".")

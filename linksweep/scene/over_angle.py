@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.run import Grid
-from linksweep.mechanisms.validate import UNITS, Rule, number_problems
+from linksweep.mechanisms.validate import Rule, number_problems, refuse
 
 
 def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> xr.DataArray:
@@ -37,22 +37,21 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> x
 
 def _called(path: str, function: Any, rule: Rule, grid: Grid) -> xr.DataArray:
     try:
-        values = np.asarray(function(grid.angles.copy()), dtype=float)
+        values = np.asarray(function(grid.angles.copy()))
     except Exception as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
-            f"{path}: the function failed on an array of theta2 in degrees ({type(error).__name__}: {error}); "
+            f"{path}: the function failed on an array of theta2 in degrees ({said}); "
             f"write it with numpy, as in lambda theta2: 5 * np.cos(np.radians(theta2))"
         ) from error
     if values.shape not in ((), grid.angles.shape):
         raise ValueError(
             f"{path}: the function returned shape {values.shape} for {len(grid.angles)} angles; "
-            f"it must return one number in {UNITS[rule.kind]} for each angle"
+            f"it must return {rule.number} for each angle"
         )
     sampled = xr.DataArray(np.broadcast_to(values, grid.angles.shape), {"theta2": grid.angles}, "theta2")
-    found = number_problems(path, sampled, rule)
-    if found:
-        raise ValueError("\n".join(found))
-    return sampled
+    refuse([f"{problem}; its function returned it" for problem in number_problems(path, sampled, rule)])
+    return sampled.astype(float)
 
 
 def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
@@ -68,26 +67,33 @@ def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.Dat
     from scipy.interpolate import CubicSpline
 
     value = value.sortby("theta2").transpose("theta2", ...)
-    angles, values = value["theta2"].values, value.values
-    if angles[-1] - angles[0] > period:
-        period = 2.0 * period
-    if angles[-1] - angles[0] < period:
-        angles = np.append(angles, angles[0] + period)
-        values = np.concatenate([values, values[:1]])
-    if len(angles) < 4 or angles[-1] - angles[0] > period or (np.diff(angles) <= 0.0).any():
-        raise ValueError(
-            f"{path}: its {len(angles) - 1} angles from {angles[0]:g} to {angles[-2]:g} degrees cannot be joined; "
-            f"give at least 3 different angles within one period of {period:g} degrees"
-        )
-    if not np.array_equal(values[0], values[-1]):
-        raise ValueError(
-            f"{path}: its values at {angles[0]:g} and {angles[-1]:g} degrees differ, but they are the same position; "
-            f"make them equal or leave one out"
-        )
-    spline = CubicSpline(angles, values, bc_type="periodic")
-    wanted = angles[0] + np.mod(grid.angles - angles[0], period)
-    found = value.isel(theta2=0, drop=True).expand_dims(theta2=grid.angles).copy(data=spline(wanted))
-    place = {angle: k for k, angle in enumerate(value["theta2"].values)}
-    held = np.array([place.get(angle, -1) for angle in wanted])
-    found.values[held >= 0] = value.values[held[held >= 0]]
+    known, values = value["theta2"].values.astype(float), value.values
+    span = known[-1] - known[0]
+    period = period if span <= period else 2.0 * period
+    knots, at_knots = known, values
+    if span < period:
+        knots, at_knots = np.append(known, known[0] + period), np.concatenate([values, values[:1]])
+    refuse(_period_problems(path, known, knots, at_knots, period))
+    spline = CubicSpline(knots, at_knots, bc_type="periodic")
+    found = value.isel(theta2=0, drop=True).expand_dims(theta2=grid.angles)
+    found = found.copy(data=spline(known[0] + np.mod(grid.angles - known[0], period)))
+    place = {angle: k for k, angle in enumerate(np.mod(known, period))}
+    held = np.array([place.get(angle, -1) for angle in np.mod(grid.angles, period)])
+    found.values[held >= 0] = values[held[held >= 0]]
     return found
+
+
+def _period_problems(path: str, known: np.ndarray, knots: np.ndarray, at_knots: np.ndarray, period: float) -> list[str]:
+    """Why values at known angles cannot be joined to a periodic curve."""
+    said = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
+    if len(knots) < 4 or knots[-1] - knots[0] > period:
+        return [f"{said} cannot be joined; give at least 3 different angles within one period of {period:g} degrees"]
+    if not np.array_equal(at_knots[0], at_knots[-1]):
+        return [
+            f"{path}: its values at {knots[0]:g} and {knots[-1]:g} degrees differ, but they are the same position; "
+            f"make them equal or leave one out"
+        ]
+    gap = np.diff(knots).max()
+    if gap > 0.5 * period:
+        return [f"{said} leave {gap:g} of {period:g} degrees open; give values all the way round"]
+    return []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -18,11 +18,14 @@ from linksweep.mechanisms.validate import (
     Number,
     Rule,
     choice_problems,
+    is_array,
     pair_problems,
     parameter,
     problems,
     refuse,
+    said,
 )
+from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.loads import Load
 from linksweep.scene.over_angle import at_angles
@@ -78,18 +81,28 @@ class Scene:
     drive: str = "crank"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "loads", (self.loads,) if isinstance(self.loads, Load) else tuple(self.loads))
-        found = [] if isinstance(self.mechanism, FourBar) else [f"mechanism = {self.mechanism!r}: must be a FourBar"]
+        found = (
+            [] if isinstance(self.mechanism, FourBar) else [f"mechanism = {said(self.mechanism)}: must be a FourBar"]
+        )
         found += problems(self)
-        found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s2")
+        found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += choice_problems("drive", self.drive, FourBar.drives)
-        for k, load in enumerate(self.loads, 1):
-            known = isinstance(load, Load)
-            found += (
-                load.problems(f"loads[{k}]", FourBar.links) if known else [f"loads[{k}] = {load!r}: must be a Load"]
-            )
+        found += self._take_loads()
         refuse(found)
-        refuse(_conflicts(self))
+        refuse(dimension_problems(self.arrays, self.mechanism.index, self.table.quantity))
+
+    def _take_loads(self) -> list[str]:
+        """Any collection of loads as a tuple; a single load counts as one."""
+        loads = (self.loads,) if isinstance(self.loads, Load) else self.loads
+        if isinstance(loads, str | Mapping | np.ndarray) or is_array(loads) or not isinstance(loads, Iterable):
+            return [f"loads = {said(loads)}: must be a Load, or a list of them"]
+        object.__setattr__(self, "loads", tuple(loads))
+        found = []
+        for k, load in enumerate(self.loads, 1):
+            sound = isinstance(load, Load)
+            problem = [f"loads[{k}] = {said(load)}: must be a Load"]
+            found += load.problems(f"loads[{k}]", FourBar.links) if sound else problem
+        return found
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -185,26 +198,6 @@ def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _numbers(value, "" if item.name == "mechanism" else path + ".")
         elif isinstance(value, tuple | list):
             yield from ((f"{path}[{k}]", number) for k, number in enumerate(value, 1))
-
-
-def _conflicts(scene: Scene) -> list[str]:
-    """Dimensions on which two DataArrays disagree, in size or in coordinates."""
-    seen: dict[str, tuple[str, xr.DataArray]] = {}
-    found = []
-    for path, array in scene.arrays.items():
-        for dim in map(str, array.dims):
-            first_path, first = seen.setdefault(dim, (path, array))
-            if array.sizes[dim] != first.sizes[dim]:
-                found.append(
-                    f"{path} has {array.sizes[dim]} values along {dim}, but {first_path} has {first.sizes[dim]}: "
-                    f"one dimension has one length; give them the same, or rename one"
-                )
-            elif dim in array.coords and dim in first.coords and not array[dim].equals(first[dim]):
-                found.append(
-                    f"{path} and {first_path} have different coordinates along {dim}: "
-                    f"make them equal, or rename one dimension"
-                )
-    return [problem for problem in found if " along theta2" not in problem]
 
 
 def _content(value: Any) -> Any:

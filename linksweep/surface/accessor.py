@@ -22,8 +22,10 @@ class Cycle:
 
     Examples
     --------
-    >>> cycle = linksweep.sweep(scene)  # doctest: +SKIP
-    >>> cycle.linksweep.forces()  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> cycle = ls.sweep(ls.example("press"))
+    >>> cycle.linksweep.scene == ls.example("press")
+    True
     """
 
     def __init__(self, ds: xr.Dataset) -> None:

@@ -49,7 +49,9 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
 
     Examples
     --------
-    >>> ax = linksweep.sweep(scene).linksweep.bearing("F32", frame="link")  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.bearing("F32", frame="link").get_xlabel()
+    '$F_{32}$ along the crank, A→B [N]'
     """
     refuse(choice_problems("frame", frame, ("ground", "link")))
     signals.require_angles(ds)
@@ -137,7 +139,8 @@ def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: s
     tip = force * (BEYOND * shown / largest.value) if beyond else force
     direction = np.degrees(np.arctan2(force[1], force[0]))
     lines = (
-        f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}" + ", off scale" * beyond,
+        f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}",
+        *["off scale"] * beyond,
         f"at $\\theta_2$ = {signals.angle_text(largest.angle)}",
         f"direction {direction:.1f}°".replace("-", "−"),
     )

@@ -6,8 +6,7 @@ stay right when the figure is resized, or laid out anew because another panel ca
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -23,30 +22,6 @@ SPACE = 3.0  # points kept free around a label
 LEADER = 10.0  # points from which on a thin line leads back
 Line = tuple[str, str]  # text and colour
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
-
-
-class Box(NamedTuple):
-    """A rectangle on the paper [pixel]."""
-
-    left: float
-    bottom: float
-    right: float
-    top: float
-
-    @property
-    def area(self) -> float:
-        return (self.right - self.left) * (self.top - self.bottom)
-
-    def count(self, points: np.ndarray) -> int:
-        inside = (points >= (self.left, self.bottom)) & (points <= (self.right, self.top))
-        return int(inside.all(axis=1).sum())
-
-    def overlap(self, other: Box) -> float:
-        """Shared area, as a fraction of the smaller box."""
-        width = min(self.right, other.right) - max(self.left, other.left)
-        height = min(self.top, other.top) - max(self.bottom, other.bottom)
-        smaller = min(self.area, other.area)
-        return max(width, 0.0) * max(height, 0.0) / smaller if smaller else 0.0
 
 
 def label(axes: Axes, x: float, y: float, *lines: Line, **style: Any) -> AnnotationBbox:
@@ -107,36 +82,59 @@ class Placer(Artist):
         self.set_in_layout(False)
 
     def draw(self, renderer: Any) -> None:
-        notes = [note for note in self.notes if note.axes is self.axes and note.get_visible()]
         axes: Any = self.axes
-        curves, taken = _curves(axes), list(_boxes(axes, renderer))
-        frame = Box(*axes.get_window_extent(renderer).extents)
+        notes = [note for note in self.notes if note.axes is axes and note.get_visible()]
+        ink, taken = Ink(axes.get_window_extent(renderer).extents), _texts(axes, renderer)
+        for line in axes.lines:
+            if line.get_visible() and line.get_zorder() >= CURVES:
+                ink.add_line(line)
         anchors = axes.transData.transform(np.reshape([note.xy for note in notes], (-1, 2)))
-        curves = np.concatenate([curves, anchors])
+        ink.add(anchors)
         for note, anchor in zip(notes, anchors, strict=True):
-            box, leader = _place(note, anchor, curves, taken, frame, renderer)
-            taken.append(box)
-            curves = np.concatenate([curves, leader])
+            box, leader = _place(note, anchor, ink, taken, renderer)
+            taken = np.concatenate([taken, [box]])
+            ink.add(leader)
 
 
-def _curves(axes: Axes) -> np.ndarray:
-    """Points of all that is drawn of curves and markers, so close together that no box slips between them [pixel]."""
-    found = [np.empty((0, 2))]
-    for line in axes.lines:
-        if line.get_visible() and line.get_zorder() >= CURVES:
-            found += _drawn(line)
-    points = np.concatenate(found)
-    return np.unique(np.rint(points[np.isfinite(points).all(axis=1)] / CELL), axis=0) * CELL
+class Ink:
+    """Which cells of the axes curves and markers cover, and how many of them lie in a box.
 
+    Boxes are rows (left, bottom, right, top) [pixel].
+    """
 
-def _drawn(line: Line2D) -> Iterator[np.ndarray]:
-    points = line.get_transform().transform(line.get_xydata())
-    figure: Any = line.figure
-    pixels = figure.dpi / 72.0
-    if line.get_linestyle() != "None":
-        yield _broad(_dense(points), 0.5 * line.get_linewidth() * pixels)
-    if line.get_marker() not in ("", " ", "None", None):
-        yield _broad(points, 0.5 * line.get_markersize() * pixels)
+    def __init__(self, frame: np.ndarray) -> None:
+        self.frame = np.asarray(frame)
+        self.cells = np.zeros(1 + np.ceil((self.frame[2:] - self.frame[:2]) / CELL).astype(int), dtype=bool)
+
+    def add_line(self, line: Line2D) -> None:
+        """Cover what a line covers, with its markers, as broad as they are."""
+        points = line.get_transform().transform(line.get_xydata())
+        figure: Any = line.figure
+        pixels = figure.dpi / 72.0
+        if line.get_linestyle() != "None":
+            self.add(_broad(_dense(points), 0.5 * line.get_linewidth() * pixels))
+        if line.get_marker() not in ("", " ", "None", None):
+            self.add(_broad(points, 0.5 * line.get_markersize() * pixels))
+
+    def add(self, points: np.ndarray) -> None:
+        low, high = self.frame[:2], self.frame[2:]
+        inside = ((points >= low) & (points <= high)).all(axis=1)  # nor NaN
+        self.cells[tuple(self._cell(points[inside]).T)] = True
+
+    def count(self, boxes: np.ndarray) -> np.ndarray:
+        """Covered cells in each box, by a table of sums."""
+        sums = np.pad(self.cells.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+        (left, bottom), (right, top) = self._cell(boxes[:, :2]).T, self._cell(boxes[:, 2:]).T + 1
+        return sums[right, top] - sums[left, top] - sums[right, bottom] + sums[left, bottom]
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Whether each point lies on a covered cell."""
+        cell = self._cell(points)
+        return self.cells[cell[..., 0], cell[..., 1]]
+
+    def _cell(self, points: np.ndarray) -> np.ndarray:
+        cell = ((points - self.frame[:2]) / CELL).astype(int)
+        return np.clip(cell, 0, np.array(self.cells.shape) - 1)
 
 
 def _dense(points: np.ndarray) -> np.ndarray:
@@ -156,42 +154,49 @@ def _broad(points: np.ndarray, radius: float) -> np.ndarray:
     return (points[:, None] + square).reshape(-1, 2)
 
 
-def _boxes(axes: Axes, renderer: Any) -> Iterator[Box]:
-    """What else is written in the axes."""
-    others: list[Any] = [text for text in axes.texts if text.get_text()]
+def _texts(axes: Axes, renderer: Any) -> np.ndarray:
+    """Boxes of what else is written in the axes."""
+    found: list[Any] = [text for text in axes.texts if text.get_text()]
     if axes.get_legend() is not None:
-        others.append(axes.get_legend())
-    for other in others:
-        yield Box(*other.get_window_extent(renderer).extents)
+        found.append(axes.get_legend())
+    return np.reshape([other.get_window_extent(renderer).extents for other in found], (-1, 4))
 
 
 def _place(
-    note: AnnotationBbox, anchor: np.ndarray, curves: np.ndarray, taken: list[Box], frame: Box, renderer: Any
-) -> tuple[Box, np.ndarray]:
-    """Move a label to its cheapest place; its box and the points of its leader come back."""
+    note: AnnotationBbox, anchor: np.ndarray, ink: Ink, taken: np.ndarray, renderer: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """Move a label to the cheapest of its places; its box and the points of its leader come back."""
     point = renderer.points_to_pixels(1.0)
     size = np.array(note.offsetbox.get_bbox(renderer).size) + SPACE * point
-    best: Any = (np.inf,)
-    for distance in DISTANCES:
-        if distance >= best[0]:  # all that is farther costs more
-            break
-        for direction in DIRECTIONS:
-            unit = np.array([np.cos(direction), np.sin(direction)])
-            centre = anchor + unit * (distance * point) + np.sign(np.round(unit, 9)) * size / 2.0
-            box = Box(*(centre - size / 2.0), *(centre + size / 2.0))
-            leader = anchor + (centre - anchor) * np.linspace(0.0, 1.0, 20)[:, None]
-            cost = distance + _cost(box, leader, curves, taken, frame)
-            if cost < best[0]:
-                best = (cost, distance, centre, box, leader)
-    _, distance, centre, box, leader = best
-    note.xybox = tuple((centre - anchor) / point)
+    centres = anchor + PLACES[:, :2] * point + np.sign(np.round(PLACES[:, :2], 9)) * size / 2.0
+    boxes = np.hstack([centres - size / 2.0, centres + size / 2.0])
+    leaders = anchor + (centres - anchor)[:, None] * np.linspace(0.0, 1.0, 20)[:, None]
+    best = int(np.argmin(PLACES[:, 2] + _cost(boxes, leaders, ink, taken)))
+    note.xybox = tuple((centres[best] - anchor) / point)
     if note.arrow_patch is not None:
-        note.arrow_patch.set_visible(distance >= LEADER)
-    return box, leader
+        note.arrow_patch.set_visible(PLACES[best, 2] >= LEADER)
+    return boxes[best], leaders[best]
 
 
-def _cost(box: Box, leader: np.ndarray, curves: np.ndarray, taken: list[Box], frame: Box) -> float:
-    """How bad a place is: on another text or outside the axes worst, then on a curve."""
-    on_texts = sum(float(box.overlap(other) > 0.0) + box.overlap(other) + 0.05 * other.count(leader) for other in taken)
-    outside = 1.0 - box.overlap(frame)
-    return 500.0 * (on_texts + outside) + 12.0 * box.count(curves)
+def _cost(boxes: np.ndarray, leaders: np.ndarray, ink: Ink, taken: np.ndarray) -> np.ndarray:
+    """How bad each place is: on another text or outside the axes worst, then on a curve, then across one."""
+    on_texts = _overlap(boxes, taken)
+    on_texts += on_texts > 0.0
+    points = leaders[:, :, None]
+    struck = ((points >= taken[:, :2]) & (points <= taken[:, 2:])).all(axis=3).sum(axis=(1, 2))
+    outside = 1.0 - _overlap(boxes, ink.frame[None])[:, 0]
+    outside += outside > 1e-6
+    across = ink.at(leaders[:, 6:]).sum(axis=1)  # where a leader begins, there is always a curve
+    return 500.0 * (on_texts.sum(axis=1) + outside) + 25.0 * struck + 12.0 * ink.count(boxes) + 3.0 * across
+
+
+def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Area that each box shares with each of the others, as a fraction of the smaller of the two."""
+    low = np.maximum(boxes[:, None, :2], others[:, :2])
+    high = np.minimum(boxes[:, None, 2:], others[:, 2:])
+    smaller = np.minimum(_area(boxes)[:, None], _area(others))
+    return np.clip(high - low, 0.0, None).prod(axis=2) / np.where(smaller > 0.0, smaller, 1.0)
+
+
+def _area(boxes: np.ndarray) -> np.ndarray:
+    return (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)

@@ -58,7 +58,9 @@ def mechanism(
 
     Examples
     --------
-    >>> ax = linksweep.surface.plot.mechanism(scene, theta2=30.0, forces=True)  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
+    'x [m]'
     """
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else signals.scene_of_design(ds_or_scene)
     angle = _angle(theta2)

@@ -75,7 +75,9 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
 
     Examples
     --------
-    >>> ax = linksweep.sweep(scene).linksweep.forces(["F12", "F32"])  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.forces(["F12", "F32"]).get_ylabel()
+    'pin force [N]'
     """
     signals.require_angles(ds)
     wanted = _names(ds, names)
@@ -95,7 +97,11 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     _angle_axis(ax, curves[0].angles)
     runaway = any(found and found.value > HEADROOM * top for found in peaks)
     _legend(ax, curves, widest if runaway else None)
-    marks = [Mark(found, curve, curve.said) for found, curve in zip(peaks, curves, strict=True) if found and found.value > 0.0]
+    marks = [
+        Mark(found, curve, curve.said)
+        for found, curve in zip(peaks, curves, strict=True)
+        if found and found.value > 0.0
+    ]
     _mark(ax, marks, units)
     return ax
 
@@ -122,7 +128,9 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
     Examples
     --------
-    >>> ax = linksweep.sweep(scene).linksweep.torque()  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.torque().get_ylabel()
+    'drive torque $T_{12}$ [N m]'
     """
     signals.require_angles(ds)
     name = signals.torque_name(ds)
@@ -164,7 +172,10 @@ def cycle(ds: xr.Dataset) -> Figure:
 
     Examples
     --------
-    >>> linksweep.sweep(scene).linksweep.cycle().savefig("cycle.png", dpi=200)  # doctest: +SKIP
+    >>> import linksweep as ls
+    >>> figure = ls.sweep(ls.example("press")).linksweep.cycle()
+    >>> [ax.get_title(loc="left") for ax in figure.axes[1:]]
+    ['Pin forces', 'Load of pin C: $F_{43}$', 'Drive torque']
     """
     import matplotlib.pyplot as plt
     from matplotlib.layout_engine import ConstrainedLayoutEngine

@@ -1,0 +1,69 @@
+"""Dimensions of a scene's DataArrays: each has a name of its own, one length and one set of labels."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+import xarray as xr
+
+TABLES = ("status", "arc", "toggle", "equation", "unknown")
+"""What results of `sweep`, `check` and `system` bring with them, besides the quantities."""
+
+Arrays = dict[str, xr.DataArray]  # by the path of the parameter that each is
+
+
+def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) -> list[str]:
+    """What keeps a scene's arrays from standing in one Dataset.
+
+    Parameters
+    ----------
+    arrays : DataArrays by the path of the parameter that each is
+    index : the dimension of the sweep, which compares sizes and labels itself
+    quantities : names of what can be computed
+    """
+    by_dim: dict[object, Arrays] = {}
+    for path, array in arrays.items():
+        for dim in array.dims:
+            by_dim.setdefault(dim, {})[path] = array
+    problems: list[str] = []
+    for dim, sharing in by_dim.items():
+        if dim == index:
+            continue
+        if name_problems := list(_name_problems(dim, sharing, arrays, {*quantities, *TABLES})):
+            problems += name_problems
+        else:
+            problems += [*_length_problems(dim, sharing), *_label_problems(dim, sharing, arrays)]
+    return problems
+
+
+def _name_problems(dim: object, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
+    path = next(iter(sharing))
+    if not isinstance(dim, str) or not dim or "/" in dim:
+        yield f'{path} has a dimension {dim!r}: its name must be a text without "/"; rename it'
+    elif dim in arrays:
+        if arrays[dim].dims != (dim,):
+            yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'
+    elif dim in results:
+        yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
+
+
+def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:
+    (path, first), *others = sharing.items()
+    for other, array in others:
+        if array.sizes[dim] != first.sizes[dim]:
+            yield (
+                f"{other} has {array.sizes[dim]} values along {dim}, but {path} has {first.sizes[dim]}: "
+                f"one dimension has one length; give them the same, or rename one"
+            )
+
+
+def _label_problems(dim: object, sharing: Arrays, arrays: Arrays) -> Iterator[str]:
+    labels = {path: array[dim].variable for path, array in sharing.items() if dim in array.coords}
+    if dim in arrays:  # a parameter over a dimension of its own name: its values are the labels
+        expected, others = arrays[str(dim)].variable, f"the values of {dim}"
+    elif labels:
+        (first, expected), *_ = labels.items()
+        others = f"those of {first}"
+    for path, values in labels.items():
+        if values.shape == expected.shape and not values.equals(expected):
+            yield f"{path} has labels along {dim} that are not {others}: make them equal, or rename one dimension"
