@@ -63,7 +63,7 @@ def measured(name: str, size: Size) -> list[Row]:
 
 
 def _disagree(groups: Groups) -> bool:
-    return any(row.error is not None and row.error > AGREEMENT for rows in groups.values() for row in rows)
+    return any(row.error is not None and not row.error <= AGREEMENT for rows in groups.values() for row in rows)
 
 
 def _results(groups: Groups, size: Size) -> str:

@@ -5,15 +5,19 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest import mock
 
+import numpy as np
+import xarray as xr
+
 import linksweep as ls
 from linksweep.engine.compile import compiled
 
-from . import peers
+from . import peaks, peers
 from .cases import GENERAL, NINE, Size, scene, stacked
 from .kernel import kernel_of, way
 from .timing import WALL, Race, Row, race, timed
@@ -21,6 +25,7 @@ from .timing import WALL, Race, Row, race, timed
 LAPACK = "numpy + LAPACK"
 FIRST_COMPILED = """
 import time
+
 import linksweep as ls
 from linksweep.engine import run
 run.COMPILE_AFTER = -1
@@ -36,23 +41,34 @@ def warm_calls(size: Size) -> list[Row]:
 
 
 def _warm(name: str, size: Size) -> list[Row]:
-    """One revolution of one design, kinematics and unknowns; the press carries a load."""
-    machine, press, theta2 = scene(GENERAL), ls.example("press"), peers.grid(size.turn)
-    sweep, peaks = partial(ls.sweep, machine, size.turn), partial(ls.peaks, machine, theta2=size.turn)
+    """One revolution of one design: kinematics and unknowns, or peaks. The press carries a load."""
+    machine, press = scene(GENERAL), ls.example("press")
     jobs = {
-        f"ls.sweep, {name}": (sweep, 1e-3),
-        f"ls.sweep of the press, {name}": (partial(ls.sweep, press, size.turn), 1e-3),
-        f"ls.sweep, scene built anew, {name}": (lambda: ls.sweep(scene(GENERAL), size.turn), None),
-        f"ls.peaks, {name}": (peaks, None),
+        f"ls.sweep, {name}": partial(ls.sweep, machine, size.turn),
+        f"ls.sweep of the press, {name}": partial(ls.sweep, press, size.turn),
+        f"ls.sweep, scene built anew, {name}": lambda: ls.sweep(scene(GENERAL), size.turn),
+        f"ls.peaks, {name}": partial(ls.peaks, machine, theta2=size.turn),
     }
-    calls = {job: call for job, (call, _) in jobs.items()}
-    calls[LAPACK] = partial(peers.numpy_lapack, GENERAL, theta2)
+    goals = (1e-3, 1e-3, None, None)
     with way(name):
-        error = peers.difference(stacked(sweep(), NINE), calls[LAPACK]())
-        found = race(calls, size)
+        errors = _errors(size.turn, *(call() for call in jobs.values()))
+        found = race(jobs | {LAPACK: partial(peers.numpy_lapack, GENERAL, peers.grid(size.turn))}, size)
     return [
-        found.row(WALL, job, LAPACK, goal, error=None if "press" in job or "peaks" in job else error)
-        for job, (_, goal) in jobs.items()
+        found.row(WALL, job, LAPACK, goal, error=error) for job, goal, error in zip(jobs, goals, errors, strict=True)
+    ]
+
+
+def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
+    """Each warm job's result against a dense solve; that of the press, which is loaded, against linksweep's own."""
+    sweep, press, anew, found = results
+    nine = peers.numpy_lapack(GENERAL, peers.grid(n_angles))
+    dense_press = ls.sweep(ls.example("press"), n_angles, NINE, solver="dense")
+    alone = replace(GENERAL, a=np.full((1, 1), GENERAL.a))
+    return [
+        peers.difference(stacked(sweep), nine),
+        peers.difference(stacked(press), stacked(dense_press)),
+        peers.difference(stacked(anew), nine),
+        peaks.difference(peaks.columns(found)[None], peers.parabola_peaks(alone, n_angles)),
     ]
 
 
@@ -89,4 +105,4 @@ def _first_round() -> dict[str, float]:
 def _python(folder: Path, *arguments: str) -> str:
     """What a fresh Python prints."""
     command = [sys.executable, *arguments]
-    return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
+    return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout

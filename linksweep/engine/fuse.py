@@ -54,6 +54,8 @@ class Fused:
 
 
 class _Writer:
+    """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what surrounds them all."""
+
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
         self.plan, self.reductions = plan, reductions
         late = set(plan.late)
@@ -64,8 +66,8 @@ class _Writer:
         inputs = [node for node in self.nodes if node.operator == "input"]
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
         self.profiles = tuple(node for node in inputs if self.per_sample(node))
-        self.signals = {plan.outputs[reduction.name] for reduction in reductions}
-        self.scratch = self._nodes_kept_in_scratch()
+        self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
+        self.named = {*self.rows, *self.singles, *self.scratch}
         self.uses = Counter(x for node in self.nodes for x in node.operands)
         self.lines: list[str] = []
 
@@ -76,80 +78,85 @@ class _Writer:
         """Number of design loops around a node's work."""
         return max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
 
-    def _nodes_kept_in_scratch(self) -> dict[Node, int]:
-        deeper = {
-            x
-            for node in self.nodes
-            for x in node.operands
-            if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node)
-        }
-        kept = (deeper | {s for s in self.signals if self.per_sample(s)}) - set(self.rows)
-        return {node: k for k, node in enumerate(sorted(kept, key=lambda node: node.position))}
+    def _kept_in_scratch(self) -> list[Node]:
+        """Rows that deeper loops read back, and the signals to be reduced."""
+        kept = {self.plan.outputs[reduction.name] for reduction in self.reductions}
+        for node in self.nodes:
+            for x in node.operands:
+                if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node):
+                    kept.add(x)
+        return sorted(kept - set(self.rows), key=lambda node: node.position)
 
-    def write(self, depth: int, *lines: str) -> None:
-        self.lines += ["    " * depth + line for line in lines]
+    def write(self, depth: int, line: str) -> None:
+        self.lines.append("    " * depth + line)
 
     def kernel(self) -> str:
         self.write(0, f"def kernel({ARGUMENTS}):")
-        if not self.plan.loops:
-            self.write(1, "samples = last - first")
+        self.write(1, "pass" if self.plan.loops else "samples = last - first")
         for level in range(len(self.plan.loops) + 1):
             if level:
                 bounds = "first, last" if level == 1 else f"sizes[{level - 1}]"
                 self.write(level, f"for i{level - 1} in range({bounds}):")
-            self._level(level, level + 1)
+            self._single_values(level)
+            self._sample_loop(level)
+            self._reductions(level)
         return "\n".join(self.lines) + "\n"
 
-    def _level(self, level: int, depth: int) -> None:
-        self._single_values(level, depth)
-        self._sample_loop(level, depth)
-        self._reduce(level, depth)
-        self.write(depth, "pass") if not level else None
+    def _work(self, level: int, per_sample: bool) -> list[Node]:
+        return [
+            node
+            for node in self.nodes
+            if self.level(node) == level
+            and self.per_sample(node) == per_sample
+            and node.operator not in ("input", "constant")
+        ]
 
-    def _single_values(self, level: int, depth: int) -> None:
-        here = [node for node in self.nodes if not self.per_sample(node) and self.level(node) == level]
+    def _single_values(self, level: int) -> None:
+        """What depends on no angle."""
+        depth = level + 1
         for k, node in enumerate(self.parameters):
             if self.level(node) == level:
                 self.write(depth, f"{name(node)} = parameters[{self._at('parameter', k, node)}]")
-        self._assign([node for node in here if node.operator not in ("input", "constant")], depth)
+        self._assign(self._work(level, per_sample=False), depth)
         for k, node in enumerate(self.singles):
             if self.level(node) == level:
                 self.write(depth, f"single[{self._at('single', k, node)}] = {name(node)}")
 
-    def _sample_loop(self, level: int, depth: int) -> None:
-        work = [
-            node
-            for node in self.nodes
-            if self.per_sample(node) and self.level(node) == level and node.operator not in ("input", "constant")
-        ]
-        results = [node for node in self.rows if self.level(node) == level]
-        if not work and not results:
+    def _sample_loop(self, level: int) -> None:
+        """The inner loop over the samples, with the rows that it reads and writes."""
+        depth = level + 1
+        work = self._work(level, per_sample=True)
+        written = [node for node in (*self.rows, *self.scratch) if self.level(node) == level]
+        if not written:
             return
-        kept = [node for node in self.scratch if self.level(node) == level]
-        outside = {x for node in work for x in node.operands if self.per_sample(x)} - set(work)
-        outside |= {node for node in results if node.operator == "input"}
-        read = sorted(outside, key=lambda node: node.position)
+        met = {*written, *(x for node in work for x in node.operands)}
+        read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
         for node in read:
-            self.write(depth, f"row_{name(node)} = {self._row(node)}")
-        for node in (*results, *kept):
-            self.write(depth, f"out_{name(node)} = {self._row(node, out=True)}")
+            self.write(depth, f"in{node.position} = {self._source(node)}")
+        for node in written:
+            self.write(depth, f"out{node.position} = {self._target(node)}")
         self.write(depth, "for j in range(samples):")
         for node in read:
-            self.write(depth + 1, f"{name(node)} = row_{name(node)}[j]")
-        self._assign(work, depth + 1, keep={*results, *kept})
-        for node in (*results, *kept):
-            self.write(depth + 1, f"out_{name(node)}[j] = {name(node)}")
+            self.write(depth + 1, f"{name(node)} = in{node.position}[j]")
+        self._assign(work, depth + 1)
+        for node in written:
+            self.write(depth + 1, f"out{node.position}[j] = {name(node)}")
 
-    def _row(self, node: Node, out: bool = False) -> str:
-        """A row view; with no design loop around, only the samples that this call is to do."""
-        return self._whole_row(node, out) + ("" if self.plan.loops else "[first:last]")
+    def _source(self, node: Node) -> str:
+        """The row that a node's samples are read from; without design loops, the part of it that this call is to do."""
+        if node.operator != "input":
+            return self._target(node)
+        return f"profiles[{self._at('profile', self.profiles.index(node), node)}]" + self._part
 
-    def _whole_row(self, node: Node, out: bool) -> str:
-        if node in self.rows and (out or node.operator != "input"):
-            return f"block[{self._at('block', self.rows.index(node), node)}]"
+    def _target(self, node: Node) -> str:
+        """The row that a node's samples are written to."""
         if node in self.scratch:
-            return f"scratch[{self.scratch[node]}]"
-        return f"profiles[{self._at('profile', self.profiles.index(node), node)}]"
+            return f"scratch[{self.scratch[node]}]" + self._part
+        return f"block[{self._at('block', self.rows.index(node), node)}]" + self._part
+
+    @property
+    def _part(self) -> str:
+        return "" if self.plan.loops else "[first:last]"
 
     def _at(self, table: str, k: int, node: Node) -> str:
         """Where a node's value of the current design is: row-major over the node's own loops."""
@@ -159,29 +166,22 @@ class _Writer:
                 place = f"({place}) * sizes[{i}] + i{i}" if place else f"i{i}"
         return f"{table}_at[{k}]" + (f" + {place}" if place else "")
 
-    def _assign(self, work: list[Node], depth: int, keep: Iterable[Node] = ()) -> None:
-        """One line for each node used more than once or elsewhere; the others are written into their only use."""
-        group, inlined = set(work), set()
-        users = {x: node for node in work for x in node.operands}
-        for node in work:
-            if self.uses[node] == 1 and users.get(node) in group and node not in keep:
-                inlined.add(node)
+    def _assign(self, work: list[Node], depth: int) -> None:
+        """One line for each node used more than once, or elsewhere; the others are written into their only use."""
+        used_here = {x for node in work for x in node.operands}
+        inlined = {node for node in work if self.uses[node] == 1 and node in used_here and node not in self.named}
         for node in work:
             if node not in inlined:
                 self.write(depth, f"{name(node)} = {expression(node, inlined)}")
 
-    def _reduce(self, level: int, depth: int) -> None:
+    def _reductions(self, level: int) -> None:
+        depth = level + 1
         for k, reduction in enumerate(self.reductions):
             node = self.plan.outputs[reduction.name]
-            if self.level(node) != level or node.operator == "constant":
-                continue
-            if self.per_sample(node):
-                call = f"{reduction.kind}({self._row(node)}, angles, period, work)"
-            else:
-                call = f"({name(node)}, angles[0])"
-            self.write(depth, f"value, at = {call}")
-            self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
-            self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
+            if self.level(node) == level:
+                self.write(depth, f"value, at = {reduction.kind}({self._target(node)}, angles, period, work)")
+                self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
+                self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
 
 
 def name(node: Node) -> str:

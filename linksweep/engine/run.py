@@ -205,14 +205,12 @@ def _field(plan: Plan, node: Node, value: np.ndarray, grid: Grid, sizes: Mapping
 
 
 def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[Field, Field]:
-    if grid.dim not in field.dims:
-        return field, Field(field.dims, np.full(field.values.shape, grid.angles[0]))
-    dims, shape = field.dims[:-1], field.values.shape[:-1]
-    working = np.empty(reduce.WORK)
-    function = getattr(reduce, reduction.kind)
-    rows = field.values.reshape(-1, len(grid.angles)).tolist()
-    angles = grid.angles.tolist()
-    both = np.array([function(row, angles, grid.period, working) for row in rows])
+    dims, shape = (
+        (field.dims[:-1], field.values.shape[:-1]) if grid.dim in field.dims else (field.dims, field.values.shape)
+    )
+    rows = np.broadcast_to(field.values.reshape(math.prod(shape), -1), (math.prod(shape), len(grid.angles)))
+    function, work, angles = getattr(reduce, reduction.kind), np.empty(reduce.WORK), grid.angles.tolist()
+    both = np.array([function(row, angles, grid.period, work) for row in rows.tolist()])
     return Field(dims, both[:, 0].reshape(shape)), Field(dims, both[:, 1].reshape(shape))
 
 

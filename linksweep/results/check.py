@@ -26,7 +26,7 @@ def check(scene: Scene) -> xr.Dataset:
     - `grashof`: by the shortest link, crank_rocker, double_crank, double_rocker, rocker_crank; triple_rocker (no link
       turns fully); change_point (shortest + longest equals the other two, but for rounding)
     - `assembly`: everywhere, partly, never
-    - `arc_start`, `arc_end` (arc) [degree]: the one or two arcs of theta2 that can be assembled; NaN where there is none
+    - `arc_start`, `arc_end` (arc) [degree]: the one or two arcs of theta2 where it can be assembled; NaN for no arc
     - `toggle_angle` (toggle) [degree]: theta2 at which coupler and rocker lie in one line; NaN where there is none
     - `transmission_angle_min` [degree]: smallest acute angle between coupler and rocker on those arcs
 
@@ -40,28 +40,38 @@ def check(scene: Scene) -> xr.Dataset:
     >>> round(float(found.transmission_angle_min), 3)
     33.03
     """
-    given = [*scene.mechanism.lengths().values(), scene.mechanism.ground_angle]
-    a, b, c, d, ground_angle = xr.broadcast(*(xr.DataArray(number).astype(float) for number in given))
-    dims = tuple(map(str, a.dims))
+    lengths = [xr.DataArray(length).astype(float) for length in scene.mechanism.lengths().values()]
+    variables = _classes(*lengths) | _angles(*lengths, xr.DataArray(scene.mechanism.ground_angle).astype(float))
+    dims = {dim for variable in variables.values() for dim in variable.dims}
+    coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)}
+    coordinates["toggle"] = xr.Variable("toggle", list(TOGGLES))
+    return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))
+
+
+def _classes(*lengths: xr.DataArray) -> dict[str, xr.Variable]:
+    """What the lengths alone decide."""
+    a, b, c, d = xr.broadcast(*lengths)
+    found = limits(a.values, b.values, c.values, d.values)
+    angle = _angle("smallest acute angle between coupler and rocker")
+    return {
+        "grashof": xr.Variable(a.dims, found.grashof, flags("Grashof class", GRASHOF)),
+        "assembly": xr.Variable(a.dims, found.assembly, flags("crank angles at which it can be assembled", ASSEMBLY)),
+        "transmission_angle_min": xr.Variable(a.dims, found.transmission_angle_min, angle),
+    }
+
+
+def _angles(*lengths_and_ground_angle: xr.DataArray) -> dict[str, xr.Variable]:
+    """Crank angles, which turn with the frame."""
+    a, b, c, d, ground_angle = xr.broadcast(*lengths_and_ground_angle)
     found = limits(a.values, b.values, c.values, d.values)
     start, end = arcs(found, ground_angle.values)
     toggles = np.stack([found.folded, found.stretched, -found.stretched, -found.folded], axis=-1)
     toggles = np.mod(toggles + ground_angle.values[..., None], 360.0)
-    variables = {
-        "grashof": (dims, found.grashof, flags("Grashof class", GRASHOF)),
-        "assembly": (dims, found.assembly, flags("crank angles at which it can be assembled", ASSEMBLY)),
-        "arc_start": ((*dims, "arc"), start, _angle("crank angle at which an assembled arc starts")),
-        "arc_end": ((*dims, "arc"), end, _angle("crank angle at which an assembled arc ends (may pass 360)")),
-        "toggle_angle": ((*dims, "toggle"), toggles, _angle("crank angle with coupler and rocker in one line")),
-        "transmission_angle_min": (
-            dims,
-            found.transmission_angle_min,
-            _angle("smallest acute angle between coupler and rocker"),
-        ),
+    return {
+        "arc_start": xr.Variable((*a.dims, "arc"), start, _angle("crank angle at which an assembled arc starts")),
+        "arc_end": xr.Variable((*a.dims, "arc"), end, _angle("crank angle at which it ends (may pass 360)")),
+        "toggle_angle": xr.Variable((*a.dims, "toggle"), toggles, _angle("coupler and rocker in one line")),
     }
-    coordinates = {k: v for k, v in design_coordinates(scene).items() if set(v.dims) <= set(dims)}
-    coordinates["toggle"] = xr.Variable("toggle", list(TOGGLES))
-    return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))
 
 
 def _angle(long_name: str) -> dict[str, str]:

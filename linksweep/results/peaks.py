@@ -121,7 +121,7 @@ def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
         yield f"{name}_peak", _map(np.sqrt, value), units, f"largest {said}"
         yield f"{name}_peak_at", angle, "degree", f"crank angle of the largest {said}"
     else:
-        least, least_at = _map(np.negative, found[1][0]), found[1][1]
+        least, least_at = _map(lambda value: 0.0 - value, found[1][0]), found[1][1]
         yield f"{name}_max", value, units, f"largest {said}"
         yield f"{name}_max_at", angle, "degree", f"crank angle of the largest {said}"
         yield f"{name}_min", least, units, f"least {said}"

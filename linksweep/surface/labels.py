@@ -13,18 +13,24 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.offsetbox import AnnotationBbox, TextArea, VPacker
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 CURVES = 2.0  # zorder from which lines are curves, to be kept clear; grids and reference lines lie below
-CELL = 3.0  # pixels to which points of curves are rounded before they are counted
-DISTANCES = (6.0, 12.0, 20.0, 30.0, 42.0, 58.0, 78.0, 105.0, 140.0)  # points from the labelled point to the label's box
+CELL = 1.5  # points: side of the cells in which curves are counted
 SPACE = 3.0  # points kept free around a label
 LEADER = 10.0  # points from which on a thin line leads back
-Line = tuple[str, str]  # text and colour
-DIRECTIONS = np.radians(np.arange(0.0, 360.0, 15.0))
+PLACES = np.array(  # where a label's box may begin, seen from its point: x, y and distance [points]
+    [
+        (distance * np.cos(angle), distance * np.sin(angle), distance)
+        for distance in (6.0, 12.0, 20.0, 30.0, 42.0, 58.0, 78.0, 105.0, 140.0)
+        for angle in np.radians(np.arange(0.0, 360.0, 15.0))
+    ]
+)
+TextLine = tuple[str, str]  # text and colour
 
 
-def label(axes: Axes, x: float, y: float, *lines: Line, **style: Any) -> AnnotationBbox:
+def label(axes: Axes, x: float, y: float, *lines: TextLine, **style: Any) -> AnnotationBbox:
     """Write lines of text, each with its colour, near the point (x, y) of the data, where there is room when drawn."""
     halo = withStroke(linewidth=2.0, alpha=0.7, foreground=axes.get_facecolor())
     style = {"fontsize": "small", "path_effects": [halo]} | style
@@ -84,7 +90,7 @@ class Placer(Artist):
     def draw(self, renderer: Any) -> None:
         axes: Any = self.axes
         notes = [note for note in self.notes if note.axes is axes and note.get_visible()]
-        ink, taken = Ink(axes.get_window_extent(renderer).extents), _texts(axes, renderer)
+        ink, taken = Ink(axes, renderer), _texts(axes, renderer)
         for line in axes.lines:
             if line.get_visible() and line.get_zorder() >= CURVES:
                 ink.add_line(line)
@@ -102,19 +108,26 @@ class Ink:
     Boxes are rows (left, bottom, right, top) [pixel].
     """
 
-    def __init__(self, frame: np.ndarray) -> None:
-        self.frame = np.asarray(frame)
-        self.cells = np.zeros(1 + np.ceil((self.frame[2:] - self.frame[:2]) / CELL).astype(int), dtype=bool)
+    def __init__(self, axes: Axes, renderer: Any) -> None:
+        self.frame = np.array(axes.get_window_extent(renderer).extents)
+        self.point = renderer.points_to_pixels(1.0)
+        self.side = CELL * self.point
+        self.cells = np.zeros(1 + np.ceil((self.frame[2:] - self.frame[:2]) / self.side).astype(int), dtype=bool)
 
     def add_line(self, line: Line2D) -> None:
         """Cover what a line covers, with its markers, as broad as they are."""
         points = line.get_transform().transform(line.get_xydata())
-        figure: Any = line.figure
-        pixels = figure.dpi / 72.0
         if line.get_linestyle() != "None":
-            self.add(_broad(_dense(points), 0.5 * line.get_linewidth() * pixels))
-        if line.get_marker() not in ("", " ", "None", None):
-            self.add(_broad(points, 0.5 * line.get_markersize() * pixels))
+            self.add(self._broad(_dense(points), 0.5 * line.get_linewidth()))
+        marker: Any = line.get_marker()
+        if isinstance(marker, Path):
+            shape = np.array(marker.vertices)
+            half = (
+                0.5 * line.get_markersize() * self.point / np.abs(shape).max()
+            )  # its largest coordinate is half its size
+            self.add((points[:, None] + half * _dense(shape)).reshape(-1, 2))
+        elif marker not in ("", " ", "None", None):
+            self.add(self._broad(points, 0.5 * line.get_markersize()))
 
     def add(self, points: np.ndarray) -> None:
         low, high = self.frame[:2], self.frame[2:]
@@ -132,8 +145,16 @@ class Ink:
         cell = self._cell(points)
         return self.cells[cell[..., 0], cell[..., 1]]
 
+    def _broad(self, points: np.ndarray, radius: float) -> np.ndarray:
+        """The points with those of a square around each, of this half side [points]."""
+        if radius < CELL:
+            return points
+        ticks = np.linspace(-radius, radius, 2 + int(2.0 * radius / CELL)) * self.point
+        square = np.array([(x, y) for x in ticks for y in ticks])
+        return (points[:, None] + square).reshape(-1, 2)
+
     def _cell(self, points: np.ndarray) -> np.ndarray:
-        cell = ((points - self.frame[:2]) / CELL).astype(int)
+        cell = ((points - self.frame[:2]) / self.side).astype(int)
         return np.clip(cell, 0, np.array(self.cells.shape) - 1)
 
 
@@ -143,15 +164,6 @@ def _dense(points: np.ndarray) -> np.ndarray:
     between = np.linspace(0.0, 1.0, steps, endpoint=False)[:, None, None]
     filled = points[:-1] + (points[1:] - points[:-1]) * between
     return np.concatenate([filled.reshape(-1, 2), points])
-
-
-def _broad(points: np.ndarray, radius: float) -> np.ndarray:
-    """The points with those of a square around each."""
-    if radius < CELL:
-        return points
-    ticks = np.linspace(-radius, radius, 2 + int(radius / CELL))
-    square = np.array([(x, y) for x in ticks for y in ticks])
-    return (points[:, None] + square).reshape(-1, 2)
 
 
 def _texts(axes: Axes, renderer: Any) -> np.ndarray:
@@ -166,7 +178,7 @@ def _place(
     note: AnnotationBbox, anchor: np.ndarray, ink: Ink, taken: np.ndarray, renderer: Any
 ) -> tuple[np.ndarray, np.ndarray]:
     """Move a label to the cheapest of its places; its box and the points of its leader come back."""
-    point = renderer.points_to_pixels(1.0)
+    point = ink.point
     size = np.array(note.offsetbox.get_bbox(renderer).size) + SPACE * point
     centres = anchor + PLACES[:, :2] * point + np.sign(np.round(PLACES[:, :2], 9)) * size / 2.0
     boxes = np.hstack([centres - size / 2.0, centres + size / 2.0])
