@@ -328,6 +328,25 @@ def test_fold_of_a_parallelogram_is_a_toggle(short, long, ground_angle):
     assert cycle.T12.isnull().all()
 
 
+CHANGE_POINTS = [  # in mm, where two links together are as long as the other two; and the angle at which they lie flat
+    ((221, 98, 115, 204), 0.0),
+    ((100, 200, 150, 150), 0.0),
+    ((103, 210, 190, 297), 180.0),
+    ((33, 270, 61, 298), 180.0),
+]
+
+
+@pytest.mark.parametrize("branch", BRANCHES)
+@pytest.mark.parametrize(("lengths", "flat"), CHANGE_POINTS)
+def test_change_point_is_a_toggle(lengths, flat, branch):
+    """In metres the lengths no longer add up to the last bit; what happens there is the same."""
+    crank, coupler, rocker, ground = (length / 1000 for length in lengths)
+    bars = ls.FourBar(*map(with_mass, (crank, coupler, rocker)), ground=ground, branch=branch)
+    cycle = ls.sweep(ls.Scene(bars, omega2=3.0), [flat, flat + 360.0])
+    assert set(cycle.status.values) == {cycle.status.attrs["flag_meanings"].split().index("toggle")}
+    assert cycle.F32x.isnull().all()
+
+
 @pytest.mark.parametrize(("short", "long"), OPPOSITE_SIDES)
 def test_coupler_of_a_parallelogram_cannot_drive(short, long):
     """It does not turn, so no torque on it can balance anything."""

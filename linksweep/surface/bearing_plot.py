@@ -11,6 +11,7 @@ from linksweep.mechanisms.four_bar import LINKS
 from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.sweep import sweep
 from linksweep.surface import signals
+from linksweep.surface.storage import scene_of
 from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, grid
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def _in_link_axes(ds: xr.Dataset, link: int, x: np.ndarray, y: np.ndarray) -> tu
     """Components of the same force in the axes of a link: turned back by the link's angle."""
     name = f"theta{link}"
     if name not in ds:
-        ds = sweep(signals.scene_of_design(ds), theta2=ds[signals.INDEX].values, outputs=[name])
+        ds = sweep(scene_of(ds), theta2=ds[signals.INDEX].values, outputs=[name])
     angle = np.radians(signals.revolution(ds, ds[name])[1])
     cos, sin = np.cos(angle), np.sin(angle)
     return cos * x + sin * y, cos * y - sin * x

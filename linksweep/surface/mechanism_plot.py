@@ -12,6 +12,7 @@ from linksweep.mechanisms.degrees import cos_sin
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.surface import signals
+from linksweep.surface.storage import scene_of
 from linksweep.surface.style import BLACK, FORCES, GREY, SKY, axes_or_new, grid
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def mechanism(
     >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
     'x [m]'
     """
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else signals.scene_of_design(ds_or_scene)
+    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
     angle = _angle(theta2)
     cycle = _positions(scene, angle)
     pins, curve, marked = _shape(scene, cycle, point)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -11,8 +10,6 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.four_bar import PINS
-from linksweep.scene.scene import Scene
-from linksweep.surface.storage import scene_of
 
 INDEX = "theta2"
 PIN_OF = {f"F{i}{j}": pin for pin, pair in PINS.items() for i, j in (pair, pair[::-1])}
@@ -35,14 +32,6 @@ class Peak(NamedTuple):
     angle: float
     value: float
     beside_gap: bool
-
-
-def scene_of_design(ds: xr.Dataset) -> Scene:
-    """The scene of a Dataset from which one branch has been chosen, or of any other."""
-    scene = scene_of(ds)
-    if scene.mechanism.branch == "both" and "branch" in ds.coords and not ds["branch"].dims:
-        return replace(scene, mechanism=replace(scene.mechanism, branch=str(ds["branch"].item())))
-    return scene
 
 
 def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import xarray as xr
@@ -109,10 +110,16 @@ def load_scene(path: str | os.PathLike) -> Scene:
 
 
 def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
-    """The scene that a Dataset of linksweep came from. Raises ValueError where it holds none."""
+    """The scene that a Dataset of linksweep came from, or of the branch chosen from it.
+
+    Raises ValueError where the Dataset holds none.
+    """
     if "scene" not in ds.attrs:
         raise ValueError(
             f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes"
         )
-    arrays = {str(path): ds[path] for path in ds.variables}
-    return parse_scene(ds.attrs["scene"], name, {path: array.reset_coords(drop=True) for path, array in arrays.items()})
+    arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
+    scene = parse_scene(ds.attrs["scene"], name, arrays)
+    if scene.mechanism.branch == "both" and "branch" in ds.coords and not ds["branch"].dims:
+        return replace(scene, mechanism=replace(scene.mechanism, branch=str(ds["branch"].item())))
+    return scene
