@@ -19,6 +19,9 @@
 # the drive must give, and where the worst of it is.
 
 # %%
+import tempfile
+from pathlib import Path
+
 import numpy as np
 import xarray as xr
 
@@ -60,18 +63,15 @@ cycle = ls.sweep(scene, theta2=720)
 cycle.F32x
 
 # %%
-cycle.linksweep.forces();
-
+cycle.linksweep.forces()
 # %% [markdown]
 # Pin C is loaded hardest, shortly after the crank has passed the line of the frame. What does its load look like to the
 # bearing? The load diagram shows direction and size together, with the crank angle ticked along the curve.
 
 # %%
-cycle.linksweep.bearing("F43");
-
+cycle.linksweep.bearing("F43")
 # %%
-cycle.linksweep.mechanism(theta2=17.5, forces=True);
-
+cycle.linksweep.mechanism(theta2=17.5, forces=True)
 # %% [markdown]
 # The numbers themselves come from `peaks`:
 
@@ -125,8 +125,7 @@ study = ls.Scene(
     loads=scene.loads,
 )
 map_of_peaks = ls.peaks(study, of=["F43"])
-map_of_peaks.F43_peak.plot(x="rpm", y="rocker_length", cmap="viridis");
-
+map_of_peaks.F43_peak.plot(x="rpm", y="rocker_length", cmap="viridis")
 # %%
 best = map_of_peaks.F43_peak.sel(rpm=300, method="nearest").idxmin()
 print(f"at about 300 rpm pin C is loaded least with a rocker of {100 * float(best):.1f} cm")
@@ -137,9 +136,6 @@ print(f"at about 300 rpm pin C is loaded least with a rocker of {100 * float(bes
 # The Dataset goes to NetCDF as it stands. The file holds the whole scene, so that it can be run again.
 
 # %%
-import tempfile
-from pathlib import Path
-
 folder = Path(tempfile.mkdtemp())
 ls.save(cycle, folder / "cycle.nc")
 again = ls.sweep(ls.load_scene(folder / "cycle.nc"))

@@ -274,9 +274,7 @@ def to_scene(data: FourBarData):
     links = {name: ls.Link(**vars(getattr(data, name))) for name in LINKS}
     bars = ls.FourBar(**links, ground=data.ground, branch=data.branch, ground_angle=data.ground_angle)
     loads = [
-        ls.Load(
-            **vars(load) | {"force": load.force if any(load.force) else None, "torque": load.torque or None}
-        )
+        ls.Load(**vars(load) | {"force": load.force if any(load.force) else None, "torque": load.torque or None})
         for load in data.loads
     ]
     state = {name: getattr(data, name) for name in ("omega2", "alpha2", "gravity", "drive")}

@@ -28,6 +28,7 @@ from oracle import (
     solve,
     system,
     to_scene,
+    toggle_margin,
     torque_name,
 )
 
@@ -159,6 +160,50 @@ def test_fast_and_dense_paths_are_two():
     for outputs in (names, (*names, "cond")):
         fast = ls.sweep(to_scene(case.data), case.theta2, outputs=outputs)
         assert any((dense[name] != fast[name]).any() for name in names)
+
+
+def near_toggles(data: FourBarData) -> list[float]:
+    """Crank angles from 1e-2 to 1e-10 degree inside each limit of assembly, by the law of cosines."""
+    a, b, c, d = map(mp.mpf, (data.crank.length, data.coupler.length, data.rocker.length, data.ground))
+    found = []
+    for diagonal, inwards in ((b + c, -1), (abs(b - c), 1)):
+        cosine = (a**2 + d**2 - diagonal**2) / (2 * a * d)
+        if abs(cosine) < 1:
+            limit = mp.degrees(mp.acos(cosine))
+            found += [float(limit + inwards * mp.mpf(10) ** -k) for k in (2, 4, 6, 8, 10)]
+    return found
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_errors_near_a_toggle_grow_as_they_must(seed):
+    """An angle of θ2 known to ε leaves ε/μ in θ3, θ4, and ε/μ² in rates and forces; μ down to 1e-6 here.
+
+    Reached on 60 scenes: 9 ε/μ, 45 ε/μ² in ω, 130 ε/μ² in α and forces.
+    """
+    data = random_data(np.random.default_rng(seed), kind="triple_rocker", drive="crank", scale=1.0, loads=1)
+    data = replace(data, ground_angle=0.0)
+    names = (*KINEMATICS[:6], *unknowns(data))
+    assert near_toggles(data)
+    for angle in near_toggles(data):
+        mu = toggle_margin(data, angle)
+        assert 0.0 < mu < 0.2
+        found = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, solved(data, [angle]))
+        for name, error in found.items():
+            allowed = 20.0 * EPS / mu if name.startswith("theta") else 400.0 * EPS / mu**2
+            assert error < allowed, (name, error / EPS, mu)
+
+
+@pytest.mark.parametrize("branch", BRANCHES)
+@pytest.mark.parametrize("miss", [2.0**-20, 2.0**-30, 2.0**-40])
+@pytest.mark.parametrize(("ground", "sign", "flat"), [(4.0, 1, [0.0, 1e-7, -1e-4]), (6.0, -1, [180.0])])
+def test_near_a_change_point_no_digit_is_lost(ground, sign, flat, miss, branch):
+    """Down to μ = 5e-7 at θ2 that is exact; a closure by cos θ2 would be wrong by 1e-4 of the largest force."""
+    links = (LinkData(length, 1.0, 0.1, cg_distance=0.4, cg_angle=20.0) for length in (2.0, 5.0, 3.0))
+    data = FourBarData(*links, ground=ground + sign * miss, branch=branch, omega2=3.0, gravity=(0.0, -9.81))
+    names = (*KINEMATICS, *unknowns(data))
+    assert toggle_margin(data, flat[0]) < 2e-3
+    found = errors(ls.sweep(to_scene(data), flat, outputs=names), names, solved(data, flat))
+    assert max(found.values()) < 1e-13, found
 
 
 def norm_1(matrix):

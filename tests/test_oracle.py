@@ -46,9 +46,7 @@ def bar(length):
     return LinkData(length, mass, mass * (length**2 + 0.02**2) / 12, cg_distance=length / 2)
 
 
-DOCUMENT_1 = FourBarData(
-    bar(0.08), bar(0.12), bar(0.11), ground=0.22, omega2=-20.0, alpha2=100.0, gravity=(0.0, -9.81)
-)
+DOCUMENT_1 = FourBarData(bar(0.08), bar(0.12), bar(0.11), ground=0.22, omega2=-20.0, alpha2=100.0, gravity=(0.0, -9.81))
 
 EXACT = {  # from the lengths, to the digits given
     "theta3": "20.0105",

@@ -18,7 +18,10 @@ def scene(length=1.0, mass=1.0, time=1.0):
         return ls.Link(size * length, weight * mass, about * inertia, distance * length, angle)
 
     bars = ls.FourBar(
-        link(0.08, 0.5, 1e-3, 0.03, 20.0), link(0.22, 0.7, 3e-3, 0.1, -10.0), link(0.18, 0.6, 2e-3, 0.08, 5.0), 0.2 * length
+        link(0.08, 0.5, 1e-3, 0.03, 20.0),
+        link(0.22, 0.7, 3e-3, 0.1, -10.0),
+        link(0.18, 0.6, 2e-3, 0.08, 5.0),
+        0.2 * length,
     )
     push = ls.Load("coupler", force=(3.0 * force, -80.0 * force), at=(0.1 * length, 15.0))
     turn = ls.Load("rocker", torque=-12.0 * force * length)

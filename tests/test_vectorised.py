@@ -55,6 +55,7 @@ def test_square_roots_are_packed(name, assembly):
 
 
 def test_the_search_for_the_largest_is_packed(assembly):
+    """A block of 64 running maxima fills eight registers of AVX-512; a search sample by sample leaves five or fewer."""
     registers = width()
     call, _ = CALLS["peaks"]
-    assert re.search(rf"\b(vmaxpd|vcmp\w*pd)\s.*%{registers}", assembly(call))
+    assert len(re.findall(rf"\bvmaxpd\s.*%{registers}", assembly(call))) >= 8

@@ -18,7 +18,6 @@ from __future__ import annotations
 import inspect
 import math
 from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from linksweep.engine import reduce
@@ -54,7 +53,7 @@ class Fused:
 
 
 class _Writer:
-    """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what surrounds them all."""
+    """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what is around all."""
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
         self.plan, self.reductions = plan, reductions

@@ -71,7 +71,8 @@ def parabola_peak(row, angles, period, at):
     shift = 0.5 * slope * (before + after) / bend
     angle = x + shift
     if period > 0.0:
-        angle = angle - period if angle >= period else (angle + period if angle < 0.0 else angle)
+        angle = angle + period if angle < 0.0 else angle
+        angle = angle - period if angle >= period else angle
     return y + 0.5 * slope * shift, angle
 
 

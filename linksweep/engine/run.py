@@ -11,7 +11,7 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +25,7 @@ from linksweep.engine.trace import Node
 COMPILE_AFTER = 100_000
 """Samples (angles × designs) that a plan may cost interpreted before its kernel is compiled."""
 
-SAMPLES_PER_THREAD = 20_000
+SAMPLES_PER_THREAD = 300_000
 """Less work than this is not worth handing to another thread."""
 
 OPERATORS = {
@@ -88,9 +88,13 @@ class Runner:
     """One plan made ready to run, and how much of it has been interpreted so far."""
 
     plan: Plan
-    fused: Fused
+    reductions: tuple[Reduction, ...]
     interpreted: int = 0
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
+
+    @cached_property
+    def fused(self) -> Fused:
+        return fuse(self.plan, self.reductions)
 
     def should_interpret(self, samples: int) -> bool:
         self.interpreted += samples
@@ -115,7 +119,7 @@ class Runner:
 
 @lru_cache(maxsize=256)
 def runner(plan: Plan, reductions: tuple[Reduction, ...] = ()) -> Runner:
-    return Runner(plan, fuse(plan, reductions))
+    return Runner(plan, reductions)
 
 
 def evaluate(
@@ -191,11 +195,8 @@ def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, n
 
 
 def _align(plan: Plan, dims: frozenset[str], field: Field) -> np.ndarray:
-    axes = (*plan.loops, plan.index)
-    order = sorted(range(len(field.dims)), key=lambda k: axes.index(field.dims[k]))
-    values = np.transpose(field.values, order)
-    shape = iter(values.shape)
-    return values.reshape([next(shape) if axis in dims else 1 for axis in axes]) if dims else values
+    shape = iter((values := _ordered(plan, field)).shape)
+    return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)]) if dims else values
 
 
 def _field(plan: Plan, node: Node, value: np.ndarray, grid: Grid, sizes: Mapping[str, int]) -> Field:

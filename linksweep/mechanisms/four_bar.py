@@ -180,6 +180,7 @@ def _position() -> list[Row | Total]:
         Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
+        Row(four_bar.closure_noise, ("low_noise", "high_noise")),
         Row(four_bar.assembly, ("assembly",)),
         Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),

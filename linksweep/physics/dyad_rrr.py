@@ -9,7 +9,7 @@ Everything else follows without another subtraction of nearly equal numbers:
     r3 × r4 = ±√(low·high)/2
 """
 
-from linksweep.physics.arithmetic import NOISE, Number, atan2, degrees, sqrt, where
+from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
 from linksweep.physics.planar import cross, dot
 
 
@@ -37,10 +37,10 @@ def rrr_close(
     return r3x, r3y, r4x, r4y, (-4.0 * branch_sign) * (half_inverse * ff)
 
 
-def rrr_status(low: Number, high: Number, coupler_length: Number, rocker_length: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: r3 and r4 in one line, or too near it to tell the sign of r3 × r4."""
-    product, doubt = low * high, NOISE * coupler_length * rocker_length
-    return where(product > doubt * doubt, 0.0, where(product < 0.0, 1.0, 2.0))
+def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
+    """0 ok, 1 cannot assemble, 2 toggle: r3 and r4 in one line, as far as the lengths can tell."""
+    closes = where(low * high > 0.0, 0.0, 1.0)
+    return where(abs(low) > low_noise, where(abs(high) > high_noise, closes, 2.0), 2.0)
 
 
 def rrr_velocity_ratios(

@@ -58,6 +58,16 @@ def closure_factors(
     return low, high
 
 
+def closure_noise(
+    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
+) -> tuple[Number, Number]:
+    """What low and high cannot tell from zero: each sum of lengths is known to a few last digits of the perimeter."""
+    a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
+    perimeter = a + b + c + d
+    noise = 0.25 * NOISE * perimeter
+    return noise * (abs(d - a) + abs(b - c) + noise), noise * perimeter
+
+
 def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number) -> Number:
     """0 where it closes at every angle, 1 where at some, 2 where at none: low is least at φ = 0, high at φ = 180°."""
     lengths = (crank_length, coupler_length, rocker_length, ground_length)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
+import secrets
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
 from linksweep.scene.file import parse_scene, read_scene
 from linksweep.scene.scene import Scene
+
+_NETCDF = Lock()
+"""The NetCDF library is not made for two threads at once: the process dies."""
 
 
 def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
@@ -42,25 +46,23 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     path = Path(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent}; make it first")
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    os.close(handle)
+    target = Path(os.path.realpath(path))  # a link stays one
+    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
-        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # the rights that any new file has
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, str(path)) from None
+    try:
+        with _NETCDF:
+            ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
         with open(temporary, "rb") as file:
             os.fsync(file.fileno())
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        os.replace(temporary, target)
     except BaseException:
         with contextlib.suppress(OSError):
             os.unlink(temporary)
         raise
-    _sync_folder(path.parent)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    _sync_folder(target.parent)
 
 
 def _sync_folder(folder: Path) -> None:
@@ -101,12 +103,13 @@ def load_scene(path: str | os.PathLike) -> Scene:
         return read_scene(path)
     if not path.exists():
         near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
-        raise ValueError(f"{path}: no such file{near}")
+        raise ValueError(f"{path}: there is no such file{near}")
     try:
-        with xr.open_dataset(path, engine="netcdf4") as ds:
+        with _NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
             return scene_of(ds.load(), str(path))
     except OSError as error:
-        raise ValueError(f"{path}: cannot be read as NetCDF or as a scene (.toml): {error}") from error
+        reason = error.strerror or error
+        raise ValueError(f"{path}: cannot be read as NetCDF ({reason}); a scene file ends in .toml") from error
 
 
 def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
@@ -114,12 +117,13 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
 
     Raises ValueError where the Dataset holds none.
     """
-    if "scene" not in ds.attrs:
+    text = ds.attrs.get("scene")
+    if not isinstance(text, str):
         raise ValueError(
             f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes"
         )
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
-    scene = parse_scene(ds.attrs["scene"], name, arrays)
+    scene = parse_scene(text, name, arrays)
     if scene.mechanism.branch == "both" and "branch" in ds.coords and not ds["branch"].dims:
         return replace(scene, mechanism=replace(scene.mechanism, branch=str(ds["branch"].item())))
     return scene
