@@ -1,6 +1,6 @@
 """linksweep: how hard are my pins loaded, and where is the worst of it?"""
 
-from linksweep.mechanisms.four_bar import FourBar
+from linksweep.mechanisms import FourBar, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks
@@ -20,6 +20,7 @@ __all__ = [
     "Link",
     "Load",
     "Scene",
+    "SliderCrank",
     "check",
     "example",
     "load_scene",

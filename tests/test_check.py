@@ -10,11 +10,9 @@ from oracle import FourBarData as Data
 from oracle import LinkData as Bar
 
 import linksweep as ls
-from linksweep.mechanisms.four_bar_limits import ASSEMBLY, GRASHOF
-from linksweep.results.check import TOGGLES
+from linksweep.mechanisms.four_bar_limits import ASSEMBLY, GRASHOF, TOGGLES
 
 ROLES = ("crank", "coupler", "rocker")
-CLASSES = (*KINDS, "rocker_crank")
 
 
 def four_bar(lengths: Iterable, **options) -> ls.Scene:

@@ -265,7 +265,7 @@ def test_an_error_names_line_path_and_remedy(old, new, line):
         ("omega2 = 3\n\nomega2 = 4\n", ":3: not TOML: Cannot overwrite a value"),
         ('omega2 = """\n\n', ":1: not TOML: Unterminated string"),
         ("[loads]\nlink = 'crank'", r":1: loads: must be a list of tables; write \[\[loads\]\] above each"),
-        ("", r":1: mechanism: missing; write a table \[mechanism\] with its type \(FourBar\)"),
+        ("", r":1: mechanism: missing; write a table \[mechanism\] with its type \(FourBar"),
         ("mechanism = 3", r":1: mechanism = 3: write a table \[mechanism\]"),
     ],
 )

@@ -73,7 +73,8 @@ class Node:
         return self.graph.operation("atan2", self, self.graph.node(x))
 
     def where(self, x, y):
-        return self.graph.operation("where", self, self.graph.node(x), self.graph.node(y))
+        x, y = self.graph.node(x), self.graph.node(y)
+        return x if x is y else self.graph.operation("where", self, x, y)
 
     def is_constant(self, value: float) -> bool:
         return self.operator == "constant" and self.value == value

@@ -1,4 +1,4 @@
-"""Rows of one moving link, the same for every mechanism: inertia, weight, loads, centre of gravity, power.
+"""Rows of one moving link, the same for every mechanism: inertia, weight, centre of gravity, power.
 
 A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What
 the mechanism adds is how the first pin moves: the names of its velocity and acceleration (0.0 where it stands).
@@ -15,16 +15,6 @@ Source = str | float
 
 
 @dataclass(frozen=True)
-class LoadForm:
-    """What a load consists of, without its numbers: enough to know which rows it takes."""
-
-    link: str
-    force: bool
-    torque: bool
-    link_axes: bool
-
-
-@dataclass(frozen=True)
 class Body:
     """A moving link of a mechanism: its number and role, and the motion of its first pin.
 
@@ -37,17 +27,17 @@ class Body:
     pin_acceleration: tuple[Source, Source] = (0.0, 0.0)
     steady: bool = False
 
-    def rows(self, loads: tuple[LoadForm, ...]) -> list[Row | Total]:
-        mine = [(f"load{k}", load) for k, load in enumerate(loads, 1) if load.link == self.role]
-        return [*self._inertia(), *self._centre(), *self._loads(mine)]
+    @property
+    def axes(self) -> tuple[str, str, str]:
+        """Names of the link's length and of its line of pins: its own axes."""
+        return f"{self.role}_length", f"r{self.number}x", f"r{self.number}y"
 
-    def power_terms(self, loads: tuple[LoadForm, ...]) -> list[str]:
-        """Names of the powers that act on this link from outside, inertia included."""
-        terms = [f"inertia_power{self.number}", f"gravity_power{self.number}"]
-        for k, load in enumerate(loads, 1):
-            if load.link == self.role:
-                terms += [f"load{k}_force_power"] * load.force + [f"load{k}_torque_power"] * load.torque
-        return terms
+    def rows(self) -> list[Row | Total]:
+        return [*self._inertia(), *self._centre()]
+
+    def powers(self) -> tuple[str, str]:
+        """Names of the powers of its inertia and weight."""
+        return f"inertia_power{self.number}", f"gravity_power{self.number}"
 
     def _inertia(self) -> list[Row | Total]:
         k, role, pin = self.number, self.role, self.pin_acceleration
@@ -94,38 +84,6 @@ class Body:
                 ),
             ),
         ]
-
-    def _loads(self, mine: list[tuple[str, LoadForm]]) -> list[Row | Total]:
-        k, rows = self.number, []
-        for load, form in mine:
-            rows += self._force(load, form) if form.force else []
-            rows += [Row(planar.product, (f"{load}_torque_power",), (f"{load}_torque", f"omega{k}"))]
-        forces = [load for load, form in mine if form.force]
-        torques = [f"{load}_torque" for load, form in mine if form.torque]
-        return [
-            *rows,
-            Total(f"P{k}x", tuple(f"{load}_Fx" for load in forces)),
-            Total(f"P{k}y", tuple(f"{load}_Fy" for load in forces)),
-            Total(f"M{k}", (*(f"{load}_moment" for load in forces), *torques)),
-        ]
-
-    def _force(self, load: str, form: LoadForm) -> list[Row | Total]:
-        k = self.number
-        point, force, velocity = (
-            (f"{load}_rx", f"{load}_ry"),
-            (f"{load}_Fx", f"{load}_Fy"),
-            (f"{load}_vx", f"{load}_vy"),
-        )
-        axes = (f"{self.role}_length", f"r{k}x", f"r{k}y")
-        rows: list[Row | Total] = [
-            Row(planar.turned, point, (f"{load}_at_x", f"{load}_at_y", *axes)),
-            Row(planar.cross, (f"{load}_moment",), (*point, *force)),
-            Row(planar.point_velocity, velocity, (*self.pin_velocity, f"omega{k}", *point)),
-            Row(planar.dot, (f"{load}_force_power",), (*force, *velocity)),
-        ]
-        if form.link_axes:
-            rows.append(Row(planar.turned, force, (f"{load}_force_x", f"{load}_force_y", *axes)))
-        return rows
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
+from linksweep.mechanisms.actions import Form, action_powers, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
-    LoadForm,
     arm_rows,
     motion_quantities,
     newton_euler_equations,
@@ -21,6 +21,8 @@ from linksweep.mechanisms.bodies import (
     pin_force_rows,
 )
 from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.four_bar_limits import angles, classes
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
 from linksweep.physics import dyad_rrr, four_bar, inertia, planar
@@ -130,7 +132,7 @@ class FourBar:
         """Labels of the dimensions that the mechanism itself brings."""
         return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
 
-    def table(self, drive: str, loads: tuple[LoadForm, ...]) -> Table:
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
         return _table(drive, loads)
 
@@ -141,6 +143,10 @@ class FourBar:
         """The nine unknowns of the 9×9, in the textbook's order."""
         return (*UNKNOWN_FORCES, self.drives[drive])
 
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        """What a sweep gives besides the kinematics."""
+        return self.unknowns(drive)
+
     def equations(self, drive: str) -> tuple[Equation, ...]:
         """The 9×9 of document 2 (ME 470), row by row."""
         torque = {role: self.drives[drive] if role == drive else None for role in self.links}
@@ -149,6 +155,11 @@ class FourBar:
             *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
             *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque["rocker"]),
         )
+
+    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """What can be checked in closed form, and the numbers that each takes."""
+        lengths = tuple(self.lengths().values())
+        return (classes, lengths), (angles, (*lengths, self.ground_angle))
 
     @cached_property
     def closes_everywhere(self) -> bool:
@@ -164,10 +175,9 @@ class FourBar:
 
 
 @lru_cache(maxsize=64)
-def _table(drive: str, loads: tuple[LoadForm, ...]) -> Table:
+def _table(drive: str, loads: tuple[Form, ...]) -> Table:
     rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
-    for body in BODIES:
-        rows += body.rows(loads)
+    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
     for i, j in PINS.values():
         rows += pin_force_rows(i, j)
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
@@ -238,9 +248,9 @@ def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
     ]
 
 
-def _power(drive: str, loads: tuple[LoadForm, ...]) -> list[Row | Total]:
+def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
     driven = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}[drive]
-    terms = [term for body in BODIES for term in body.power_terms(loads)]
+    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
     return [
         Row(planar.product, ("power",), (FourBar.drives[drive], driven)),
         Row(planar.relative_sum, ("power_residual",), ("power", *terms)),

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.mechanisms.finding import ASSEMBLY, Finding
 from linksweep.physics.four_bar import closure_factors
 
 GRASHOF = (
@@ -27,7 +28,32 @@ GRASHOF = (
 )
 """By the shortest link: crank, ground, coupler, rocker; then no link turns fully; then the borderline between."""
 
-ASSEMBLY = ("everywhere", "partly", "never")
+TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
+
+
+def classes(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
+    """What the lengths alone decide."""
+    found = limits(a, b, c, d)
+    return {
+        "grashof": Finding(found.grashof, "Grashof class", words=GRASHOF),
+        "assembly": Finding(found.assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
+        "transmission_angle_min": Finding(
+            found.transmission_angle_min, "smallest acute angle between coupler and rocker"
+        ),
+    }
+
+
+def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Crank angles, which turn with the frame."""
+    found = limits(a, b, c, d)
+    start, end = arcs(found, ground_angle)
+    toggles = np.stack([found.folded, found.stretched, -found.stretched, -found.folded], axis=-1)
+    toggles = np.mod(toggles + ground_angle[..., None], 360.0)
+    return {
+        "arc_start": Finding(start, "crank angle at which an assembled arc starts", along=("arc", ())),
+        "arc_end": Finding(end, "crank angle at which it ends (may pass 360)", along=("arc", ())),
+        "toggle_angle": Finding(toggles, "coupler and rocker in one line", along=("toggle", TOGGLES)),
+    }
 
 
 class Limits(NamedTuple):
@@ -40,6 +66,7 @@ class Limits(NamedTuple):
     transmission_angle_min: np.ndarray
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
     """Limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
     low, high = closure_factors(a, b, c, d, 0.0, 0.0)

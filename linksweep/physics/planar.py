@@ -27,6 +27,10 @@ def product(x: Number, y: Number) -> Number:
     return x * y
 
 
+def same(x: Number) -> Number:
+    return x
+
+
 def vector_sum(px: Number, py: Number, qx: Number, qy: Number) -> tuple[Number, Number]:
     return px + qx, py + qy
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.four_bar_limits import ASSEMBLY, GRASHOF, arcs, limits
+from linksweep.mechanisms.finding import Finding
 from linksweep.results.record import design_coordinates, flags, origin_attributes
 from linksweep.scene.scene import Scene
-
-TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
 
 
 def check(scene: Scene) -> xr.Dataset:
@@ -40,39 +37,20 @@ def check(scene: Scene) -> xr.Dataset:
     >>> round(float(found.transmission_angle_min), 3)
     33.03
     """
-    lengths = [xr.DataArray(length).astype(float) for length in scene.mechanism.lengths().values()]
-    variables = _classes(*lengths) | _angles(*lengths, xr.DataArray(scene.mechanism.ground_angle).astype(float))
+    variables: dict[str, xr.Variable] = {}
+    labels: dict[str, xr.Variable] = {}
+    for findings, numbers in scene.mechanism.findings():
+        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
+        for name, found in findings(*(array.values for array in arrays)).items():
+            variables[name] = _variable(found, arrays[0].dims)
+            if found.along and found.along[1]:
+                labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))
     dims = {dim for variable in variables.values() for dim in variable.dims}
-    coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)}
-    coordinates["toggle"] = xr.Variable("toggle", list(TOGGLES))
+    coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)} | labels
     return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))
 
 
-def _classes(*lengths: xr.DataArray) -> dict[str, xr.Variable]:
-    """What the lengths alone decide."""
-    a, b, c, d = xr.broadcast(*lengths)
-    found = limits(a.values, b.values, c.values, d.values)
-    angle = _angle("smallest acute angle between coupler and rocker")
-    return {
-        "grashof": xr.Variable(a.dims, found.grashof, flags("Grashof class", GRASHOF)),
-        "assembly": xr.Variable(a.dims, found.assembly, flags("crank angles at which it can be assembled", ASSEMBLY)),
-        "transmission_angle_min": xr.Variable(a.dims, found.transmission_angle_min, angle),
-    }
-
-
-def _angles(*lengths_and_ground_angle: xr.DataArray) -> dict[str, xr.Variable]:
-    """Crank angles, which turn with the frame."""
-    a, b, c, d, ground_angle = xr.broadcast(*lengths_and_ground_angle)
-    found = limits(a.values, b.values, c.values, d.values)
-    start, end = arcs(found, ground_angle.values)
-    toggles = np.stack([found.folded, found.stretched, -found.stretched, -found.folded], axis=-1)
-    toggles = np.mod(toggles + ground_angle.values[..., None], 360.0)
-    return {
-        "arc_start": xr.Variable((*a.dims, "arc"), start, _angle("crank angle at which an assembled arc starts")),
-        "arc_end": xr.Variable((*a.dims, "arc"), end, _angle("crank angle at which it ends (may pass 360)")),
-        "toggle_angle": xr.Variable((*a.dims, "toggle"), toggles, _angle("coupler and rocker in one line")),
-    }
-
-
-def _angle(long_name: str) -> dict[str, str]:
-    return {"units": "degree", "long_name": long_name}
+def _variable(found: Finding, dims: tuple) -> xr.Variable:
+    dims = (*dims, found.along[0]) if found.along else dims
+    said = {"units": found.units, "long_name": found.long_name}
+    return xr.Variable(dims, found.values, flags(found.long_name, found.words) if found.words else said)

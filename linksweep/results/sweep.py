@@ -75,7 +75,7 @@ def sweep(
 
 def _names(scene: Scene, outputs: Iterable[str] | None) -> tuple[str, ...]:
     if outputs is None:
-        return scene.mechanism.kinematics() + scene.mechanism.unknowns(scene.drive)
+        return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
     names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in name_problems("outputs", name, known)])

@@ -41,7 +41,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms.four_bar import FourBar
+from linksweep.mechanisms import FourBar, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.mechanisms.validate import choice_problems, did_you_mean
 from linksweep.scene.axis import design_axis
@@ -142,7 +142,7 @@ def _fields(cls: Any, **special: Field) -> dict[str, Field]:
 
 
 _LINKS = Table({"Link": Link, "Bar": Bar, "Disk": Disk}, default="Link")
-_MECHANISMS = Table({"FourBar": FourBar})
+_MECHANISMS = Table({"FourBar": FourBar, "SliderCrank": SliderCrank})
 _FORCE = Pair(Number("force"), Number("force"))
 _POLAR = Pair(Number("length"), Number("angle"))
 _GRAVITY = Pair(Number("acceleration"), Number("acceleration"))
@@ -150,6 +150,7 @@ _GRAVITY = Pair(Number("acceleration"), Number("acceleration"))
 SCHEMA: dict[type, dict[str, Field]] = {
     **{cls: _fields(cls) for cls in _LINKS.classes.values()},
     FourBar: _fields(FourBar, crank=_LINKS, coupler=_LINKS, rocker=_LINKS),
+    SliderCrank: _fields(SliderCrank, crank=_LINKS, rod=_LINKS),
     Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR),
     Scene: _fields(Scene, mechanism=_MECHANISMS, gravity=_GRAVITY, loads=Tables(Load)),
 }

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from linksweep.mechanisms.bodies import LoadForm
+from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_problems, parameter, problems
 

@@ -13,7 +13,7 @@ import xarray as xr
 from linksweep.engine.plan import InputForms
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Grid
-from linksweep.mechanisms.four_bar import FourBar
+from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.validate import (
     Number,
     Rule,
@@ -73,7 +73,7 @@ class Scene:
     'crank'
     """
 
-    mechanism: FourBar
+    mechanism: Mechanism
     omega2: Number = parameter("angular_velocity", over_angle=True)
     alpha2: Number = parameter("angular_acceleration", 0.0, over_angle=True)
     gravity: tuple[Number, Number] = (0.0, 0.0)
@@ -81,15 +81,20 @@ class Scene:
     drive: str = "crank"
 
     def __post_init__(self) -> None:
-        found = (
-            [] if isinstance(self.mechanism, FourBar) else [f"mechanism = {said(self.mechanism)}: must be a FourBar"]
-        )
+        sound = isinstance(self.mechanism, MECHANISMS)
+        known = " or ".join(kind.__name__ for kind in MECHANISMS)
+        found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
         found += problems(self)
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
-        found += choice_problems("drive", self.drive, FourBar.drives)
+        found += choice_problems("drive", self.drive, self._of_mechanism("drives"))
         found += self._take_loads()
         refuse(found)
         refuse(dimension_problems(self.arrays, self.mechanism.index, self.table.quantity))
+
+    def _of_mechanism(self, words: str) -> tuple[str, ...]:
+        """The mechanism's drives or links; of an unsound one, those of any."""
+        kinds = (type(self.mechanism),) if isinstance(self.mechanism, MECHANISMS) else MECHANISMS
+        return tuple(dict.fromkeys(word for kind in kinds for word in getattr(kind, words)))
 
     def _take_loads(self) -> list[str]:
         """Any collection of loads as a tuple; a single load counts as one."""
@@ -101,7 +106,7 @@ class Scene:
         for k, load in enumerate(self.loads, 1):
             sound = isinstance(load, Load)
             problem = [f"loads[{k}] = {said(load)}: must be a Load"]
-            found += load.problems(f"loads[{k}]", FourBar.links) if sound else problem
+            found += load.problems(f"loads[{k}]", self._of_mechanism("links")) if sound else problem
         return found
 
     def __eq__(self, other: object) -> bool:

@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import xarray as xr
 
@@ -14,7 +15,12 @@ from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example
 from linksweep.surface.report import check_lines, peak_table
-from linksweep.surface.storage import load_scene, save
+from linksweep.surface.storage import load_scene, save, whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PICTURES = (".png", ".pdf", ".svg")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -44,13 +50,13 @@ def _parser() -> argparse.ArgumentParser:
     cycle = commands.add_parser("sweep", help="one revolution to NetCDF, and to a figure")
     _scene_arguments(cycle)
     cycle.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
-    cycle.add_argument("--plot", type=Path, help="figure to write: .png, .pdf or .svg")
-    cycle.add_argument("--outputs", help="names of the variables wanted, separated by commas")
+    cycle.add_argument("--plot", type=_picture, help="figure to write: .png, .pdf or .svg")
+    cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
     cycle.set_defaults(run=_sweep)
 
     worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
     _scene_arguments(worst)
-    worst.add_argument("--of", help="names of the quantities wanted, separated by commas")
+    worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
     worst.add_argument("-o", "--output", type=Path, help="NetCDF file to write")
     worst.set_defaults(run=_peaks)
 
@@ -70,24 +76,27 @@ def _demo(options: argparse.Namespace) -> None:
     cycle = sweep(scene)
     print("A press: crank 8 cm, coupler 22 cm, rocker 18 cm, ground 20 cm, 300 rpm, 80 lbf on the coupler\n")
     print(peak_table(peaks(scene)))
-    data, picture = (options.output.with_suffix(ending) for ending in (".nc", ".png"))
+    data, picture = (options.output.with_name(options.output.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
-    _plot(cycle, picture)
+    _write(_figure(cycle), picture)
     print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")
 
 
 def _sweep(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
-    cycle = sweep(scene, theta2=options.theta2, outputs=_names(options.outputs))
+    cycle = sweep(scene, theta2=options.theta2, outputs=options.outputs)
+    figure = None
+    if options.plot:  # it shows all pin forces, whatever is asked for in the file
+        figure = _figure(cycle if options.outputs is None else sweep(scene, theta2=options.theta2))
     save(cycle, options.output)
     print(f"written: {options.output}")
-    if options.plot:
-        _plot(cycle, options.plot)
+    if figure is not None:
+        _write(figure, options.plot)
         print(f"written: {options.plot}")
 
 
 def _peaks(options: argparse.Namespace) -> None:
-    found = peaks(load_scene(options.scene), of=_names(options.of), theta2=options.theta2)
+    found = peaks(load_scene(options.scene), of=options.of, theta2=options.theta2)
     print(peak_table(found))
     if options.output:
         save(found, options.output)
@@ -99,14 +108,30 @@ def _check(options: argparse.Namespace) -> None:
     print("\n".join(check_lines(check(scene))))
 
 
-def _names(text: str | None) -> list[str] | None:
-    return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
+def _names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        raise argparse.ArgumentTypeError("must be names, separated by commas")
+    return names
 
 
-def _plot(cycle: xr.Dataset, path: Path) -> None:
+def _picture(text: str) -> Path:
+    path = Path(text)
+    if path.suffix.lower() not in PICTURES:
+        raise argparse.ArgumentTypeError(f"{text}: its ending must be one of {', '.join(PICTURES)}")
+    return path
+
+
+def _figure(cycle: xr.Dataset) -> Figure:
+    """The report page of a cycle, drawn without a screen."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     from linksweep.surface import plot
 
-    plot.cycle(cycle).savefig(path, dpi=150)
+    return plot.cycle(cycle)
+
+
+def _write(figure: Figure, path: Path) -> None:
+    with whole(path) as temporary:
+        figure.savefig(temporary, format=path.suffix[1:].lower(), dpi=150)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Lock
@@ -43,6 +44,13 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     ...     ls.load_scene(path).omega2
     31.41592653589793
     """
+    with whole(path) as temporary, _NETCDF:
+        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+
+
+@contextlib.contextmanager
+def whole(path: str | os.PathLike) -> Iterator[Path]:
+    """A temporary file to write to, which becomes `path` when all went well; else `path` is left as it was."""
     path = Path(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent}; make it first")
@@ -53,8 +61,7 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     except OSError as error:
         raise type(error)(error.errno, error.strerror, str(path)) from None
     try:
-        with _NETCDF:
-            ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+        yield temporary
         with open(temporary, "rb") as file:
             os.fsync(file.fileno())
         os.replace(temporary, target)

@@ -1,0 +1,27 @@
+"""What a mechanism's check finds, as arrays over its designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+ASSEMBLY = ("everywhere", "partly", "never")
+
+
+class Finding(NamedTuple):
+    """Values over the designs, and over a trailing dim of its own where `along` names one with its labels.
+
+    Small integers stand for `words`; other values are in `units`.
+    """
+
+    values: np.ndarray
+    long_name: str
+    units: str = "degree"
+    words: tuple[str, ...] = ()
+    along: tuple[str, tuple[str, ...]] | None = None
+
+
+Findings = Callable[..., dict[str, Finding]]
+"""A function of arrays of numbers, broadcast against each other, that returns findings by name."""

@@ -1,0 +1,302 @@
+"""The slider-crank: crank 2 (A-B), rod 3 (B-C), slider 4 at C on a guide of the ground 1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.engine.run import Field
+from linksweep.mechanisms.actions import Form, action_powers, action_rows
+from linksweep.mechanisms.bodies import (
+    Body,
+    Equation,
+    arm_rows,
+    motion_quantities,
+    newton_euler_equations,
+    pin_force_quantities,
+    pin_force_rows,
+)
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
+from linksweep.physics import dyad_rrp, four_bar, planar, slider_crank
+
+BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
+LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
+PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3)}
+BODIES = (
+    Body(2, "crank", steady=True),
+    Body(3, "rod", pin_velocity=("vBx", "vBy"), pin_acceleration=("aBx", "aBy")),
+    Body(4, "slider", pin_velocity=("vCx", "vCy"), pin_acceleration=("aCx", "aCy")),
+)
+SLIDER = {
+    "slider_inertia": 0.0,
+    "slider_cg_x": 0.0,
+    "slider_cg_y": 0.0,
+    "slider_length": 1.0,
+    "omega4": 0.0,
+    "alpha4": 0.0,
+}
+"""The slider as a body that does not turn, its centre of gravity on its pin, its axes along and across the guide."""
+
+
+@dataclass(frozen=True)
+class SliderCrank:
+    """A slider-crank: engine, pump, compressor.
+
+    Parameters
+    ----------
+    crank, rod : Link, Bar or Disk
+        Their first pins are A and B.
+    slider_mass : [kg], at the pin C
+    offset : height of the guide over A, to the left of the guide's direction [m], either sign
+    friction : coefficient of Coulomb friction between slider and guide
+    branch : "open" (C ahead of B along the guide), "crossed" (behind), or "both" (adds the dimension `branch`)
+    slide_angle : direction of the guide to x [degree]
+
+    All numbers may be DataArrays of design dims. A load on "slider" acts at a point from C, in axes along and across
+    the guide.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds, and for lengths that cannot be joined at any crank angle.
+
+    Notes
+    -----
+    Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
+    guide: status `jammed`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> crank, rod = ls.Disk(0.045, 0.06, 0.02, 7800), ls.Link(0.15, 0.6, 2.2e-3, cg_distance=0.05)
+    >>> ls.SliderCrank(crank, rod, slider_mass=0.5, friction=0.1).branch
+    'open'
+    """
+
+    crank: Link | Bar | Disk
+    rod: Link | Bar | Disk
+    slider_mass: Number = parameter("mass", at_least=0.0)
+    offset: Number = parameter("length", 0.0)
+    friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
+    branch: str = "open"
+    slide_angle: Number = parameter("angle", 0.0)
+
+    index: ClassVar[str] = "theta2"
+    period: ClassVar[float] = 360.0
+    drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13"}
+    links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
+    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre", "jammed")
+
+    def __post_init__(self) -> None:
+        found = []
+        for role in ("crank", "rod"):
+            link = getattr(self, role)
+            sound = isinstance(link, Link | Bar | Disk)
+            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
+        refuse(found)
+        refuse(self._never_closes())
+
+    def _never_closes(self) -> list[str]:
+        a, b, e = self.crank.length, self.rod.length, self.offset
+        if any(hasattr(number, "dims") for number in (a, b, e)) or abs(e) <= a + b:
+            return []
+        return [
+            f"offset = {e:.15g} m is {abs(e) - a - b:.6g} m beyond the reach of crank + rod: "
+            f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
+        ]
+
+    def parameters(self) -> dict[str, Any]:
+        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
+        guide_cos, guide_sin = cos_sin(self.slide_angle)
+        cos_half, sin_half = cos_sin(0.5 * self.slide_angle)
+        numbers: dict[str, Any] = {
+            "offset": self.offset,
+            "friction": self.friction,
+            "slider_mass": self.slider_mass,
+            "guide_cos": guide_cos,
+            "guide_sin": guide_sin,
+            "ground_cos_half": cos_half,
+            "ground_sin_half": sin_half,
+            "r4x": guide_cos,
+            "r4y": guide_sin,
+            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+        }
+        return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """Labels of the dimensions that the mechanism itself brings."""
+        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
+
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        """All that can be computed for this drive and loads of these forms."""
+        return _table(drive, loads)
+
+    def kinematics(self) -> tuple[str, ...]:
+        return ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider")
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        forces = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+        return (*forces, self.drives[drive])
+
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        return (*self.unknowns(drive), "T14")
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """The 9×9: document 1's rows, with friction; the torque in the row of the driven link (document 3)."""
+        torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
+        slider = newton_euler_equations(4, {"F43": (-1.0, "R43"), "F14": (1.0, "R43")}, None)[:2]
+        friction = Equation(
+            "friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs"
+        )
+        return (
+            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"]),
+            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
+            *slider,
+            friction,
+        )
+
+    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """What can be checked in closed form, and the numbers that each takes."""
+        lengths = (self.crank.length, self.rod.length, self.offset)
+        turned = (*lengths, self.slide_angle)
+        return (classes, lengths), (angles, turned), (wedging, (*turned, self.friction))
+
+    @cached_property
+    def closes_everywhere(self) -> bool:
+        """Whether every design closes at every angle with a margin that rounding cannot touch, and cannot wedge."""
+        a, b, e = self.crank.length, self.rod.length, abs(self.offset)
+        height = a + e
+        wedges = (self.friction * height) ** 2 >= (b - height) * (b + height) * (1.0 - 1e-9)
+        return bool(np.all(b - height > 1e-9 * (b + height)) and not np.any(wedges))
+
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return ("F12", "F32", "F43", "F14", self.drives[drive])
+
+
+@lru_cache(maxsize=64)
+def _table(drive: str, loads: tuple[Form, ...]) -> Table:
+    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
+    for i, j in (*PINS.values(), (1, 4)):
+        rows += pin_force_rows(i, j)
+    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43")]
+    return Table("theta2", tuple(rows), tuple(_quantities(drive)))
+
+
+def _position() -> list[Row | Total]:
+    return [
+        Row(four_bar.crank_pin, ("r2x", "r2y")),
+        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
+        Row(slider_crank.closure_factors, ("low", "high")),
+        Row(slider_crank.closure_noise, ("noise",)),
+        Row(slider_crank.assembly, ("assembly",)),
+        Row(dyad_rrp.rrp_close, ("r3x", "r3y", "rod_along", "inverse_rod_along")),
+        Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
+        Row(slider_crank.slider_position, ("x_slider",)),
+        Row(planar.direction, ("theta3",), ("r3x", "r3y")),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
+    ]
+
+
+def _rates() -> list[Row | Total]:
+    return [
+        Row(dyad_rrp.rrp_velocity_ratios, ("ratio3", "ratio_slider")),
+        Row(planar.product, ("omega3",), ("omega2", "ratio3")),
+        Row(planar.product, ("v_slider",), ("omega2", "ratio_slider")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
+        Row(slider_crank.guide_vector, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
+        Row(slider_crank.guide_vector, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
+    ]
+
+
+def _forces(drive: str) -> list[Row | Total]:
+    """The guide's force from the lever whose moment equation is free of the drive; the rest follows by addition."""
+    lever = {
+        "crank": ("inverse_rod_along", "rod_across", "moment_r3"),
+        "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
+    }[drive]
+    ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3"}
+    return [
+        Row(slider_crank.moment_on_rod, ("moment_r3",)),
+        Row(slider_crank.inverse_or_nan, ("inverse_crank_along",), ("crank_along",)),
+        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(
+            slider_crank.guide_force,
+            ("normal_force", "friction_force", "wedging"),
+            (*lever, "Q4x", "Q4y", "guide_cos", "guide_sin", "friction", "v_slider"),
+        ),
+        Row(slider_crank.guide_force_in_ground_axes, ("F14x", "F14y")),
+        Row(planar.vector_sum, ("F43x", "F43y"), ("F14x", "F14y", "Q4x", "Q4y")),
+        Row(four_bar.coupler_balance, ("F32x", "F32y")),
+        Row(four_bar.crank_balance, ("F12x", "F12y")),
+        Row(planar.opposite, ("T14",), ("N4",)),
+        Row(slider_crank.work_on_crank, ("work",)),
+        Row(four_bar.balancing_torque, (SliderCrank.drives[drive],), ("work", ratios[drive])),
+        Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
+        Total("friction_rhs", ()),
+        *_status(drive),
+    ]
+
+
+def _status(drive: str) -> list[Row | Total]:
+    closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
+    leverage: list[Row | Total] = [Row(planar.same, ("leverage_status",), ("closure",))]
+    if drive == "coupler":
+        leverage = [Row(four_bar.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))]
+    return [*closure, *leverage, Row(slider_crank.jammed_status, ("status",), ("leverage_status", "wedging"))]
+
+
+def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
+    driven = {"crank": "omega2", "coupler": "omega3"}[drive]
+    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
+    return [
+        Row(planar.product, ("power",), (SliderCrank.drives[drive], driven)),
+        Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
+        Row(planar.relative_sum, ("power_residual",), ("power", "friction_power", *terms)),
+    ]
+
+
+def _quantities(drive: str) -> list[Quantity]:
+    torque = SliderCrank.drives[drive]
+    found = [
+        Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
+        Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
+        Quantity("x_slider", "m", "position of the slider along the guide, from the foot of A on it"),
+        Quantity("v_slider", "m s-1", "velocity of the slider along the guide"),
+        Quantity("a_slider", "m s-2", "acceleration of the slider along the guide"),
+        Quantity("Bx", "m", "position of pin B from A along x"),
+        Quantity("By", "m", "position of pin B from A along y"),
+        Quantity("Cx", "m", "position of pin C from A along x"),
+        Quantity("Cy", "m", "position of pin C from A along y"),
+        Quantity(torque, "N m", f"torque of the drive on link {torque[2]}, positive counter-clockwise"),
+        Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
+        Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
+        Quantity("friction_force", "N", "force of the guide on the slider along it"),
+        Quantity("friction_power", "W", "power of friction on the slider, never positive"),
+        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
+        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
+        Quantity(
+            "power_residual",
+            "1",
+            "sum of the powers of drive, friction, loads, gravity and inertia, relative to the largest of them",
+        ),
+    ]
+    for body in BODIES[:2]:
+        found += motion_quantities(body.number, body.role)
+    found += motion_quantities(4, "slider")[2:]
+    for pin, (i, j) in PINS.items():
+        found += pin_force_quantities(i, j, pin, LINKS)
+    return found + pin_force_quantities(1, 4, "guide", LINKS)

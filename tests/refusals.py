@@ -1,0 +1,59 @@
+"""A sound scene to spoil, and how a refusal is read."""
+
+import re
+from dataclasses import replace
+
+import pytest
+import xarray as xr
+
+import linksweep as ls
+
+LINK = ls.Link(0.22, 0.68, 2.8e-3)
+BAR = ls.Bar(0.08, 0.02, 0.02, 7750.0)
+DISK = ls.Disk(0.18, 0.05, 0.02, 7750.0)
+FOUR_BAR = ls.FourBar(crank=BAR, coupler=LINK, rocker=DISK, ground=0.2)
+LOAD = ls.Load("coupler", force=(0.0, -80.0), at=(0.1, 15.0), torque=2.0)
+SCENE = ls.Scene(FOUR_BAR, omega2=30.0, loads=[ls.Load("rocker", torque=1.0), LOAD])
+
+
+def coupler(**changes) -> ls.Scene:
+    return replace(SCENE, mechanism=replace(FOUR_BAR, coupler=replace(LINK, **changes)))
+
+
+def crank(**changes) -> ls.Scene:
+    return replace(SCENE, mechanism=replace(FOUR_BAR, crank=replace(BAR, **changes)))
+
+
+def rocker(**changes) -> ls.Scene:
+    return replace(SCENE, mechanism=replace(FOUR_BAR, rocker=replace(DISK, **changes)))
+
+
+def four_bar(**changes) -> ls.Scene:
+    return replace(SCENE, mechanism=replace(FOUR_BAR, **changes))
+
+
+def scene(**changes) -> ls.Scene:
+    return replace(SCENE, **changes)
+
+
+def load(**changes) -> ls.Scene:
+    """The scene with its second load changed."""
+    return replace(SCENE, loads=[SCENE.loads[0], replace(LOAD, **changes)])
+
+
+def refusal(call, *arguments, **options) -> list[str]:
+    """The lines of a ValueError; what holds for every message is seen to here."""
+    with pytest.raises(ValueError) as refused:  # noqa: PT011
+        call(*arguments, **options)
+    lines = str(refused.value).split("\n")
+    for line in lines:
+        assert re.match(r"[a-z]\w*(\[\d\])?(\.\w+(\[\d\])?)?( = |: | has | is | holds | depends )", line), line
+        assert " at 0x" not in line
+        assert len(line) < 250 or "there are theta3" in line
+        assert line == line.strip()
+        assert re.search(r"must|give|make|write|name its|rename|did you mean|shorten|there are|every angle", line), line
+    return lines
+
+
+def array(*values, dims="design", **coords) -> xr.DataArray:
+    return xr.DataArray(list(values), coords or None, dims)
