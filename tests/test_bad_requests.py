@@ -181,7 +181,7 @@ def test_crank_angles_that_are_some(theta2, angles):
             "outputs: nothing is named 'omega_4'; did you mean \"omega4\"?",
         ),
         (lambda: ls.sweep(SCENE, 8, ["wibble"]), "outputs: nothing is named 'wibble'; there are theta3, theta4, "),
-        (lambda: ls.sweep(SCENE, 8, [5]), "outputs: nothing is named 5; there are theta3, theta4, "),
+        (lambda: ls.sweep(SCENE, 8, [5]), "outputs = 5: must be names of quantities"),
         (lambda: ls.sweep(SCENE, 8, [""]), "outputs: nothing is named ''; there are theta3, theta4, "),
         (lambda: ls.peaks(SCENE, ["F23y", "F32_maen"]), "of: nothing is named 'F32_maen'; there are theta3, theta4, "),
         (lambda: ls.peaks(SCENE, "T13"), "of: nothing is named 'T13'; did you mean \"T12\"?"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from linksweep.mechanisms.finding import Finding
+from linksweep.results.compute import require_scene
 from linksweep.results.record import design_coordinates, flags, origin_attributes
 from linksweep.scene.scene import Scene
 
@@ -37,6 +38,7 @@ def check(scene: Scene) -> xr.Dataset:
     >>> round(float(found.transmission_angle_min), 3)
     33.03
     """
+    require_scene(scene)
     variables: dict[str, xr.Variable] = {}
     labels: dict[str, xr.Variable] = {}
     for findings, numbers in scene.mechanism.findings():

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
 from linksweep.engine.plan import plan
 from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.mechanisms.validate import refuse
 from linksweep.scene.scene import Scene
+
+
+def requested(path: str, names: Any) -> list[str]:
+    """Names asked for, as a list; one name alone counts as one."""
+    given = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else [names]
+    wrong = [name for name in given if not isinstance(name, str)]
+    refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
+    return list(dict.fromkeys(given))
+
+
+def require_scene(scene: Any) -> None:
+    kind = type(scene).__name__
+    refuse([] if isinstance(scene, Scene) else [f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"])
 
 
 def compute(

@@ -18,8 +18,9 @@ from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.mechanisms.validate import count_problems, name_problems, refuse
+from linksweep.results.compute import requested, require_scene
 from linksweep.results.record import design_coordinates, flags, provenance, variable
-from linksweep.scene.grid import crank_grid
+from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
 MEANINGS = ("ok", "partial_revolution", "cannot_assemble")
@@ -60,10 +61,12 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
     """
+    require_scene(scene)
     refuse(count_problems("threads", threads))
-    grid = crank_grid(theta2, scene.mechanism.period)
+    names = None if of is None else requested("of", of)
+    grid = in_order(crank_grid(theta2, scene.mechanism.period))
     sampled = scene.at(grid)
-    wanted = _wanted(scene, of)
+    wanted = _wanted(scene, names)
     reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), ASSEMBLY]))
     signals = tuple(dict.fromkeys(reduction.name for reduction in reductions))
     request = plan(scene.table, signals, sampled.inputs.forms)
@@ -78,17 +81,16 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     status = variable(found[ASSEMBLY][0], "1", "", order).astype(np.int8)
     status.attrs = flags("whether the mechanism can be assembled all the way round", MEANINGS)
     variables["status"] = status
-    command = f"linksweep.peaks(scene{'' if of is None else f', of={list(of)}'}, theta2={np.size(grid.angles)})"
+    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}, theta2={np.size(grid.angles)})"
     coordinates = design_coordinates(sampled)
     return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
-def _wanted(scene: Scene, of: Iterable[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
+def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
     """Each name's quantity, the summary asked for, and the reductions that it takes."""
     quantities = scene.table.quantity
-    names = scene.mechanism.peak_quantities(scene.drive) if of is None else (of,) if isinstance(of, str) else of
     found, problems = [], []
-    for name in dict.fromkeys(names):
+    for name in scene.mechanism.peak_quantities(scene.drive) if names is None else names:
         stem, _, ending = name.rpartition("_")
         stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
         if stem not in quantities or stem == "cond":

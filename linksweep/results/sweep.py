@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import choice_problems, count_problems, name_problems, refuse
-from linksweep.results.compute import blank, compute, sample_status
+from linksweep.results.compute import blank, compute, requested, require_scene, sample_status
 from linksweep.results.record import described
 from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
@@ -59,6 +59,7 @@ def sweep(
     >>> dict(cycle.sizes), cycle.T12.units
     ({'theta2': 360}, 'N m')
     """
+    require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
     grid = crank_grid(theta2, scene.mechanism.period)
     names = _names(scene, outputs)
@@ -70,19 +71,20 @@ def sweep(
         given = solution if solver == "dense" else {"cond": solution["cond"]}
     fields = compute(sampled, grid, names, threads, given)
     blank(fields, status)
-    return described(scene, sampled, grid, fields, status, _command(theta2, outputs, solver))
+    command = _command(theta2, None if outputs is None else names, solver)
+    return described(scene, sampled, grid, fields, status, command)
 
 
 def _names(scene: Scene, outputs: Iterable[str] | None) -> tuple[str, ...]:
     if outputs is None:
         return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
-    names = (outputs,) if isinstance(outputs, str) else tuple(dict.fromkeys(outputs))
+    names = requested("outputs", outputs)
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in name_problems("outputs", name, known)])
     return tuple(name for name in names if name != "status")
 
 
-def _command(theta2: Any, outputs: Iterable[str] | None, solver: str) -> str:
+def _command(theta2: Any, names: Iterable[str] | None, solver: str) -> str:
     angles = theta2 if isinstance(theta2, int | np.integer) else f"<{np.size(theta2)} angles>"
-    wanted = "" if outputs is None else f", outputs={list(outputs)}"
+    wanted = "" if names is None else f", outputs={list(names)}"
     return f"linksweep.sweep(scene, theta2={angles}{wanted}" + (")" if solver == "fast" else f", solver={solver!r})")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from linksweep.engine.run import Field, Grid
-from linksweep.results.compute import blank, compute, sample_status
+from linksweep.results.compute import blank, compute, require_scene, sample_status
 from linksweep.results.record import ANGLE, cycle_coordinates, provenance, status_attributes
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -39,7 +40,8 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     >>> page.matrix.isel(theta2=0).shape
     (9, 9)
     """
-    angles = [theta2] if isinstance(theta2, float | int) and not isinstance(theta2, bool) else theta2
+    require_scene(scene)
+    angles = [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
     grid = crank_grid(angles, scene.mechanism.period)
     sampled = scene.at(grid)
     status = sample_status(sampled, grid)

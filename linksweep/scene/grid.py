@@ -45,6 +45,11 @@ def _angles(theta2: Any) -> np.ndarray:
     return angles
 
 
+def in_order(grid: Grid) -> Grid:
+    """The same angles sorted, each once: what a search for peaks between neighbours needs."""
+    return grid if (np.diff(grid.angles) > 0.0).all() else _grid(np.unique(grid.angles), grid.period)
+
+
 def _grid(angles: np.ndarray, period: float) -> Grid:
     half = cos_sin(0.5 * angles)
     table = np.array([*cos_sin(angles), *half, *(number * number for number in half)])
