@@ -68,7 +68,7 @@ class Jammed(ValueError):
 class SliderCrankData:
     """One slider-crank and what happens to it: SI, angles in degrees, rates in rad/s and rad/s^2.
 
-    Loads act on "crank", "rod" or "slider". The slider's centre of gravity is C and its axes are the ground's.
+    Loads act on "crank", "rod" or "slider". The slider's centre of gravity is C and its axes run along and across the guide.
     """
 
     crank: LinkData
@@ -126,7 +126,7 @@ def motion(data: SliderCrankData, theta2) -> Motion:
     # the slider moves as on a rocker along -n: j y (-j s) = y s
     w3, v4 = two_rates(u, -1j * s, -velocity)
     a3, a4 = two_rates(u, -1j * s, -acceleration + w3**2 * u)
-    line = by_link(turn(theta2), u / abs(u), mp.mpc(1))
+    line = by_link(turn(theta2), u / abs(u), s)
     omega, alpha = by_link(w2, w3, mp.mpf(0)), by_link(a2, a3, mp.mpf(0))
     r = {name: polar((link.cg_distance, link.cg_angle)) * line[name] for name, link in links(data).items()}
     v0, a0 = by_link(0, velocity, v4 * s), by_link(0, acceleration, a4 * s)

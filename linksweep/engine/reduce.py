@@ -11,8 +11,22 @@ def largest(row, angles, period, work):
     """Largest sample of a row and its angle, improved by the parabola through it and its two neighbours.
 
     NaN samples are passed over; all NaN gives NaN. `period` joins the row's ends [as `angles`]; 0 leaves them apart.
-    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions, and the
-    winning lane says where to look for its sample.
+    """
+    at = place_of_largest(row, work)
+    return parabola_peak(row, angles, period, at) if at >= 0 else (math.nan, math.nan)
+
+
+def largest_sample(row, angles, period, work):
+    """Largest sample of a row and its angle as they stand: for rows that may jump, where no parabola holds."""
+    at = place_of_largest(row, work)
+    return (row[at], angles[at]) if at >= 0 else (math.nan, math.nan)
+
+
+def place_of_largest(row, work):
+    """Where the largest sample is, the first of equals; -1 where all are NaN.
+
+    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions, and the winning
+    lane says where to look for its sample.
     """
     n = len(row)
     for k in range(64):
@@ -33,9 +47,7 @@ def largest(row, angles, period, work):
             while j < at and row[j] != peak:
                 j += 64
             at = min(at, j)
-    if at >= n or peak == -math.inf:
-        return math.nan, math.nan
-    return parabola_peak(row, angles, period, at)
+    return at if at < n and peak > -math.inf else -1
 
 
 def largest_lane(work):

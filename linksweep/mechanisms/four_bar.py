@@ -161,6 +161,10 @@ class FourBar:
         lengths = tuple(self.lengths().values())
         return (classes, lengths), (angles, (*lengths, self.ground_angle))
 
+    def jumps(self) -> tuple[Number, ...]:
+        """Crank angles at which a force may jump [degree]: none."""
+        return ()
+
     @cached_property
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""

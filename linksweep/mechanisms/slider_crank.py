@@ -170,6 +170,18 @@ class SliderCrank:
         turned = (*lengths, self.slide_angle)
         return (classes, lengths), (angles, turned), (wedging, (*turned, self.friction))
 
+    def jumps(self) -> tuple[Number, ...]:
+        """Dead centres: crank angles [degree] with the rod in line with it; the slider turns round, friction jumps."""
+        if not np.any(self.friction):
+            return ()
+        a, b, e = self.crank.length, self.rod.length, self.offset
+        stretched, folded = np.degrees(np.arcsin(e / (a + b))), np.degrees(np.arcsin(e / (b - a)))
+        dead_centres = {
+            "open": (self.slide_angle + stretched, self.slide_angle + 180.0 + folded),
+            "crossed": (self.slide_angle + 180.0 - stretched, self.slide_angle - folded),
+        }
+        return dead_centres.get(self.branch, dead_centres["open"] + dead_centres["crossed"])
+
     @cached_property
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch, and cannot wedge."""
@@ -233,10 +245,11 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
         Row(slider_crank.inverse_or_nan, ("inverse_crank_along",), ("crank_along",)),
         Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(slider_crank.friction_direction, ("direction",)),
         Row(
             slider_crank.guide_force,
             ("normal_force", "friction_force", "wedging"),
-            (*lever, "Q4x", "Q4y", "guide_cos", "guide_sin", "friction", "v_slider"),
+            (*lever, "Q4x", "Q4y", "guide_cos", "guide_sin", "direction"),
         ),
         Row(slider_crank.guide_force_in_ground_axes, ("F14x", "F14y")),
         Row(planar.vector_sum, ("F43x", "F43y"), ("F14x", "F14y", "Q4x", "Q4y")),

@@ -52,6 +52,12 @@ def slider_position(crank_along: Number, rod_along: Number) -> Number:
     return crank_along + rod_along
 
 
+def friction_direction(friction: Number, v_slider: Number, omega2: Number, noise: Number) -> Number:
+    """μ·sign(v); 0 where the slider stands, as far as the lengths can tell."""
+    standing = abs(omega2) * noise
+    return where(v_slider > standing, friction, where(v_slider < -standing, -friction, 0.0))
+
+
 def guide_force(
     inverse_lever_along: Number,
     lever_across: Number,
@@ -60,20 +66,18 @@ def guide_force(
     Q4y: Number,
     guide_cos: Number,
     guide_sin: Number,
-    friction: Number,
-    v_slider: Number,
+    direction: Number,
 ) -> tuple[Number, Number, Number]:
     """The guide's force on the slider across (normal) and along (friction), and how near it is to wedging.
 
     F43 = F14 + Q4 and r × F43 = moment for the lever r (the rod, or the crank where its torque is known) give,
     without friction, a normal force N0. Friction −μ|N|·sign(v) changes it to N = N0/(1 + sign(N)·k) with k =
-    μ·sign(v)·tan ψ, tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign of N is consistent, that of
+    direction·tan ψ, direction = μ·sign(v), tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign of N is consistent, that of
     N0; for |k| ≥ 1 none or both are: the slider wedges.
     """
     Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
     slope = lever_across * inverse_lever_along
     frictionless = lever_moment * inverse_lever_along + slope * Q4_along - Q4_across
-    direction = friction * where(v_slider > 0.0, 1.0, where(v_slider < 0.0, -1.0, 0.0))
     opposing = where(frictionless < 0.0, -direction, direction)
     normal = frictionless / (1.0 + opposing * slope)
     return normal, -(opposing * normal), abs(direction * slope)
@@ -124,9 +128,8 @@ def work_on_crank(
 
 
 def friction_row(
-    normal_force: Number, friction: Number, v_slider: Number, guide_cos: Number, guide_sin: Number
+    normal_force: Number, direction: Number, guide_cos: Number, guide_sin: Number
 ) -> tuple[Number, Number]:
     """Coefficients of F14x and F14y in the friction row: share along + μ·sign(v)·sign(N)·share across = 0."""
-    direction = friction * where(v_slider > 0.0, 1.0, where(v_slider < 0.0, -1.0, 0.0))
     k = where(normal_force < 0.0, -direction, direction)
     return guide_cos - k * guide_sin, guide_sin + k * guide_cos

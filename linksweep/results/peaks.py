@@ -19,6 +19,7 @@ from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.mechanisms.validate import count_problems, name_problems, refuse
 from linksweep.results.compute import requested, require_scene
+from linksweep.results.jumps import with_one_sided_limits
 from linksweep.results.record import design_coordinates, flags, provenance, variable
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
@@ -33,6 +34,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
 
     The largest sample of the grid, improved by a local parabola: an estimate, whose error falls with the number of
     angles. A narrow spike between two samples can be missed; compare two grids where transmission angles get small.
+    Where friction jumps, no parabola holds: there it is the largest sample, or the larger one-sided limit at a jump.
 
     Parameters
     ----------
@@ -71,6 +73,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     signals = tuple(dict.fromkeys(reduction.name for reduction in reductions))
     request = plan(scene.table, signals, sampled.inputs.forms)
     found = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    found = with_one_sided_limits(scene, found, grid.period, threads)
     order = tuple(sampled.inputs.sizes)
     variables: dict[str, xr.Variable] = {}
     for quantity, summary, own in wanted:
@@ -89,6 +92,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
 def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
     """Each name's quantity, the summary asked for, and the reductions that it takes."""
     quantities = scene.table.quantity
+    search = "largest_sample" if scene.mechanism.jumps() else "largest"
     found, problems = [], []
     for name in scene.mechanism.peak_quantities(scene.drive) if names is None else names:
         stem, _, ending = name.rpartition("_")
@@ -96,19 +100,19 @@ def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, 
         if stem not in quantities or stem == "cond":
             problems += name_problems("of", name, [known for known in quantities if known != "cond"])
         else:
-            found.append((quantities[stem], ending, _reductions(quantities[stem], ending)))
+            found.append((quantities[stem], ending, _reductions(quantities[stem], ending, search)))
     refuse(problems)
     return found
 
 
-def _reductions(quantity: Quantity, summary: str) -> list[Reduction]:
+def _reductions(quantity: Quantity, summary: str, search: str) -> list[Reduction]:
     if summary == "mean":
         return [Reduction("mean", quantity.name)]
     if summary == "rms":
         return [Reduction("mean", quantity.squared) if quantity.squared else Reduction("mean_square", quantity.name)]
     if quantity.squared:
-        return [Reduction("largest", quantity.squared)]
-    return [Reduction("largest", quantity.name), Reduction("largest", opposite_of(quantity.name))]
+        return [Reduction(search, quantity.squared)]
+    return [Reduction(search, quantity.name), Reduction(search, opposite_of(quantity.name))]
 
 
 def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):

@@ -1,0 +1,69 @@
+"""Peaks see both one-sided limits where friction jumps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+
+CRANK = ls.Link(0.045, 1.2, 1e-3, cg_distance=0.01, cg_angle=30.0)
+ROD = ls.Link(0.15, 0.6, 2.2e-3, cg_distance=0.05, cg_angle=-5.0)
+ENGINE = ls.SliderCrank(CRANK, ROD, slider_mass=0.5, offset=0.01, friction=0.3, slide_angle=20.0)
+PUSH = ls.Load("slider", force=(-900.0, 0.0), frame="link")
+SCENE = ls.Scene(ENGINE, omega2=10.0, gravity=(0.0, -9.81), loads=[PUSH])
+
+
+def branch(name):
+    return replace(SCENE, mechanism=replace(ENGINE, branch=name))
+
+
+@pytest.mark.parametrize("name", ["open", "crossed"])
+def test_the_slider_turns_round_at_every_jump(name):
+    scene = branch(name)
+    assert len(scene.mechanism.jumps()) == 2
+    for angle in scene.mechanism.jumps():
+        beside = ls.sweep(scene, [angle - 1e-6, angle + 1e-6], outputs=["v_slider", "friction_force"])
+        assert np.prod(np.sign(beside.v_slider.values)) == -1.0
+        assert np.prod(np.sign(beside.friction_force.values)) == -1.0
+
+
+@pytest.mark.parametrize("name", ["open", "crossed"])
+def test_a_one_sided_limit_is_the_peak(name):
+    """The normal force hardly changes beside the dead centre: the limits are those of samples very near to it."""
+    scene = branch(name)
+    beside = [angle + aside for angle in scene.mechanism.jumps() for aside in (-1e-5, 1e-5)]
+    near = ls.sweep(scene, beside, outputs=["friction_force"]).friction_force
+    found = ls.peaks(scene, of=["friction_force"], theta2=90)
+    everywhere = ls.sweep(scene, 3600, outputs=["friction_force"]).friction_force
+    assert float(found.friction_force_max) == pytest.approx(max(float(near.max()), float(everywhere.max())), rel=1e-3)
+    assert float(found.friction_force_min) == pytest.approx(min(float(near.min()), float(everywhere.min())), rel=1e-3)
+
+
+def test_no_parabola_across_a_jump():
+    """A peak is never more than the densest sampling shows."""
+    for name in ("open", "crossed"):
+        dense = ls.sweep(branch(name), 20_000, outputs=["friction_force", "T12"])
+        found = ls.peaks(branch(name), of=["friction_force", "T12"])
+        assert float(found.friction_force_max) <= float(dense.friction_force.max()) * (1.0 + 1e-3)
+        assert float(found.T12_max) <= float(dense.T12.max()) * (1.0 + 1e-3)
+
+
+def test_each_design_has_its_own_jumps():
+    friction = xr.DataArray([0.0, 0.1, 0.3], dims="mu")
+    length = xr.DataArray([0.12, 0.15], dims="rod")
+    speed = xr.DataArray([10.0, 300.0], dims="speed")
+    push = ls.Load("slider", force=(lambda theta2: -900.0 * (1.0 + np.cos(np.radians(theta2))), 0.0))
+
+    def scene(friction, length, speed):
+        engine = replace(ENGINE, friction=friction, rod=replace(ROD, length=length))
+        return ls.Scene(engine, omega2=speed, loads=[push])
+
+    batch = ls.peaks(scene(friction, length, speed), of=["friction_force", "F12"])
+    for i, j, k in np.ndindex(3, 2, 2):
+        alone = ls.peaks(scene(*(float(x[n]) for x, n in ((friction, i), (length, j), (speed, k)))), of=["F12"])
+        one = batch.isel(mu=i, rod=j, speed=k)
+        if float(friction[i]):
+            assert float(one.F12_peak) == float(alone.F12_peak)
+            assert float(one.F12_peak_at) == float(alone.F12_peak_at)
