@@ -68,7 +68,8 @@ class Jammed(ValueError):
 class SliderCrankData:
     """One slider-crank and what happens to it: SI, angles in degrees, rates in rad/s and rad/s^2.
 
-    Loads act on "crank", "rod" or "slider". The slider's centre of gravity is C and its axes run along and across the guide.
+    Loads act on "crank", "rod" or "slider". The slider's centre of gravity is C, its axes run along and across the
+    guide.
     """
 
     crank: LinkData
@@ -284,6 +285,19 @@ def to_scene(data: SliderCrankData):
     ]
     state = {name: getattr(data, name) for name in ("omega2", "alpha2", "gravity", "drive")}
     return ls.Scene(ls.SliderCrank(**bars, **rest), **state, loads=loads)
+
+
+def mirrored(data: SliderCrankData) -> SliderCrankData:
+    """The same seen from behind: x stays, y and every turn change sign."""
+
+    def load(one):
+        (Fx, Fy), (distance, angle) = one.force, one.at
+        return replace(one, force=(Fx, -Fy), at=(distance, -angle), torque=-one.torque)
+
+    bars = {name: replace(bar, cg_angle=-bar.cg_angle) for name in ("crank", "rod") for bar in [getattr(data, name)]}
+    turned = {name: -getattr(data, name) for name in ("offset", "slide_angle", "omega2", "alpha2")}
+    gravity = data.gravity[0], -data.gravity[1]
+    return replace(data, **bars, **turned, gravity=gravity, loads=tuple(map(load, data.loads)))
 
 
 # ---- random scenes -----

@@ -32,6 +32,7 @@ from oracle_slider_crank import (
     largest_torque,
     links,
     load_point,
+    mirrored,
     motion,
     random_data,
     random_theta2,
@@ -470,19 +471,6 @@ def test_wedging(case, share):
         result = solve(data, theta2)
         angle = mp.atan2(result["F14y"], result["F14x"])
         assert any(close(mp.expj(angle), mp.expj(edge), 1) for edge in edges)
-
-
-def mirrored(data):
-    """The same seen from behind: x stays, y and every turn change sign."""
-
-    def load(one):
-        (Fx, Fy), (distance, angle) = one.force, one.at
-        return replace(one, force=(Fx, -Fy), at=(distance, -angle), torque=-one.torque)
-
-    bars = {name: replace(bar, cg_angle=-bar.cg_angle) for name in ("crank", "rod") for bar in [getattr(data, name)]}
-    turned = {name: -getattr(data, name) for name in ("offset", "slide_angle", "omega2", "alpha2")}
-    gravity = data.gravity[0], -data.gravity[1]
-    return replace(data, **bars, **turned, gravity=gravity, loads=tuple(map(load, data.loads)))
 
 
 SAME = ("x_slider", "v_slider", "a_slider", "transmission_angle", "power", "friction_power", "friction_force", *FORCES)

@@ -10,31 +10,46 @@ LENGTH, MASS, TIME = 4.0, 8.0, 0.5
 """Powers of two, so that scaled values agree to the bit."""
 
 
-def scene(length=1.0, mass=1.0, time=1.0):
+def four_bar(length=1.0, mass=1.0, time=1.0):
     """The same machine in other units: each number multiplied by what its dimension says."""
-    inertia, acceleration, force = mass * length**2, length / time**2, mass * length / time**2
-
-    def link(size, weight, about, distance, angle):
-        return ls.Link(size * length, weight * mass, about * inertia, distance * length, angle)
-
     bars = ls.FourBar(
-        link(0.08, 0.5, 1e-3, 0.03, 20.0),
-        link(0.22, 0.7, 3e-3, 0.1, -10.0),
-        link(0.18, 0.6, 2e-3, 0.08, 5.0),
+        link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass),
+        link(0.22, 0.7, 3e-3, 0.1, -10.0, length, mass),
+        link(0.18, 0.6, 2e-3, 0.08, 5.0, length, mass),
         0.2 * length,
     )
-    push = ls.Load("coupler", force=(3.0 * force, -80.0 * force), at=(0.1 * length, 15.0))
-    turn = ls.Load("rocker", torque=-12.0 * force * length)
+    return scene(bars, "coupler", "rocker", length, mass, time)
+
+
+def slider_crank(length=1.0, mass=1.0, time=1.0):
+    crank, rod = link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass), link(0.22, 0.7, 3e-3, 0.1, -10.0, length, mass)
+    mechanism = ls.SliderCrank(crank, rod, 0.4 * mass, offset=0.02 * length, friction=0.1, slide_angle=15.0)
+    return scene(mechanism, "rod", "slider", length, mass, time)
+
+
+def link(size, weight, about, distance, angle, length, mass):
+    return ls.Link(size * length, weight * mass, about * (mass * length**2), distance * length, angle)
+
+
+def scene(mechanism, pushed, turned, length, mass, time):
+    acceleration, force = length / time**2, mass * length / time**2
+    push = ls.Load(pushed, force=(3.0 * force, -80.0 * force), at=(0.1 * length, 15.0))
+    turn = ls.Load(turned, torque=-12.0 * force * length)
     gravity = (1.0 * acceleration, -9.81 * acceleration)
-    return ls.Scene(bars, omega2=30.0 / time, alpha2=7.0 / time**2, gravity=gravity, loads=[push, turn])
+    return ls.Scene(mechanism, omega2=30.0 / time, alpha2=7.0 / time**2, gravity=gravity, loads=[push, turn])
 
 
-NAMES = [name for name in scene().table.quantity if name != "cond"]  # as printed it mixes forces and moments
+QUANTITIES = [
+    pytest.param(machine, name, id=f"{machine.__name__}-{name}")
+    for machine in (four_bar, slider_crank)
+    for name in machine().table.quantity
+    if name != "cond"  # as printed it mixes forces and moments
+]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_scales_as_its_unit_says(name):
-    one, other = (ls.sweep(s, theta2=24, outputs=[name])[name] for s in (scene(), scene(LENGTH, MASS, TIME)))
+@pytest.mark.parametrize(("machine", "name"), QUANTITIES)
+def test_scales_as_its_unit_says(machine, name):
+    one, other = (ls.sweep(s, theta2=24, outputs=[name])[name] for s in (machine(), machine(LENGTH, MASS, TIME)))
     dimension = pint.UnitRegistry().parse_units(_pint(one.attrs["units"])).dimensionality
     factor = LENGTH ** dimension["[length]"] * MASS ** dimension["[mass]"] * TIME ** dimension["[time]"]
     np.testing.assert_array_equal(other.values, one.values * factor)
@@ -47,8 +62,8 @@ def _pint(udunits):
     return " * ".join(factors) if udunits != "1" else "dimensionless"
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_says_what_it_is(name):
-    quantity = scene().table.quantity[name]
+@pytest.mark.parametrize(("machine", "name"), QUANTITIES)
+def test_says_what_it_is(machine, name):
+    quantity = machine().table.quantity[name]
     assert len(quantity.long_name) > 10
     assert quantity.units

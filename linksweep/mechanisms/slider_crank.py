@@ -10,7 +10,7 @@ import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
-from linksweep.mechanisms.actions import Form, action_powers, action_rows
+from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
@@ -23,6 +23,7 @@ from linksweep.mechanisms.bodies import (
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.motion import CrankDriven
 from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
 from linksweep.physics import dyad_rrp, four_bar, planar, slider_crank
@@ -32,8 +33,8 @@ LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3)}
 BODIES = (
     Body(2, "crank", steady=True),
-    Body(3, "rod", pin_velocity=("vBx", "vBy"), pin_acceleration=("aBx", "aBy")),
-    Body(4, "slider", pin_velocity=("vCx", "vCy"), pin_acceleration=("aCx", "aCy")),
+    Body(3, "rod", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
+    Body(4, "slider", ("vCx", "vCy"), ("aCx", "aCy"), pin_position=("Cx", "Cy")),
 )
 SLIDER = {
     "slider_inertia": 0.0,
@@ -47,7 +48,7 @@ SLIDER = {
 
 
 @dataclass(frozen=True)
-class SliderCrank:
+class SliderCrank(CrankDriven):
     """A slider-crank: engine, pump, compressor.
 
     Parameters
@@ -89,8 +90,6 @@ class SliderCrank:
     branch: str = "open"
     slide_angle: Number = parameter("angle", 0.0)
 
-    index: ClassVar[str] = "theta2"
-    period: ClassVar[float] = 360.0
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13"}
     links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre", "jammed")
@@ -175,7 +174,8 @@ class SliderCrank:
         if not np.any(self.friction):
             return ()
         a, b, e = self.crank.length, self.rod.length, self.offset
-        stretched, folded = np.degrees(np.arcsin(e / (a + b))), np.degrees(np.arcsin(e / (b - a)))
+        with np.errstate(divide="ignore", invalid="ignore"):  # the folded ones may be out of reach
+            stretched, folded = np.degrees(np.arcsin(e / (a + b))), np.degrees(np.arcsin(np.divide(e, b - a)))
         dead_centres = {
             "open": (self.slide_angle + stretched, self.slide_angle + 180.0 + folded),
             "crossed": (self.slide_angle + 180.0 - stretched, self.slide_angle - folded),
@@ -201,7 +201,7 @@ def _table(drive: str, loads: tuple[Form, ...]) -> Table:
     for i, j in (*PINS.values(), (1, 4)):
         rows += pin_force_rows(i, j)
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43")]
-    return Table("theta2", tuple(rows), tuple(_quantities(drive)))
+    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
 
 
 def _position() -> list[Row | Total]:

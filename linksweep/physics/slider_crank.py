@@ -72,15 +72,16 @@ def guide_force(
 
     F43 = F14 + Q4 and r × F43 = moment for the lever r (the rod, or the crank where its torque is known) give,
     without friction, a normal force N0. Friction −μ|N|·sign(v) changes it to N = N0/(1 + sign(N)·k) with k =
-    direction·tan ψ, direction = μ·sign(v), tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign of N is consistent, that of
-    N0; for |k| ≥ 1 none or both are: the slider wedges.
+    μ·sign(v)·tan ψ, μ·sign(v) the `direction` and tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign
+    of N is consistent, that of N0; for |k| ≥ 1 none or both are: the slider wedges, and nothing is known.
     """
     Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
     slope = lever_across * inverse_lever_along
     frictionless = lever_moment * inverse_lever_along + slope * Q4_along - Q4_across
     opposing = where(frictionless < 0.0, -direction, direction)
-    normal = frictionless / (1.0 + opposing * slope)
-    return normal, -(opposing * normal), abs(direction * slope)
+    wedging = abs(direction * slope)
+    normal = frictionless / where(wedging < 1.0, 1.0 + opposing * slope, math.nan)
+    return normal, -(opposing * normal), wedging
 
 
 def guide_force_in_ground_axes(

@@ -41,7 +41,7 @@ def check(scene: Scene) -> xr.Dataset:
     require_scene(scene)
     variables: dict[str, xr.Variable] = {}
     labels: dict[str, xr.Variable] = {}
-    for findings, numbers in scene.mechanism.findings():
+    for findings, numbers in (*scene.mechanism.findings(), *scene.mechanism.driven_findings(scene.motion)):
         arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
         for name, found in findings(*(array.values for array in arrays)).items():
             variables[name] = _variable(found, arrays[0].dims)

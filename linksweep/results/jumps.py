@@ -25,55 +25,58 @@ def with_one_sided_limits(
     scene: Scene, found: dict[Reduction, tuple[Field, Field]], period: float, threads: int | None = None
 ) -> dict[Reduction, tuple[Field, Field]]:
     """The peaks found on a grid, raised where a one-sided limit at a jump is larger."""
-    jumps = scene.mechanism.jumps()
+    jumps = scene.jumps()
     searched = [reduction for reduction in found if reduction.kind == "largest_sample"]
     if not jumps or not searched:
         return found
-    angles = _beside(jumps, period)
+    index = scene.mechanism.index
+    angles = _beside(jumps, period, index)
     values = _signals_at(scene, angles, [reduction.name for reduction in searched], threads)
-    return found | {r: _larger(found[r], values[r.name], angles) for r in searched}
+    return found | {r: _larger(found[r], values[r.name], angles, index) for r in searched}
 
 
-def _beside(jumps: tuple, period: float) -> xr.DataArray:
-    """Angles just before and after every jump, in every turn of the period, over (design dims…, theta2)."""
-    every = [xr.DataArray(jump) + 360.0 * turn for jump in jumps for turn in range(round(period / 360.0))]
-    sides = [angle % period + aside for angle in every for aside in (-ASIDE, ASIDE)]
-    return xr.concat(xr.broadcast(*sides), "theta2").transpose(..., "theta2")
+def _beside(jumps: tuple, period: float, index: str) -> xr.DataArray:
+    """Angles just before and after every jump, in every turn of the period, over (design dims…, index)."""
+    # a design whose crank does not turn fully may have none: any angle does for it
+    every = [xr.DataArray(jump).fillna(0.0) + 360.0 * turn for jump in jumps for turn in range(round(period / 360.0))]
+    sides = [(angle + aside) % period for angle in every for aside in (-ASIDE, ASIDE)]
+    return xr.concat(xr.broadcast(*sides), index).transpose(..., index)
 
 
 def _signals_at(scene: Scene, angles: xr.DataArray, names: list[str], threads: int | None) -> dict[str, xr.DataArray]:
     """Signals at angles that have design dims."""
-    grid = crank_grid(angles.values.reshape(-1), scene.mechanism.period)
+    different, places = np.unique(angles.values, return_inverse=True)
+    grid = crank_grid(different, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
-    place = angles.copy(data=np.arange(angles.size).reshape(angles.shape)).drop_vars(angles.coords)
+    place = angles.copy(data=places.reshape(angles.shape)).drop_vars(angles.coords)
     rows = dict(zip(grid.names, grid.table, strict=True))
-    fields = {name: _moved(field, place) for name, field in sampled.inputs.fields.items()}
-    fields |= {name: _moved(Field((grid.dim,), row), place) for name, row in rows.items()}
+    fields = {name: _moved(field, place, grid.dim) for name, field in sampled.inputs.fields.items()}
+    fields |= {name: _moved(Field((grid.dim,), row), place, grid.dim) for name, row in rows.items()}
     known = dict(sampled.inputs.forms)
     forms = tuple((name, known[name] if isinstance(known[name], float) else fields[name].dims) for name in known)
-    count = angles.sizes["theta2"]
+    count = angles.sizes[grid.dim]
     samples = Grid(grid.dim, np.arange(float(count)), 0.0, (), np.empty((0, count)))
     request = plan(scene.table, tuple(dict.fromkeys(names)), forms)
     found = evaluate(request, fields, samples, sampled.inputs.sizes, threads)
     return {name: xr.DataArray(field.values, dims=field.dims) for name, field in found.items()}
 
 
-def _moved(field: Field, place: xr.DataArray) -> Field:
+def _moved(field: Field, place: xr.DataArray, index: str) -> Field:
     """A field of all the angles in one row, with each design's own angles picked."""
-    if "theta2" not in field.dims:
+    if index not in field.dims:
         return field
-    picked = xr.DataArray(field.values, dims=field.dims).isel(theta2=place)
+    picked = xr.DataArray(field.values, dims=field.dims).isel({index: place})
     return Field(tuple(map(str, picked.dims)), picked.values)
 
 
-def _larger(peak: tuple[Field, Field], values: xr.DataArray, angles: xr.DataArray) -> tuple[Field, Field]:
+def _larger(peak: tuple[Field, Field], values: xr.DataArray, angles: xr.DataArray, index: str) -> tuple[Field, Field]:
     """The larger of a peak and of the one-sided limits, with its angle."""
     value, at = (xr.DataArray(field.values, dims=field.dims) for field in peak)
     limits, places = xr.broadcast(values, angles.drop_vars(angles.coords))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # all NaN: this design has no such sample
-        best = limits.max("theta2")
-        where = places.isel(theta2=limits.fillna(-np.inf).argmax("theta2"))
+        best = limits.max(index)
+        where = places.isel({index: limits.fillna(-np.inf).argmax(index)})
     beyond = best > value
     dims = peak[0].dims
     return (

@@ -1,7 +1,7 @@
 """peaks(scene): the worst of each quantity over the revolution, and where it is.
 
-Still the largest sample of a grid, improved by the parabola through it and its neighbours: with 720 angles typically
-good to 1e-4, but a spike near a dead point that fits between two samples is missed. `engine.reduce` is where an
+Still the largest sample of a grid, improved by the parabola through it and its neighbours: with 720 angles usually
+good to 1e-3 or better, but a spike near a dead point that fits between two samples is missed. `engine.reduce` is where an
 exact search belongs.
 """
 
@@ -24,7 +24,6 @@ from linksweep.results.record import design_coordinates, flags, provenance, vari
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
-MEANINGS = ("ok", "partial_revolution", "cannot_assemble")
 ASSEMBLY = Reduction("largest", "assembly")
 SUMMARIES = ("mean", "rms")
 
@@ -66,7 +65,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     require_scene(scene)
     refuse(count_problems("threads", threads))
     names = None if of is None else requested("of", of)
-    grid = in_order(crank_grid(theta2, scene.mechanism.period))
+    grid = in_order(crank_grid(theta2, scene.period, scene.mechanism.index))
     sampled = scene.at(grid)
     wanted = _wanted(scene, names)
     reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), ASSEMBLY]))
@@ -79,10 +78,10 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     for quantity, summary, own in wanted:
         variables |= {
             name: variable(field, units, said, order)
-            for name, field, units, said in _named(quantity, summary, [found[r] for r in own])
+            for name, field, units, said in _named(quantity, summary, [found[r] for r in own], scene.mechanism.spot)
         }
     status = variable(found[ASSEMBLY][0], "1", "", order).astype(np.int8)
-    status.attrs = flags("whether the mechanism can be assembled all the way round", MEANINGS)
+    status.attrs = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
     variables["status"] = status
     command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}, theta2={np.size(grid.angles)})"
     coordinates = design_coordinates(sampled)
@@ -92,7 +91,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
 def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
     """Each name's quantity, the summary asked for, and the reductions that it takes."""
     quantities = scene.table.quantity
-    search = "largest_sample" if scene.mechanism.jumps() else "largest"
+    search = "largest_sample" if scene.jumps() else "largest"
     found, problems = [], []
     for name in scene.mechanism.peak_quantities(scene.drive) if names is None else names:
         stem, _, ending = name.rpartition("_")
@@ -115,7 +114,7 @@ def _reductions(quantity: Quantity, summary: str, search: str) -> list[Reduction
     return [Reduction(search, quantity.name), Reduction(search, opposite_of(quantity.name))]
 
 
-def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
+def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]], spot: str):
     """Names, fields, units and words of what a quantity's reductions give."""
     name, units, said = quantity.name, quantity.units, quantity.long_name
     value, angle = found[0]
@@ -125,13 +124,13 @@ def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]]):
         yield f"{name}_rms", _map(np.sqrt, value), units, f"root mean square over the revolution of: {said}"
     elif quantity.squared:
         yield f"{name}_peak", _map(np.sqrt, value), units, f"largest {said}"
-        yield f"{name}_peak_at", angle, "degree", f"crank angle of the largest {said}"
+        yield f"{name}_peak_at", angle, "degree", f"{spot} of the largest {said}"
     else:
         least, least_at = _map(lambda value: 0.0 - value, found[1][0]), found[1][1]
         yield f"{name}_max", value, units, f"largest {said}"
-        yield f"{name}_max_at", angle, "degree", f"crank angle of the largest {said}"
+        yield f"{name}_max_at", angle, "degree", f"{spot} of the largest {said}"
         yield f"{name}_min", least, units, f"least {said}"
-        yield f"{name}_min_at", least_at, "degree", f"crank angle of the least {said}"
+        yield f"{name}_min_at", least_at, "degree", f"{spot} of the least {said}"
         magnitude = Field(value.dims, np.maximum(np.abs(value.values), np.abs(least.values)))
         yield f"{name}_peak", magnitude, units, f"largest magnitude of the {said}"
 

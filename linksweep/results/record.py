@@ -13,8 +13,6 @@ from linksweep.engine.run import Field, Grid
 from linksweep.scene.file import write_scene
 from linksweep.scene.scene import Scene
 
-ANGLE = {"units": "degree", "long_name": "angle of the crank from x, positive counter-clockwise"}
-
 
 def described(
     scene: Scene, sampled: Scene, grid: Grid, fields: Mapping[str, Field], status: Field, command: str
@@ -26,9 +24,16 @@ def described(
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
     variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
-    coordinates = cycle_coordinates(sampled) | {grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE)}
+    coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
+    others = quantity.keys() - scene.motion.keys()  # results that have the name of a parameter, but are not it
+    coordinates = {name: values for name, values in coordinates.items() if name not in others}
     attributes = provenance(sampled, command, coordinates)
     return xr.Dataset(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
+
+
+def index_coordinate(scene: Scene, grid: Grid) -> dict[str, xr.Variable]:
+    said = {"units": "degree", "long_name": scene.mechanism.position}
+    return {grid.dim: xr.Variable(grid.dim, grid.angles, said)}
 
 
 def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:

@@ -61,7 +61,7 @@ def sweep(
     """
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
-    grid = crank_grid(theta2, scene.mechanism.period)
+    grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     names = _names(scene, outputs)
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.engine.run import Field, Grid
 from linksweep.results.compute import blank, compute, require_scene, sample_status
-from linksweep.results.record import ANGLE, cycle_coordinates, provenance, status_attributes
+from linksweep.results.record import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -42,7 +42,7 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     """
     require_scene(scene)
     angles = [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
-    grid = crank_grid(angles, scene.mechanism.period)
+    grid = crank_grid(angles, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     status = sample_status(sampled, grid)
     dims, matrix, rhs = assembled(sampled, grid)
@@ -54,8 +54,8 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
         "rhs": xr.Variable(*both["rhs"], {"long_name": "right side; forces in N, moments in N m"}),
         "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
     }
-    coordinates = cycle_coordinates(sampled) | {
-        grid.dim: xr.Variable(grid.dim, grid.angles, ANGLE),
+    coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
+    coordinates |= {
         "equation": xr.Variable("equation", [equation.label for equation in equations]),
         "unknown": xr.Variable("unknown", list(scene.mechanism.unknowns(scene.drive))),
     }

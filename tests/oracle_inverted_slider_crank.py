@@ -1,0 +1,300 @@
+"""The independent judge of the inverted slider-crank: one crank angle, 60 digits.
+
+As in `oracle`, nothing here knows the product. The block on the crank's pin B slides along the rocker's line, direction
+r = exp(j theta4), which passes the pivot D at the offset e along its left normal n = j r. Vectors are complex numbers,
+x + jy, from A.
+
+    B = D + (s + j e) r,           s > 0 if open, < 0 if crossed
+    j omega4 (B - D) + s' r = j omega2 B
+    j alpha4 (B - D) + s'' r = (j alpha2 - omega2^2) B + omega4^2 (B - D) - 2 j omega4 s' r
+    link 2:   F12 + F32 + P2 + m2 g = m2 aG2        and for each, moments about its G = I alpha
+    link 3:  -F32 + F43 + P3 + m3 g = m3 aB,        T43 on the block
+    link 4:  -F43 + F14 + P4 + m4 g = m4 aG4,       F43 at B, -T43 on the rocker
+    no friction: F43 . r = 0
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from oracle import (
+    BRANCHES,
+    FOLD,
+    FORCES,
+    DeadPoint,
+    LinkData,
+    LoadData,
+    Motion,
+    Unassemblable,
+    components,
+    cross,
+    largest_force,
+    linear_solve,
+    load_force,
+    load_point,
+    log_uniform,
+    mp,
+    polar,
+    random_gravity,
+    random_link,
+    random_load,
+    torque_name,
+    turn,
+)
+from oracle import LINKS as FOUR_BAR_LINKS
+
+LINKS = ("crank", "block", "rocker")
+NUMBER = {"crank": 2, "block": 3, "rocker": 4}
+DRIVES = ("crank", "rocker")
+ACTING = {
+    "crank": (("F12", "A", 1), ("F32", "B", 1)),
+    "block": (("F32", "B", -1), ("F43", "B", 1)),
+    "rocker": (("F43", "B", -1), ("F14", "D", 1)),
+}
+MOMENT = {"crank": 0, "block": 1, "rocker": -1}  # of the contact, T43
+T43, DRIVE = 8, 9  # the columns after those of the forces
+
+
+@dataclass(frozen=True)
+class InvertedSliderCrankData:
+    """One inverted slider-crank and what happens to it: SI, angles in degrees, rates in rad/s and rad/s^2.
+
+    Loads act on "crank", "block" or "rocker". The block's centre of gravity is B; its axes are the rocker's.
+    """
+
+    crank: LinkData
+    rocker: LinkData
+    ground: float
+    block_mass: float
+    block_inertia: float = 0.0
+    offset: float = 0.0
+    branch: str = "open"
+    ground_angle: float = 0.0
+    omega2: float = 0.0
+    alpha2: float = 0.0
+    gravity: tuple[float, float] = (0.0, 0.0)
+    drive: str = "crank"
+    loads: tuple[LoadData, ...] = ()
+
+
+def by_link(*values) -> dict:
+    """Crank's, block's, rocker's."""
+    return dict(zip(LINKS, values, strict=True))
+
+
+def links(data: InvertedSliderCrankData) -> dict[str, LinkData]:
+    """The three bodies."""
+    return by_link(data.crank, LinkData(0.0, data.block_mass, data.block_inertia), data.rocker)
+
+
+def close_loop(data: InvertedSliderCrankData, theta2) -> dict[str, Any]:
+    """Pins A, B, D: a right triangle of legs s and e stands on the hypotenuse D-B."""
+    B, D, e = (
+        mp.mpf(data.crank.length) * turn(theta2),
+        mp.mpf(data.ground) * turn(data.ground_angle),
+        mp.mpf(data.offset),
+    )
+    radicand = abs(B - D) ** 2 - e**2
+    if radicand <= FOLD * max(abs(B), abs(D), abs(e)) ** 2:
+        raise Unassemblable(f"theta2 = {float(theta2)} degree: the rocker's line does not reach B")
+    return {"A": mp.mpc(0), "B": B, "D": D}
+
+
+def slide(data: InvertedSliderCrankData, pin: dict):
+    """s: how far along the rocker's line."""
+    return {"open": 1, "crossed": -1}[data.branch] * mp.sqrt(abs(pin["B"] - pin["D"]) ** 2 - mp.mpf(data.offset) ** 2)
+
+
+def turning_and_sliding(w, r, vector) -> list:
+    """Real x, y of j x w + y r = vector."""
+    left = 1j * w
+    return linear_solve([[left.real, r.real], [left.imag, r.imag]], [vector.real, vector.imag])
+
+
+def motion_and_slide(data: InvertedSliderCrankData, theta2) -> tuple[Motion, dict]:
+    """Positions, rates and centres of gravity at a crank angle [degree]; s, s', s''."""
+    pin = close_loop(data, theta2)
+    B, w, s = pin["B"], pin["B"] - pin["D"], slide(data, pin)
+    r = w / mp.mpc(s, data.offset)
+    w2, a2 = mp.mpf(data.omega2), mp.mpf(data.alpha2)
+    velocity, acceleration = 1j * w2 * B, (1j * a2 - w2**2) * B
+    w4, s1 = turning_and_sliding(w, r, velocity)
+    a4, s2 = turning_and_sliding(w, r, acceleration + w4**2 * w - 2j * w4 * s1 * r)
+    line = by_link(turn(theta2), r, r)
+    omega, alpha = by_link(w2, w4, w4), by_link(a2, a4, a4)
+    first, v0, a0 = by_link(0, B, pin["D"]), by_link(0, velocity, 0), by_link(0, acceleration, 0)
+    rG = {name: polar((link.cg_distance, link.cg_angle)) * line[name] for name, link in links(data).items()}
+    G = {name: first[name] + rG[name] for name in LINKS}
+    vG = {name: v0[name] + 1j * omega[name] * rG[name] for name in LINKS}
+    aG = {name: a0[name] + (1j * alpha[name] - omega[name] ** 2) * rG[name] for name in LINKS}
+    move = Motion(pin, line, omega, alpha, G, vG, aG)
+    return move, {"slide": s, "slide_velocity": s1, "slide_acceleration": s2}
+
+
+def motion(data: InvertedSliderCrankData, theta2) -> Motion:
+    return motion_and_slide(data, theta2)[0]
+
+
+def point(move: Motion, load: LoadData):
+    """Where a load acts, from A; on the block from B, which is its pin and its centre of gravity."""
+    return load_point(move, load) if load.link != "block" else move.pin["B"] + polar(load.at) * move.line["block"]
+
+
+def link_rows(data: InvertedSliderCrankData, move: Motion, name: str) -> tuple[list, list]:
+    """One link's three rows of the 10x10 and their right-hand sides: forces x, y and moments about its G."""
+    link, G = links(data)[name], move.G[name]
+    rows = [[mp.mpf(0)] * 10 for _ in range(3)]
+    for force, pin, sign in ACTING[name]:
+        column, arm = 2 * FORCES.index(force), move.pin[pin] - G
+        rows[0][column] = rows[1][column + 1] = mp.mpf(sign)
+        rows[2][column], rows[2][column + 1] = -sign * arm.imag, sign * arm.real
+    rows[2][T43], rows[2][DRIVE] = mp.mpf(MOMENT[name]), mp.mpf(name == data.drive)
+    force = mp.mpf(link.mass) * (move.aG[name] - mp.mpc(*data.gravity))
+    moment = mp.mpf(link.inertia) * move.alpha[name]
+    for load in (load for load in data.loads if load.link == name):
+        P = load_force(move, load)
+        force -= P
+        moment -= cross(point(move, load) - G, P) + mp.mpf(load.torque)
+    return rows, [force.real, force.imag, moment]
+
+
+def system(data: InvertedSliderCrankData, move: Motion) -> tuple[list, list]:
+    """The 10x10; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, T."""
+    blocks = [link_rows(data, move, name) for name in LINKS]
+    smooth, r, column = [mp.mpf(0)] * 10, move.line["rocker"], 2 * FORCES.index("F43")
+    smooth[column : column + 2] = r.real, r.imag
+    return [row for rows, _ in blocks for row in rows] + [smooth], [b for _, rhs in blocks for b in rhs] + [mp.mpf(0)]
+
+
+def hold(data: InvertedSliderCrankData, move: Motion):
+    """Sine that vanishes where the driven rocker stands still: the crank square to its line."""
+    return abs((move.line["crank"] / move.line["rocker"]).real) if data.drive == "rocker" else mp.mpf(1)
+
+
+def solve(data: InvertedSliderCrankData, theta2) -> dict:
+    """Everything at one crank angle [degree], by name.
+
+    theta3 = theta4, transmission_angle [degree]; omega3 = omega4 [rad/s]; alpha3 = alpha4 [rad/s^2]; slide,
+    slide_velocity, slide_acceleration; Bx .. Dy, G2x .. G4y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x ..
+    F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 and T12 or T14 [N m]; power [W]. Raises Unassemblable or
+    DeadPoint.
+    """
+    move, values = motion_and_slide(data, theta2)
+    if hold(data, move) < FOLD:
+        raise DeadPoint(f"theta2 = {float(theta2)} degree: the rocker stands still and cannot drive")
+    solution = linear_solve(*system(data, move))
+    forces = {name: mp.mpc(*solution[2 * i : 2 * i + 2]) for i, name in enumerate(FORCES)}
+    vectors = {pin: move.pin[pin] for pin in "BD"}
+    for name in LINKS:
+        vectors |= {f"{symbol}{NUMBER[name]}": getattr(move, symbol)[name] for symbol in ("G", "vG", "aG")}
+    for k in (3, 4):
+        values |= {f"theta{k}": mp.degrees(mp.arg(move.line["rocker"]))}
+        values |= {f"omega{k}": move.omega["rocker"], f"alpha{k}": move.alpha["rocker"]}
+    values["transmission_angle"] = mp.degrees(mp.atan2(abs(values["slide"]), abs(mp.mpf(data.offset))))
+    values |= components(vectors | forces) | {name: abs(F) for name, F in forces.items()}
+    values |= {"F43n": (forces["F43"] / move.line["rocker"]).imag, "T43": solution[T43]}
+    return values | {torque_name(data): solution[DRIVE], "power": solution[DRIVE] * move.omega[data.drive]}
+
+
+def longest(data: InvertedSliderCrankData) -> float:
+    return max(data.crank.length, data.ground, abs(data.offset), data.rocker.length)
+
+
+def largest_torque(result: dict, data: InvertedSliderCrankData):
+    """Largest force times longest length, at least T43 and the drive's own [N m]: the scale of torque errors."""
+    scale = largest_force(result) * mp.mpf(longest(data))
+    return max(scale, abs(result["T43"]), abs(result[torque_name(data)]))
+
+
+def to_scene(data: InvertedSliderCrankData):
+    """The same as the public `linksweep.Scene`."""
+    import linksweep as ls
+
+    bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rocker")}
+    rest = ("ground", "block_mass", "block_inertia", "offset", "branch", "ground_angle")
+    loads = [
+        ls.Load(**vars(load) | {"force": load.force if any(load.force) else None, "torque": load.torque or None})
+        for load in data.loads
+    ]
+    state = {name: getattr(data, name) for name in ("omega2", "alpha2", "gravity", "drive")}
+    mechanism = ls.InvertedSliderCrank(**bars, **{name: getattr(data, name) for name in rest})
+    return ls.Scene(mechanism, **state, loads=loads)
+
+
+# ---- random scenes -----
+
+KINDS = ("swings", "turns_fully", "limited")
+OF_FOUR_BAR = dict(zip(FOUR_BAR_LINKS, LINKS, strict=True))
+
+
+def kind_of(crank: float, ground: float, offset: float) -> str:
+    if abs(ground - crank) < abs(offset):
+        return "limited"
+    return "swings" if crank < ground else "turns_fully"
+
+
+def random_lengths(rng: np.random.Generator, kind: str) -> tuple[float, float, float]:
+    """Crank, ground, offset of a kind, at least 1 % of their sum from the others; some without offset."""
+    for _ in range(10_000):
+        crank, ground = rng.uniform(0.1, 1.0, 2).tolist()
+        offset = float(rng.uniform(-0.8, 0.8)) * (crank + ground) if kind == "limited" or rng.integers(3) else 0.0
+        margin = abs(abs(ground - crank) - abs(offset))
+        if margin > 0.01 * (crank + ground) and kind_of(crank, ground, offset) == kind:
+            return crank, ground, offset
+    raise ValueError(f"no inverted slider-crank of kind {kind!r} found")
+
+
+def random_data(
+    rng: np.random.Generator,
+    *,
+    kind: str | None = None,
+    branch: str | None = None,
+    drive: str | None = None,
+    scale: float | None = None,
+    loads: int | None = None,
+) -> InvertedSliderCrankData:
+    """A random scene; what is not given is drawn.
+
+    `scale` [m] is the upper bound of the lengths (drawn from 1e-5 to 1e2), `loads` their number (0 to 4). Loads and
+    alpha2 are comparable with the inertial ones, so that no term hides behind another.
+    """
+    scale = log_uniform(rng, 1e-5, 1e2) if scale is None else scale
+    crank, ground, offset = (x * scale for x in random_lengths(rng, kind or str(rng.choice(KINDS))))
+    bars = random_link(rng, crank), random_link(rng, float(rng.uniform(0.5, 1.5)) * scale)
+    mass = log_uniform(rng, 0.1, 10.0)
+    omega2 = log_uniform(rng, 0.1, 1000.0) * (1 if rng.integers(2) else -1)
+    gravity = random_gravity(rng, omega2**2 * scale)
+    force = max(mass, *(bar.mass for bar in bars)) * (omega2**2 * scale + float(np.hypot(*gravity)))
+    drawn = [random_load(rng, force, scale) for _ in range(int(rng.integers(5)) if loads is None else loads)]
+    return InvertedSliderCrankData(
+        *bars,
+        ground=ground,
+        block_mass=mass,
+        block_inertia=mass * scale**2 * float(rng.uniform(0, 0.1)),
+        offset=offset,
+        branch=branch or str(rng.choice(BRANCHES)),
+        ground_angle=float(rng.uniform(-180, 180)) if rng.integers(2) else 0.0,
+        omega2=omega2,
+        alpha2=float(rng.uniform(-2, 2)) * omega2**2,
+        gravity=gravity,
+        drive=drive or str(rng.choice(DRIVES)),
+        loads=tuple(replace(load, link=OF_FOUR_BAR[load.link]) for load in drawn),
+    )
+
+
+def toggle_margin(data: InvertedSliderCrankData, theta2: float) -> float:
+    """Lever of the normal force about D, relative to the lengths, or the drive's hold; zero where it does not close."""
+    try:
+        move, values = motion_and_slide(data, theta2)
+    except Unassemblable:
+        return 0.0
+    return float(min(abs(values["slide"]) / max(data.crank.length, data.ground), hold(data, move)))
+
+
+def random_theta2(rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1) -> float:
+    """A crank angle [degree] with a toggle margin above the given one."""
+    for _ in range(1000):
+        theta2 = float(rng.uniform(-180, 540))
+        if toggle_margin(data, theta2) > margin:
+            return theta2
+    raise ValueError(f"no crank angle with toggle margin above {margin}")
