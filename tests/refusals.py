@@ -13,6 +13,7 @@ BAR = ls.Bar(0.08, 0.02, 0.02, 7750.0)
 DISK = ls.Disk(0.18, 0.05, 0.02, 7750.0)
 FOUR_BAR = ls.FourBar(crank=BAR, coupler=LINK, rocker=DISK, ground=0.2)
 LOAD = ls.Load("coupler", force=(0.0, -80.0), at=(0.1, 15.0), torque=2.0)
+LOOP = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, thrust=10_000.0)
 SCENE = ls.Scene(FOUR_BAR, omega2=30.0, loads=[ls.Load("rocker", torque=1.0), LOAD])
 
 
@@ -30,6 +31,14 @@ def rocker(**changes) -> ls.Scene:
 
 def four_bar(**changes) -> ls.Scene:
     return replace(SCENE, mechanism=replace(FOUR_BAR, **changes))
+
+
+def loop(**changes) -> ls.Scene:
+    return replace(LOOP, **changes)
+
+
+def track(**changes) -> ls.Scene:
+    return replace(LOOP, mechanism=replace(LOOP.mechanism, **changes))
 
 
 def scene(**changes) -> ls.Scene:

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import xarray as xr
-from refusals import BAR, FOUR_BAR, LOAD, array, coupler, crank, four_bar, load, refusal, rocker, scene
+from refusals import BAR, FOUR_BAR, LOAD, array, coupler, crank, four_bar, load, loop, refusal, rocker, scene, track
 
 import linksweep as ls
 from linksweep.mechanisms.four_bar import FourBar
@@ -68,6 +68,10 @@ NUMBERS = [
     Number("ground_angle", key(four_bar, "ground_angle"), "degree"),
     Number("omega2", key(scene, "omega2"), "rad/s", over_angle=True),
     Number("alpha2", key(scene, "alpha2"), "rad/s^2", over_angle=True),
+    Number("radius", key(track, "radius"), "m", "positive"),
+    Number("mass", key(track, "mass"), "kg", "positive"),
+    Number("speed", key(loop, "speed"), "m/s", "not negative"),
+    Number("thrust", key(loop, "thrust"), "N"),
     *(Number(f"gravity[{k}]", pair(scene, "gravity", k), "m/s^2") for k in (1, 2)),
     *(Number(f"loads[2].force[{k}]", pair(load, "force", k), "N", over_angle=True) for k in (1, 2)),
     Number("loads[2].at[1]", pair(load, "at", 1), "m", "not negative"),
@@ -86,7 +90,7 @@ def test_the_table_has_every_number_of_every_constructor():
     named = {number.path for number in NUMBERS}
     for role, cls in (("coupler", ls.Link), ("crank", ls.Bar), ("rocker", ls.Disk)):
         assert {f"{role}.{name}" for name in ruled(cls)} <= named
-    assert ruled(FourBar) | ruled(Scene) | {f"loads[2].{name}" for name in ruled(Load)} <= named
+    assert ruled(FourBar) | ruled(ls.LoopTrack) | ruled(Scene) | {f"loads[2].{name}" for name in ruled(Load)} <= named
     pairs = {item.name for cls in (Scene, Load) for item in fields(cls) if "tuple[Number, Number]" in str(item.type)}
     assert pairs == {"gravity", "force", "at"}
 
@@ -138,6 +142,11 @@ def test_numbers_that_are_none(number):
 def test_none_is_no_number_but_no_torque(number):
     if number.path == "loads[2].torque":
         assert number.change(None).loads[1].torque is None
+    elif number.path in ("alpha2", "thrust"):
+        assert getattr(number.change(None), number.path) == 0.0
+    elif number.path in ("omega2", "speed"):
+        (said,) = refusal(number.change, None)
+        assert said.startswith(f"{number.path}: missing; give ") and said.endswith(number.wanted)
     else:
         expected = f"{number.path} = None: must be {number.wanted}, or an xarray.DataArray of them"
         assert refusal(number.change, None) == [expected]
@@ -176,7 +185,8 @@ def test_dimensions_that_a_number_cannot_have(number):
     path = number.path
     expected = f'{path} has a dimension "branch": that name is kept for branch="both"; rename it'
     assert refusal(number.change, array(0.1, 0.2, dims="branch")) == [expected]
-    for dim in ("T12", "F32x", "status", "toggle", "equation"):
+    results = ("T12", "F32x") if path not in ("radius", "mass", "speed", "thrust") else ("speed", "a_total")
+    for dim in (*results, "status", "toggle", "equation"):
         expected = f'{path} has a dimension "{dim}": that is the name of a result; rename it'
         assert refusal(number.change, array(0.1, 0.2, dims=dim)) == [expected]
     for dim in (5, "", "a/b", ("a", "b")):
@@ -362,10 +372,10 @@ def test_all_that_is_wrong_with_a_scene_is_said_at_once():
         drive="croupler",
         loads=[ls.Load("coupler"), ls.Load("rokcer", force=(1.0, 1j), at=(-1.0, np.nan), frame="x", torque="1 N m")],
     ) == [
-        "omega2 = None: must be a number in rad/s, or an xarray.DataArray of them",
         "alpha2 = True: must be a number in rad/s^2, not a truth value",
         "gravity[1] = nan m/s^2: must be finite",
         "gravity[2] = '9.81': must be a number in m/s^2, not text; numbers with units stand in scene files",
+        "omega2: missing; give FourBar a number in rad/s",
         "drive = 'croupler': must be one of crank, coupler, rocker; did you mean \"coupler\"?",
         "loads[1] has neither force nor torque: give force=(Fx, Fy), torque=..., or both",
         "loads[2].link = 'rokcer': must be one of crank, coupler, rocker; did you mean \"rocker\"?",

@@ -197,8 +197,11 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.sweep(SCENE, 8, threads=2.0), "threads = 2.0: must be a whole number, 1 or more"),
         (lambda: ls.peaks(SCENE, threads=0), "threads = 0: must be a whole number, 1 or more"),
         (lambda: ls.peaks(SCENE, threads=True), "threads = True: must be a whole number, 1 or more"),
-        (lambda: ls.example("pres"), "name = 'pres': must be one of press; did you mean \"press\"?"),
-        (lambda: ls.example(None), "name = None: must be one of press"),
+        (
+            lambda: ls.example("pres"),
+            "name = 'pres': must be one of engine, loop, press, quick-return; did you mean \"press\"?",
+        ),
+        (lambda: ls.example(None), "name = None: must be one of engine, loop, press, quick-return"),
     ],
 )
 def test_names_and_options_of_a_request(request_, message):

@@ -2,21 +2,15 @@
 
 import subprocess
 import sys
-from itertools import combinations
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
+from drawn import boxes, closed_figures, curves, line, page_hides_nothing, pixels, plt, size_of, texts  # noqa: F401
 
 import linksweep as ls
 import linksweep.surface.accessor
 from linksweep.surface import plot
-
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-
-from linksweep.surface.labels import labels_of, text_of
 
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
 LOAD = ls.Load("coupler", force=(0.0, -80.0), at=(0.10, 15.0))
@@ -43,41 +37,6 @@ SCENES = {
 @pytest.fixture(scope="module")
 def cycles():
     return {name: ls.sweep(scene) for name, scene in SCENES.items()}
-
-
-@pytest.fixture(autouse=True)
-def closed_figures(monkeypatch):
-    monkeypatch.setattr(plt, "show", lambda *a, **k: pytest.fail("a plot opened a window"))
-    before = dict(mpl.rcParams)
-    yield
-    assert dict(mpl.rcParams) == before
-    plt.close("all")
-
-
-def line(ax, label):
-    return next(line for line in ax.lines if line.get_label() == label)
-
-
-def texts(ax):
-    return [text_of(note) for note in labels_of(ax)]
-
-
-def size_of(ds, pin):
-    return np.hypot(ds[f"{pin}x"].values, ds[f"{pin}y"].values)
-
-
-def curves(ax):
-    return [curve for curve in ax.lines if curve.get_zorder() >= 2.0 and len(curve.get_xdata()) > 100]
-
-
-def pixels(curve):
-    points = curve.get_transform().transform(curve.get_xydata())
-    return points[np.isfinite(points).all(axis=1)]
-
-
-def boxes(ax):
-    ax.figure.canvas.draw()
-    return [note.offsetbox.get_window_extent(ax.figure.canvas.get_renderer()) for note in labels_of(ax)]
 
 
 @pytest.mark.parametrize("name", ["press", "crossed", "turned"])
@@ -290,15 +249,7 @@ def test_nothing_on_the_page_hides_anything(cycles, name):
     figure = cycles[name].linksweep.cycle()
     assert [bool(ax.get_title(loc="left")) for ax in figure.axes] == [True] * 4
     assert figure.get_size_inches()[0] < 7.3  # within the margins of A4
-    for ax in figure.axes:
-        found, frame = boxes(ax), ax.get_window_extent()
-        others = [text.get_window_extent() for text in ax.texts if text.get_text()]
-        if ax.get_legend() is not None:
-            others.append(ax.get_legend().get_window_extent())
-        assert not any(one.overlaps(other) for one, other in combinations([*found, *others], 2))
-        assert not any(box.count_contains(pixels(curve)) for box in found for curve in curves(ax))
-        assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in found)
-        assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in found)
+    page_hides_nothing(figure)
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from linksweep.engine.quantity import Row, Total
+from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.bodies import Body
 from linksweep.physics import planar
 
@@ -38,6 +38,10 @@ class Form(Protocol):
         """Names of the powers that it feeds into the mechanism."""
         ...
 
+    def quantities(self, name: str) -> list[Quantity]:
+        """What may be asked of it."""
+        ...
+
 
 @dataclass(frozen=True)
 class LoadForm:
@@ -63,6 +67,9 @@ class LoadForm:
 
     def powers(self, name: str) -> tuple[str, ...]:
         return (f"{name}_force_power",) * self.force + (f"{name}_torque_power",) * self.torque
+
+    def quantities(self, name: str) -> list[Quantity]:
+        return []
 
     def _force(self, name: str, body: Body) -> list[Row | Total]:
         point, force, velocity = (
@@ -95,6 +102,10 @@ def action_rows(forms: tuple[Form, ...], bodies: Iterable[Body]) -> list[Row | T
 
 def action_powers(forms: tuple[Form, ...]) -> list[str]:
     return [power for name, form in named(forms) for power in form.powers(name)]
+
+
+def action_quantities(forms: tuple[Form, ...]) -> list[Quantity]:
+    return [quantity for name, form in named(forms) for quantity in form.quantities(name)]
 
 
 def named(forms: tuple[Form, ...]) -> list[tuple[str, Form]]:

@@ -1,7 +1,8 @@
 """Rows of one moving link, the same for every mechanism: inertia, weight, centre of gravity, power.
 
 A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What
-the mechanism adds is how the first pin moves: the names of its velocity and acceleration (0.0 where it stands).
+the mechanism adds is how the first pin moves: the names of its position (from A), velocity and acceleration (0.0 where
+it stands).
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ class Body:
     pin_velocity: tuple[Source, Source] = (0.0, 0.0)
     pin_acceleration: tuple[Source, Source] = (0.0, 0.0)
     steady: bool = False
+    pin_position: tuple[Source, Source] = (0.0, 0.0)
 
     @property
     def axes(self) -> tuple[str, str, str]:

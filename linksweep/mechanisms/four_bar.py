@@ -10,7 +10,7 @@ import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
-from linksweep.mechanisms.actions import Form, action_powers, action_rows
+from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
@@ -24,6 +24,7 @@ from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.four_bar_limits import angles, classes
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.motion import CrankDriven
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
 from linksweep.physics import dyad_rrr, four_bar, inertia, planar
 
@@ -33,13 +34,13 @@ PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
     Body(2, "crank", steady=True),
-    Body(3, "coupler", pin_velocity=("vBx", "vBy"), pin_acceleration=("aBx", "aBy")),
-    Body(4, "rocker"),
+    Body(3, "coupler", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
+    Body(4, "rocker", pin_position=("Dx", "Dy")),
 )
 
 
 @dataclass(frozen=True)
-class FourBar:
+class FourBar(CrankDriven):
     """A four-bar linkage.
 
     Parameters
@@ -72,8 +73,6 @@ class FourBar:
     branch: str = "open"
     ground_angle: Number = parameter("angle", 0.0)
 
-    index: ClassVar[str] = "theta2"
-    period: ClassVar[float] = 360.0
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
     links: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
@@ -185,7 +184,7 @@ def _table(drive: str, loads: tuple[Form, ...]) -> Table:
     for i, j in PINS.values():
         rows += pin_force_rows(i, j)
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
-    return Table("theta2", tuple(rows), tuple(_quantities(drive)))
+    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
 
 
 def _position() -> list[Row | Total]:
@@ -202,6 +201,7 @@ def _position() -> list[Row | Total]:
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
         Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
         Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
+        Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
     ]
 
 

@@ -53,7 +53,7 @@ class Link:
     length: Number = parameter("length", above=0.0)
     mass: Number = parameter("mass", at_least=0.0)
     inertia: Number = parameter("inertia", at_least=0.0)
-    cg_distance: Number = parameter("length", 0.0, at_least=0.0)
+    cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     cg_angle: Number = parameter("angle", 0.0)
 
 

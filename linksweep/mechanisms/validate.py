@@ -20,8 +20,14 @@ UNITS = {
     "angular_acceleration": "rad/s^2",
     "force": "N",
     "torque": "N m",
+    "velocity": "m/s",
     "acceleration": "m/s^2",
     "density": "kg/m^3",
+    "pressure": "Pa",
+    "spring_rate": "N/m",
+    "damping_coefficient": "N s/m",
+    "torsional_rate": "N m/rad",
+    "torsional_damping": "N m s/rad",
     "dimensionless": "1",
 }
 """Unit in which each kind of number is given and stored."""
@@ -32,12 +38,14 @@ Number = Any
 
 @dataclass(frozen=True)
 class Rule:
-    """What a parameter may be: its kind, its bound, and whether it may change over the revolution."""
+    """What a parameter may be: its kind, its bound, whether it may change over the revolution, and whether it is the
+    distance of a point in polar coordinates."""
 
     kind: str
     above: float | None = None
     at_least: float | None = None
     over_angle: bool = False
+    polar: bool = False
 
     @property
     def number(self) -> str:
@@ -53,8 +61,7 @@ class Rule:
         bound = f"greater than {self.above:g}" if self.above is not None else ""
         bound = f"at least {self.at_least:g}" if self.at_least is not None else bound
         finite = "" if bound and np.isfinite(value) else "finite"
-        # a length that may be 0 is the distance of a point in polar coordinates
-        turned = self.kind == "length" and self.at_least is not None and np.isfinite(value)
+        turned = self.polar and np.isfinite(value)
         advice = "; for a point on the other side turn its angle by 180 degrees" if turned else ""
         return " and ".join(filter(None, (finite, bound))) + advice
 

@@ -39,6 +39,11 @@ def difference(px: Number, py: Number, qx: Number, qy: Number) -> tuple[Number, 
     return px - qx, py - qy
 
 
+def along(length: Number, cos: Number, sin: Number) -> tuple[Number, Number]:
+    """A vector of this length in the direction (cos, sin)."""
+    return length * cos, length * sin
+
+
 def direction(x: Number, y: Number) -> Number:
     """Angle of a vector [degree], in (−180, 180]."""
     return degrees(atan2(y, x))

@@ -28,6 +28,12 @@ def check(scene: Scene) -> xr.Dataset:
     - `toggle_angle` (toggle) [degree]: theta2 at which coupler and rocker lie in one line; NaN where there is none
     - `transmission_angle_min` [degree]: smallest acute angle between coupler and rocker on those arcs
 
+    Of a LoopTrack, over the design dims of the scene:
+
+    - `lap`: whole, leaves_track, stalls: what becomes of the car in one lap from the bottom
+    - `leaves_track_at`, `stalls_at` [degree]: where it first does; NaN where it does not
+    - `least_entry_speed` [m/s]: least speed at the bottom (profile="constant": everywhere) with which it goes round
+
     Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.four_bar_limits`.
 
     Examples

@@ -40,11 +40,10 @@ def _name_problems(dim: object, sharing: Arrays, arrays: Arrays, results: Collec
     path = next(iter(sharing))
     if not isinstance(dim, str) or not dim or "/" in dim:
         yield f'{path} has a dimension {dim!r}: its name must be a text without "/"; rename it'
-    elif dim in arrays:
-        if arrays[dim].dims != (dim,):
-            yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'
     elif dim in results:
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
+    elif dim in arrays and arrays[dim].dims != (dim,):
+        yield f'{path} has a dimension "{dim}": that is the name of another parameter; rename it'
 
 
 def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:

@@ -19,9 +19,18 @@
     force = [0, "-80 lbf"]
     at = ["10 cm", 15]
 
+    [[loads]]
+    type = "Spring"
+    from_ = ["ground", 0.3, 0]
+    to = ["rocker", "10 cm", 15]
+    rate = "2 N/mm"
+    free_length = "50 mm"
+
 In place of a number, a design axis is ``{dim = "width", values = [...]}``, or with ``start``, ``stop`` and
 ``num`` for values; over more dims ``{dims = ["a", "b"], values = [[...], [...]]}``. ``unit = "cm"`` is for
 plain numbers, ``coords = {a = [...]}`` are labels, ``theta2 = [...]`` is short for angles [degree] there.
+What changes over the revolution may stand in a CSV file, ``{csv = "indicator.csv", column = "P", unit = "kN"}``: see
+`linksweep.scene.csv_table`. One force in place of two is that on a slider, along its guide.
 Without coords, the values of a dim that occurs once in the file are its labels.
 
 All errors of a file are reported at once, one a line: ``scene.toml:12: coupler.lenght: unknown key; did you
@@ -41,13 +50,19 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms import FourBar, SliderCrank
+from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
+from linksweep.mechanisms.spring_forms import GROUND
 from linksweep.mechanisms.validate import choice_problems, did_you_mean
+from linksweep.scene.actions import ACTIONS
+from linksweep.scene.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.axis import design_axis
+from linksweep.scene.csv_table import csv_column
 from linksweep.scene.file_log import Log, Where, document, path_of
+from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
+from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
 from linksweep.scene.units import KINDS, quantity, shown
 
 
@@ -77,6 +92,8 @@ class Number(Field):
         if isinstance(raw, dict) and "variable" in raw:
             return log.variable(raw["variable"], where)
         try:
+            if isinstance(raw, dict) and "csv" in raw:
+                return csv_column(raw, self.kind, log.folder)
             if isinstance(raw, dict):
                 return design_axis(raw, self.kind, alone=log.dims[str(raw.get("dim"))] == 1)
             return quantity(raw, self.kind)
@@ -98,6 +115,26 @@ class Pair(Field):
         if not isinstance(raw, list) or len(raw) != 2:
             return raw  # the constructor says what the two are
         return self.first.read(raw[0], (*where, 0), log), self.second.read(raw[1], (*where, 1), log)
+
+
+@dataclass(frozen=True)
+class Force(Pair):
+    """Two components, or one number: the force on a slider, along its guide."""
+
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
+        return super().read(raw, where, log) if isinstance(raw, list) else self.first.read(raw, where, log)
+
+
+@dataclass(frozen=True)
+class End(Field):
+    """An end of a spring: a point of the ground, or of a link in its polar coordinates."""
+
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
+        if not isinstance(raw, list) or len(raw) != 3:
+            return raw  # the constructor says what the three are
+        point = _POINT if raw[0] == GROUND else _POLAR
+        numbers = (point.first, point.second)
+        return raw[0], *(number.read(raw[k], (*where, k), log) for k, number in enumerate(numbers, 1))
 
 
 @dataclass(frozen=True)
@@ -124,15 +161,26 @@ class Table(Field):
 
 
 @dataclass(frozen=True)
-class Tables(Field):
-    """A list of tables of one class."""
+class NumberOr(Number):
+    """A number, or a table of one of several classes, named by its `type`."""
 
-    cls: type
+    table: Table
+
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
+        named = isinstance(raw, dict) and "type" in raw
+        return self.table.read(raw, where, log) if named else super().read(raw, where, log)
+
+
+@dataclass(frozen=True)
+class Tables(Field):
+    """A list of tables."""
+
+    each: Table
 
     def read(self, raw: Any, where: Where, log: Log) -> Any:
         if not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
             return log.problem(where, f": must be a list of tables; write [[{where[-1]}]] above each")
-        return tuple(_built(self.cls, item, (*where, i), log) for i, item in enumerate(raw))
+        return tuple(self.each.read(item, (*where, i), log) for i, item in enumerate(raw))
 
 
 def _fields(cls: Any, **special: Field) -> dict[str, Field]:
@@ -142,17 +190,35 @@ def _fields(cls: Any, **special: Field) -> dict[str, Field]:
 
 
 _LINKS = Table({"Link": Link, "Bar": Bar, "Disk": Disk}, default="Link")
-_MECHANISMS = Table({"FourBar": FourBar, "SliderCrank": SliderCrank})
-_FORCE = Pair(Number("force"), Number("force"))
+_MECHANISMS = Table(
+    {
+        "FourBar": FourBar,
+        "SliderCrank": SliderCrank,
+        "InvertedSliderCrank": InvertedSliderCrank,
+        "LoopTrack": LoopTrack,
+    }
+)
+_FORCE = Force(Number("force"), Number("force"))
 _POLAR = Pair(Number("length"), Number("angle"))
+_POINT = Pair(Number("length"), Number("length"))
+_ENDS = {"from_": End(example='["ground", 0.3, 0]'), "to": End(example='["rocker", "10 cm", 15]')}
+_LINKS_TURNED = {"from_": Field(example='"ground"'), "to": Field(example='"rocker"')}
+_CYCLES = Table({"OttoCycle": OttoCycle, "DieselCycle": DieselCycle})
+_LOADS = Table({cls.__name__: cls for cls in ACTIONS}, default="Load")
 _GRAVITY = Pair(Number("acceleration"), Number("acceleration"))
 
 SCHEMA: dict[type, dict[str, Field]] = {
     **{cls: _fields(cls) for cls in _LINKS.classes.values()},
     FourBar: _fields(FourBar, crank=_LINKS, coupler=_LINKS, rocker=_LINKS),
     SliderCrank: _fields(SliderCrank, crank=_LINKS, rod=_LINKS),
+    InvertedSliderCrank: _fields(InvertedSliderCrank, crank=_LINKS, rocker=_LINKS),
+    LoopTrack: _fields(LoopTrack),
     Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR),
-    Scene: _fields(Scene, mechanism=_MECHANISMS, gravity=_GRAVITY, loads=Tables(Load)),
+    GasPressure: _fields(GasPressure, pressure=NumberOr("pressure", _CYCLES)),
+    **{cls: _fields(cls) for cls in _CYCLES.classes.values()},
+    **{cls: _fields(cls, **_ENDS) for cls in (Spring, Damper)},
+    **{cls: _fields(cls, **_LINKS_TURNED) for cls in (TorsionSpring, TorsionDamper)},
+    Scene: _fields(Scene, mechanism=_MECHANISMS, gravity=_GRAVITY, loads=Tables(_LOADS)),
 }
 
 
@@ -197,8 +263,8 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
         As `read_scene`.
     """
     raw = document(text, name)
-    machine = {key for kind in _MECHANISMS.classes.values() for key in SCHEMA[kind]}
-    log = Log(raw, arrays or {}, SCHEMA[Scene], machine)
+    machine = {key for kind in _machines(raw) for key in SCHEMA[kind]}
+    log = Log(raw, arrays or {}, SCHEMA[Scene], machine, Path(name).parent)
     scene: Scene = _built(Scene, raw, (), log)
     if log.problems:
         raise ValueError(log.report(text, name))
@@ -223,7 +289,7 @@ def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
 
     text = tomli_w.dumps(_written(scene, (), elsewhere))
     # tomli_w gives each number of a list a line of its own; one line for all reads better.
-    return re.sub(r"\[\n([-+.\w,\s]*),\n *\]", lambda found: f"[{' '.join(found[1].split())}]", text)
+    return re.sub(r"\[\n *([-+.\w,\s\"]*),\n *\]", lambda found: "[" + re.sub(r"\n *", " ", found[1]) + "]", text)
 
 
 def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
@@ -232,7 +298,7 @@ def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
     for key in [key for key in raw if key not in schema]:
         log.unknown(key, schema, cls.__name__, where)
     words = {key: schema[key].read(raw[key], (*where, key), log) for key in schema if key in raw}
-    for key in [key for key in _required(cls) if key not in raw]:
+    for key in [key for key in _required(cls, words) if key not in raw]:
         words[key] = log.missing((*where, key), schema[key].advice((*where, key)))
     try:
         return cls(**words)
@@ -244,17 +310,27 @@ def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
         return refused
 
 
-def _required(cls: Any) -> list[str]:
+def _required(cls: Any, words: dict[str, Any]) -> list[str]:
+    """What a table must give: fields without a default, and of a scene the first word for its mechanism's motion."""
     none = dataclasses.MISSING
-    return [item.name for item in dataclasses.fields(cls) if item.default is item.default_factory is none]
+    motion = getattr(words.get("mechanism"), "motion", ())[:1]
+    return [*(item.name for item in dataclasses.fields(cls) if item.default is item.default_factory is none), *motion]
+
+
+def _machines(raw: dict[str, Any]) -> list[type]:
+    """The class of a file's mechanism; all of them where its type is not known."""
+    table = raw.get("mechanism")
+    kind = str(table.get("type")) if isinstance(table, dict) else ""
+    return [_MECHANISMS.classes[kind]] if kind in _MECHANISMS.classes else [*_MECHANISMS.classes.values()]
 
 
 def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
     """Return what stands in the file for a value of a scene."""
     if type(value) in SCHEMA:
         given = {key: getattr(value, key) for key in SCHEMA[type(value)]}
-        words = {k: _written(word, (*where, k), elsewhere) for k, word in given.items() if word is not None}
-        named = type(value) in {*_LINKS.classes.values(), *_MECHANISMS.classes.values()}
+        words = {k: _written(word, (*where, k), elsewhere) for k, word in given.items() if not _left_out(word)}
+        classes = {**_LINKS.classes, **_MECHANISMS.classes, **_LOADS.classes, **_CYCLES.classes}
+        named = type(value) in classes.values() and type(value) is not Load
         return {"type": type(value).__name__, **words} if named else words
     if isinstance(value, (tuple, list)):
         return [_written(item, (*where, i), elsewhere) for i, item in enumerate(value)]
@@ -264,6 +340,10 @@ def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
         advice = "sample it first, as a DataArray over theta2"
         raise ValueError(f"{path_of(where)} is a function of theta2 and cannot be written to a file: {advice}")
     return value if isinstance(value, str) else float(value)
+
+
+def _left_out(word: Any) -> bool:
+    return word is None or (isinstance(word, str) and not word)
 
 
 def _array_written(array: xr.DataArray, path: str, elsewhere: Collection[str]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from itertools import count
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
@@ -36,6 +37,7 @@ class Log:
     arrays : what ``{variable = "coupler.length"}`` in it refers to
     top : keys that belong at the top of a file
     machine : keys that belong to a mechanism, whose paths leave out "mechanism"
+    folder : where the file is, and what it names
     """
 
     def __init__(
@@ -44,10 +46,11 @@ class Log:
         arrays: Mapping[str, xr.DataArray],
         top: Collection[str],
         machine: Collection[str],
+        folder: Path,
     ) -> None:
         named = [str(item) for at, item in _places(raw) if "dim" in at[-1:] or "dims" in at[-2:-1]]
         self.arrays, self.dims = arrays, Counter(named)
-        self.top, self.machine = top, machine
+        self.top, self.machine, self.folder = top, machine, folder
         self.problems: list[tuple[Where, str]] = []
         self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
 

@@ -11,21 +11,21 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import said
 
-NAMES = ("cos2", "sin2", "cos2_half", "sin2_half", "cos2_half_squared", "sin2_half_squared")
+NAMES = ("cos2", "sin2", "cos2_half", "sin2_half", "cos2_half_squared", "sin2_half_squared", "radians2")
 
 
-def crank_grid(theta2: Any, period: float) -> Grid:
+def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
     """The grid of a count (arange(N)·360/N) or of given angles [degree]. Raises ValueError for anything else."""
     if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
         if theta2 < 1:
             raise ValueError(f"theta2 = {said(theta2)}: a count of angles must be at least 1")
-        return _uniform(int(theta2), period)
-    return _grid(_angles(theta2), period=0.0)
+        return _uniform(int(theta2), period, dim)
+    return _grid(_angles(theta2), 0.0, dim)
 
 
 @lru_cache(maxsize=8)
-def _uniform(count: int, period: float) -> Grid:
-    return _grid(np.arange(count) * (period / count), period)
+def _uniform(count: int, period: float, dim: str) -> Grid:
+    return _grid(np.arange(count) * (period / count), period, dim)
 
 
 def _angles(theta2: Any) -> np.ndarray:
@@ -47,10 +47,11 @@ def _angles(theta2: Any) -> np.ndarray:
 
 def in_order(grid: Grid) -> Grid:
     """The same angles sorted, each once: what a search for peaks between neighbours needs."""
-    return grid if (np.diff(grid.angles) > 0.0).all() else _grid(np.unique(grid.angles), grid.period)
+    return grid if (np.diff(grid.angles) > 0.0).all() else _grid(np.unique(grid.angles), grid.period, grid.dim)
 
 
-def _grid(angles: np.ndarray, period: float) -> Grid:
+def _grid(angles: np.ndarray, period: float, dim: str) -> Grid:
     half = cos_sin(0.5 * angles)
-    table = np.array([*cos_sin(angles), *half, *(number * number for number in half)])
-    return Grid("theta2", angles, period, NAMES, table)
+    one_turn = np.radians(np.mod(angles, 360.0))
+    table = np.array([*cos_sin(angles), *half, *(number * number for number in half), one_turn])
+    return Grid(dim, angles, period, NAMES, table)

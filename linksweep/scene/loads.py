@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_pr
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
 FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
-AT = (Rule("length", at_least=0.0), Rule("angle"))
+AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
 
 
 @dataclass(frozen=True)
@@ -23,15 +23,17 @@ class Load:
     Parameters
     ----------
     link : the link it acts on, by name ("crank", "coupler", "rocker")
-    force : (Fx, Fy) [N], or None for no force
+    force : (Fx, Fy) [N], or None for no force; on a slider also one number, along the guide (frame "link")
     at : the point, in the link's own polar coordinates: (distance [m], angle from the line of pins [degree])
     frame : axes of the force: "ground", or "link" (x along the line of pins)
     torque : [N m], positive counter-clockwise, or None for no torque
     origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
 
     Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
-    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline at
-    angles that it does not hold. Values are checked by the scene that takes the load.
+    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline (scipy's
+    CubicSpline, bc_type="periodic") at angles that it does not hold, and reproduced exactly at those that it holds. Its
+    period is 360 degrees, or 720 where its angles span more (four-stroke engines): then theta2 of the whole scene runs
+    to 720, and what has a period of 360 repeats. Values are checked by the scene that takes the load.
 
     Examples
     --------
@@ -46,6 +48,11 @@ class Load:
     frame: str = "ground"
     torque: Number | None = parameter("torque", None, over_angle=True)
     origin: str = "pin"
+
+    def __post_init__(self) -> None:
+        if self.link == "slider" and self.force is not None and not isinstance(self.force, tuple | list | str):
+            object.__setattr__(self, "force", (self.force, 0.0))
+            object.__setattr__(self, "frame", "link")
 
     @property
     def form(self) -> LoadForm:
@@ -70,13 +77,14 @@ class Load:
         force = self.force and tuple(sample(f"{path}.force[{k}]", f, FORCE) for k, f in enumerate(self.force, 1))
         return replace(self, force=force, torque=sample(f"{path}.torque", self.torque, TORQUE))
 
-    def parameters(self, load: str, cg: tuple[Number, Number]) -> dict[str, Number]:
-        """The load's numbers under the names that the physics wires by; `cg` is its link's, in the link's axes."""
+    def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """The load's numbers under the names that the physics wires by; `machine` has its link's centre of gravity."""
         named: dict[str, Any] = {}
         if self.force is not None:
             component = f"{load}_force_" if self.frame == "link" else f"{load}_F"
             named |= {component + "x": self.force[0], component + "y": self.force[1]}
             cos, sin = cos_sin(self.at[1])
+            cg = machine[f"{self.link}_cg_x"], machine[f"{self.link}_cg_y"]
             from_x, from_y = cg if self.origin == "cg" else (0.0, 0.0)
             named |= {f"{load}_at_x": from_x + self.at[0] * cos, f"{load}_at_y": from_y + self.at[0] * sin}
         if self.torque is not None:

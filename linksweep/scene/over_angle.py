@@ -11,11 +11,19 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms.validate import Rule, number_problems, refuse
 
 
+def period_of(value: Any, shortest: float) -> float:
+    """Period [degree] of a DataArray over theta2: two turns where its angles span more than one."""
+    if "theta2" not in value.coords:
+        return shortest  # its values are those of the sweep's own angles
+    return shortest if np.ptp(value["theta2"].values) <= shortest else 2.0 * shortest
+
+
 def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> xr.DataArray:
     """A function or DataArray of theta2 as a DataArray over the grid's angles.
 
     At angles that a DataArray does not hold it is interpolated by a periodic cubic spline (scipy's CubicSpline,
-    bc_type="periodic"), over 360 degrees or, where its angles run further, 720.
+    bc_type="periodic"), over `period` degrees (one turn) or, where its angles span more, two turns; at angles that it
+    holds, or that are whole periods from them, its values come back to the bit.
 
     Raises
     ------
@@ -68,8 +76,7 @@ def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.Dat
 
     value = value.sortby("theta2").transpose("theta2", ...)
     known, values = value["theta2"].values.astype(float), value.values
-    span = known[-1] - known[0]
-    period = period if span <= period else 2.0 * period
+    span, period = known[-1] - known[0], period_of(value, period)
     knots, at_knots = known, values
     if span < period:
         knots, at_knots = np.append(known, known[0] + period), np.concatenate([values, values[:1]])

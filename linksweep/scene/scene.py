@@ -14,6 +14,7 @@ from linksweep.engine.plan import InputForms
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
+from linksweep.mechanisms.motion import OverDesigns
 from linksweep.mechanisms.validate import (
     Number,
     Rule,
@@ -25,12 +26,16 @@ from linksweep.mechanisms.validate import (
     refuse,
     said,
 )
+from linksweep.scene.actions import ACTIONS, Action
 from linksweep.scene.dimensions import dimension_problems
+from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.grid import NAMES as GRID_ROWS
-from linksweep.scene.loads import Load
-from linksweep.scene.over_angle import at_angles
+from linksweep.scene.over_angle import at_angles, period_of
+from linksweep.scene.springs import TorsionSpring
 
 ACCELERATION = Rule("acceleration")
+MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
+"""Words of a scene of which each mechanism takes its own."""
 
 
 class Inputs(NamedTuple):
@@ -47,12 +52,18 @@ class Scene:
 
     Parameters
     ----------
-    mechanism : FourBar
+    mechanism : FourBar, SliderCrank, InvertedSliderCrank or LoopTrack
     omega2 : angular velocity of the crank [rad/s], positive counter-clockwise
     alpha2 : its angular acceleration [rad/s²]; taken as given, also where omega2 changes with theta2
     gravity : (gx, gy) [m/s²]; none by default, (0, -9.81) for a mechanism that stands upright
-    loads : any number of Load
-    drive : the link whose ground torque is the unknown: "crank" (T12), "coupler" (T13) or "rocker" (T14)
+    loads : any number of Load, GasPressure, Spring, Damper, TorsionSpring and TorsionDamper
+    drive : the link whose ground torque is the unknown: "crank" (T12), "coupler" (T13) or "rocker" (T14);
+        "crank" by default
+    speed : of the car in a loop [m/s]: at every position, or with profile="energy" at the bottom
+    thrust : of the car along the track [N]; none by default
+    profile : "constant" (by default), or "energy", which follows work and energy round the loop
+
+    A crank takes omega2, alpha2, drive and loads; a loop takes speed, thrust and profile; both take gravity.
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
     theta2, as a DataArray or a function of theta2 [degree].
@@ -74,11 +85,14 @@ class Scene:
     """
 
     mechanism: Mechanism
-    omega2: Number = parameter("angular_velocity", over_angle=True)
-    alpha2: Number = parameter("angular_acceleration", 0.0, over_angle=True)
+    omega2: Number = parameter("angular_velocity", None, over_angle=True)
+    alpha2: Number = parameter("angular_acceleration", None, over_angle=True)
     gravity: tuple[Number, Number] = (0.0, 0.0)
-    loads: tuple[Load, ...] = ()
-    drive: str = "crank"
+    loads: tuple[Action, ...] = ()
+    drive: str = ""
+    speed: Number = parameter("velocity", None, at_least=0.0)
+    thrust: Number = parameter("force", None)
+    profile: str = ""
 
     def __post_init__(self) -> None:
         sound = isinstance(self.mechanism, MECHANISMS)
@@ -86,10 +100,36 @@ class Scene:
         found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
         found += problems(self)
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
-        found += choice_problems("drive", self.drive, self._of_mechanism("drives"))
+        found += self._take_motion() if sound else []
         found += self._take_loads()
         refuse(found)
-        refuse(dimension_problems(self.arrays, self.mechanism.index, self.table.quantity))
+        refuse([problem for path, gas in self.gas.items() for problem in gas.misfits(path, self.mechanism)])
+        # omega2 may be asked for as it was given; the loop's speed over theta is not the speed that was given
+        results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
+        refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
+
+    def _take_motion(self) -> list[str]:
+        """What the mechanism takes of the words for its motion; those left out get their defaults."""
+        kind, given = type(self.mechanism), [word for word in MOTION if not _left_out(getattr(self, word))]
+        own = ", ".join((*kind.motion, "gravity"))
+        found = [
+            f"{word} = {said(getattr(self, word))}: is no word of {kind.__name__}; give its own: {own}"
+            for word in given
+            if word not in kind.motion
+        ]
+        if kind.motion[0] not in given:
+            found.append(f"{kind.motion[0]}: missing; give {kind.__name__} {_rule(kind.motion[0]).number}")
+        for word in kind.defaults.keys() - {*given}:
+            object.__setattr__(self, word, kind.defaults[word])
+        for word, allowed in {"drive": kind.drives, "profile": kind.profiles}.items():
+            found += choice_problems(word, getattr(self, word), allowed) if word in kind.motion else []
+        return found
+
+    def _index_problems(self) -> list[str]:
+        """Parameters over the index of a mechanism of which nothing may change on the way round."""
+        index = self.mechanism.index
+        over = [path for path, array in self.arrays.items() if index in array.dims and "omega2" not in self.motion]
+        return [f"{path} depends on {index}: it must be the same at every {self.mechanism.spot}" for path in over]
 
     def _of_mechanism(self, words: str) -> tuple[str, ...]:
         """The mechanism's drives or links; of an unsound one, those of any."""
@@ -98,15 +138,16 @@ class Scene:
 
     def _take_loads(self) -> list[str]:
         """Any collection of loads as a tuple; a single load counts as one."""
-        loads = (self.loads,) if isinstance(self.loads, Load) else self.loads
+        loads = (self.loads,) if isinstance(self.loads, ACTIONS) else self.loads
         if isinstance(loads, str | Mapping | np.ndarray) or is_array(loads) or not isinstance(loads, Iterable):
             return [f"loads = {said(loads)}: must be a Load, or a list of them"]
         object.__setattr__(self, "loads", tuple(loads))
-        found = []
-        for k, load in enumerate(self.loads, 1):
-            sound = isinstance(load, Load)
+        found: list[str] = []
+        links = self._of_mechanism("links")  # a mechanism without any takes no loads, as has been said
+        for k, load in enumerate(self.loads if links else (), 1):
+            sound = isinstance(load, ACTIONS)
             problem = [f"loads[{k}] = {said(load)}: must be a Load"]
-            found += load.problems(f"loads[{k}]", self._of_mechanism("links")) if sound else problem
+            found += load.problems(f"loads[{k}]", links) if sound else problem
         return found
 
     def __eq__(self, other: object) -> bool:
@@ -131,20 +172,47 @@ class Scene:
         """The scene's functions of theta2 by path."""
         return {path: value for path, value in _numbers(self) if callable(value) and not hasattr(value, "dims")}
 
+    @cached_property
+    def gas(self) -> dict[str, GasPressure]:
+        """The scene's gas pressures by path."""
+        return {f"loads[{k}]": load for k, load in enumerate(self.loads, 1) if isinstance(load, GasPressure)}
+
+    @cached_property
+    def period(self) -> float:
+        """Of the whole cycle [degree]: two turns of the crank where a load, omega2 or alpha2 takes two."""
+        turn = self.mechanism.period
+        arrays = [array for array in self.arrays.values() if "theta2" in array.dims]
+        return max(turn, *(period_of(array, turn) for array in arrays), *(gas.period for gas in self.gas.values()), 0.0)
+
+    def jumps(self) -> tuple[Number, ...]:
+        """Crank angles [degree] at which forces jump: friction where a slider turns round, pressure at dead centres,
+        a torsion spring at 180."""
+        with np.errstate(invalid="ignore"):  # designs that do not turn fully may have none: NaN
+            own = (*self.mechanism.jumps(), *over_designs(self.mechanism.driven_peaks(self.motion)).values())
+            wound = (angle for load in self.loads if isinstance(load, TorsionSpring) for angle in load.jumps())
+            return (*own, *wound, *(angle for gas in self.gas.values() for angle in gas.jumps(self.mechanism)))
+
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""
-        if not self.functions and not any("theta2" in array.dims for array in self.arrays.values()):
+        changing = self.functions or any("theta2" in array.dims for array in self.arrays.values())
+        if not changing and not self.gas:
             return self
 
         def sample(path: str, value: Any, rule: Rule) -> Any:
             changes = path in self.functions or "theta2" in getattr(value, "dims", ())
             return at_angles(path, value, rule, grid, self.mechanism.period) if changes else value
 
+        omega2 = sample("omega2", self.omega2, Rule("angular_velocity", over_angle=True))
+
+        def brought(path: str, load: Action) -> Action:
+            load = load.sampled(path, sample)
+            return load.in_cylinder(self.mechanism, omega2, grid.angles) if isinstance(load, GasPressure) else load
+
         return replace(
             self,
-            omega2=sample("omega2", self.omega2, Rule("angular_velocity", over_angle=True)),
+            omega2=omega2,
             alpha2=sample("alpha2", self.alpha2, Rule("angular_acceleration", over_angle=True)),
-            loads=tuple(load.sampled(f"loads[{k}]", sample) for k, load in enumerate(self.loads, 1)),
+            loads=tuple(brought(f"loads[{k}]", load) for k, load in enumerate(self.loads, 1)),
         )
 
     @cached_property
@@ -167,14 +235,38 @@ class Scene:
         found.pop(self.mechanism.index, None)
         return found
 
+    @cached_property
+    def motion(self) -> dict[str, Any]:
+        """The numbers of its motion under the names that the physics wires by."""
+        profile = self.mechanism.profiles.get(self.profile)
+        named = {"omega2": self.omega2, "alpha2": self.alpha2, "entry_speed": self.speed, "thrust": self.thrust}
+        named |= {"work_counts": profile, "gravity_x": self.gravity[0], "gravity_y": self.gravity[1]}
+        return {name: number for name, number in named.items() if number is not None}
+
     def _named_values(self) -> dict[str, Any]:
-        gx, gy = self.gravity
-        named = {"omega2": self.omega2, "alpha2": self.alpha2, "gravity_x": gx, "gravity_y": gy}
-        named |= self.mechanism.parameters()
+        named = {**self.motion, **self.mechanism.parameters()}
+        named |= over_designs(self.mechanism.driven(self.motion))
         for k, load in enumerate(self.loads, 1):
-            cg = (named[f"{load.link}_cg_x"], named[f"{load.link}_cg_y"])
-            named |= load.parameters(f"load{k}", cg)
+            named |= load.parameters(f"load{k}", named)
         return named
+
+
+def over_designs(functions: OverDesigns) -> dict[str, Any]:
+    """What functions of numbers return, with the dims of their numbers."""
+    found: dict[str, Any] = {}
+    for function, numbers in functions:
+        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
+        returned: Mapping[str, Any] = function(*(array.values for array in arrays))
+        found |= {name: xr.DataArray(values, dims=arrays[0].dims) for name, values in returned.items()}
+    return found
+
+
+def _left_out(word: Any) -> bool:
+    return word is None or (isinstance(word, str | tuple | list) and not word)
+
+
+def _rule(word: str) -> Rule:
+    return next(item.metadata["rule"] for item in fields(Scene) if item.name == word)
 
 
 def _field(value: Any) -> Field:
@@ -194,7 +286,7 @@ def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Every number of a scene with its path, as messages write it."""
     for item in fields(owner):
         value, path = getattr(owner, item.name), prefix + item.name
-        if "rule" in item.metadata:
+        if "rule" in item.metadata and not is_dataclass(value):
             yield path, value
         elif item.name == "loads":
             for k, load in enumerate(value, 1):

@@ -35,6 +35,7 @@ class Kind:
 
 
 _INERTIAS = "kg m^2, kg cm^2, kg mm^2, g cm^2, g mm^2, lb in^2, lb ft^2, slug ft^2, blob in^2, lbf in s^2, lbf ft s^2"
+_TORSIONAL_RATES = "N m/rad, N m/deg, N mm/rad, N mm/deg, kN m/rad, lbf in/rad, lbf in/deg, lbf ft/rad, lbf ft/deg"
 KINDS = {
     name: Kind(UNITS[name], example, tuple(spellings.split(", ")))
     for name, example, spellings in (
@@ -46,8 +47,14 @@ KINDS = {
         ("angular_acceleration", "100 rad/s^2", "rad/s^2, deg/s^2, rev/s^2, rpm/s"),
         ("force", "80 N", "N, kN, MN, mN, lbf, kgf"),
         ("torque", "12 N m", "N m, N cm, N mm, kN m, lbf in, lbf ft, kgf m, kgf cm"),
+        ("velocity", "100 km/h", "m/s, cm/s, mm/s, km/h, mph, in/s, ft/s"),
         ("acceleration", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
         ("density", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
+        ("pressure", "12 bar", "Pa, kPa, MPa, bar, mbar, psi, atm"),
+        ("spring_rate", "12 N/mm", "N/m, N/cm, N/mm, kN/m, lbf/in, lbf/ft"),
+        ("damping_coefficient", "300 N s/m", "N s/m, N s/mm, kN s/m, lbf s/in, lbf s/ft"),
+        ("torsional_rate", "5 N m/rad", _TORSIONAL_RATES),
+        ("torsional_damping", "0.2 N m s/rad", "N m s/rad, N mm s/rad, lbf in s/rad, lbf ft s/rad"),
         ("dimensionless", "10 %", "%"),
     )
 }

@@ -58,6 +58,10 @@ class Cycle:
         """Draw the mechanism at a crank angle [degree]: see `linksweep.surface.plot.mechanism`."""
         return plot.mechanism(self._ds, theta2, ax, point, forces)
 
+    def loop(self) -> Figure:
+        """Plot the track of a car in a loop and the force on it [N]: see `linksweep.surface.plot.loop`."""
+        return plot.loop(self._ds)
+
     def cycle(self) -> Figure:
         """Plot mechanism, forces, torque and a bearing on one page: see `linksweep.surface.plot.cycle`."""
         return plot.cycle(self._ds)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.four_bar import LINKS
 from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.sweep import sweep
 from linksweep.surface import signals
+from linksweep.surface.drawings import Drawing, drawing_of_results
 from linksweep.surface.storage import scene_of
 from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, grid
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 TICK = 30.0  # degrees of the crank between marks on the locus
 LABELLED = 90.0  # degrees between marks with a number
 BEYOND = 1.1  # of the largest load shown: loads larger than that are off the scale
-LINES_OF_PINS = {2: "A→B", 3: "B→C", 4: "D→C"}
 
 
 def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | None = None) -> Axes:
@@ -33,8 +32,8 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     pin : str
         The force, as "Fij": of link i on link j.
     frame : {"ground", "link"}
-        Axes of the components: "ground", or those of link j (x along its line of pins), which carries the bearing and
-        turns with it. Of a force on the ground ("F21") both are the same.
+        Axes of the components: "ground", or those of link j (x along its line of pins, of a slider along its guide),
+        which carries the bearing and turns with it. Of a force on the ground ("F21") both are the same.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
 
@@ -59,8 +58,9 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     pair = signals.components(ds, pin)
     angles, x, y = signals.revolution(ds, *pair)
     link = int(pin[2]) if frame == "link" else 1
+    drawing = drawing_of_results(ds)
     if link != 1:
-        x, y = _in_link_axes(ds, link, x, y)
+        x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
@@ -75,32 +75,37 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     _ticks(ax, angles, x, y, shown)
     near = size <= BEYOND * shown
     _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
-    ax.set_xlabel(f"{_axis(pin, link, 'x')} [{units}]")
-    ax.set_ylabel(f"{_axis(pin, link, 'y')} [{units}]")
+    ax.set_xlabel(f"{_axis(drawing, pin, link, 'x')} [{units}]")
+    ax.set_ylabel(f"{_axis(drawing, pin, link, 'y')} [{units}]")
     return ax
 
 
-def _in_link_axes(ds: xr.Dataset, link: int, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Components of the same force in the axes of a link: turned back by the link's angle."""
-    name = f"theta{link}"
+def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Components of the same force in axes turned by an angle, a variable of the sweep or a parameter."""
     if name not in ds:
-        ds = sweep(scene_of(ds), theta2=ds[signals.INDEX].values, outputs=[name])
+        scene = scene_of(ds)
+        standing = getattr(scene.mechanism, name, None)
+        given = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
+        ds = ds.assign({name: given[name]})
     angle = np.radians(signals.revolution(ds, ds[name])[1])
     cos, sin = np.cos(angle), np.sin(angle)
     return cos * x + sin * y, cos * y - sin * x
 
 
-def _axis(pin: str, link: int, axis: str) -> str:
+def _axis(drawing: Drawing, pin: str, link: int, axis: str) -> str:
     force = signals.symbol(pin)
     if link == 1:
         return f"{force[:-2]}{axis}}}$, ground axes"
-    way = f"along the {LINKS[link]}, {LINES_OF_PINS[link]}"
-    return f"{force} {way}" if axis == "x" else f"{force} across the {LINKS[link]}"
+    frame = drawing.frames[link]
+    return f"{force} along the {frame.along}" if axis == "x" else f"{force} across the {frame.across}"
 
 
 def _cross(ax: Axes) -> None:
     """Equal scales, with a cross through the origin."""
+    from matplotlib.ticker import MaxNLocator
+
     ax.set_aspect("equal", adjustable="datalim")
+    ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))  # room for numbers of five digits
     grid(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
@@ -120,7 +125,8 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: fl
     from linksweep.surface.labels import label
 
     at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
-    at = at[:-1] if len(at) and at[-1] == angles[0] + 360.0 else at
+    closed = (x[0], y[0]) == (x[-1], y[-1])
+    at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
     points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
     there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * shown)
     at, points = at[there], points[:, there]

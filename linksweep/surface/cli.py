@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from linksweep.mechanisms import LoopTrack
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
-from linksweep.scene.examples import example
+from linksweep.scene.examples import example, names, title
 from linksweep.surface.report import check_lines, peak_table
 from linksweep.surface.storage import load_scene, save, whole
 
@@ -43,7 +44,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(required=True, metavar="command")
 
-    demo = commands.add_parser("demo", help="a built-in press: peak table, demo.nc, demo.png")
+    demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
+    scenes = names()
+    demo.add_argument("scene", nargs="?", choices=scenes, default="press", help=f"{', '.join(scenes)} (press)")
     demo.add_argument("-o", "--output", type=Path, default=Path("demo"), help="name of the files without ending (demo)")
     demo.set_defaults(run=_demo)
 
@@ -72,10 +75,10 @@ def _scene_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _demo(options: argparse.Namespace) -> None:
-    scene = example("press")
+    scene = example(options.scene)
     cycle = sweep(scene)
-    print("A press: crank 8 cm, coupler 22 cm, rocker 18 cm, ground 20 cm, 300 rpm, 80 lbf on the coupler\n")
-    print(peak_table(peaks(scene)))
+    print(f"{title(options.scene)}\n")
+    print(peak_table(peaks(scene), scene.mechanism.index))
     data, picture = (options.output.with_name(options.output.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
     _write(_figure(cycle), picture)
@@ -96,8 +99,9 @@ def _sweep(options: argparse.Namespace) -> None:
 
 
 def _peaks(options: argparse.Namespace) -> None:
-    found = peaks(load_scene(options.scene), of=options.of, theta2=options.theta2)
-    print(peak_table(found))
+    scene = load_scene(options.scene)
+    found = peaks(scene, of=options.of, theta2=options.theta2)
+    print(peak_table(found, scene.mechanism.index))
     if options.output:
         save(found, options.output)
         print(f"\nwritten: {options.output}")
@@ -129,7 +133,8 @@ def _figure(cycle: xr.Dataset) -> Figure:
     mpl.use("Agg")
     from linksweep.surface import plot
 
-    return plot.cycle(cycle)
+    pages = {LoopTrack.index: plot.loop}
+    return next((page for index, page in pages.items() if index in cycle.dims), plot.cycle)(cycle)
 
 
 def _write(figure: Figure, path: Path) -> None:

@@ -199,7 +199,7 @@ def _cost(boxes: np.ndarray, leaders: np.ndarray, ink: Ink, taken: np.ndarray) -
     outside = 1.0 - _overlap(boxes, ink.frame[None])[:, 0]
     outside += outside > 1e-6
     across = ink.at(leaders[:, 6:]).sum(axis=1)  # where a leader begins, there is always a curve
-    return 500.0 * (on_texts.sum(axis=1) + outside) + 25.0 * struck + 12.0 * ink.count(boxes) + 3.0 * across
+    return 500.0 * on_texts.sum(axis=1) + 4000.0 * outside + 25.0 * struck + 12.0 * ink.count(boxes) + 3.0 * across
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:

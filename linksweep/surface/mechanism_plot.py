@@ -1,9 +1,9 @@
-"""The mechanism drawn in a position: bars, pins, ground, the crank's circle and the curve of a point of the coupler."""
+"""The mechanism drawn in a position: bars, pins, block, ground, the crank's circle and the curve of a point."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,17 +11,27 @@ import xarray as xr
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
-from linksweep.surface import signals
+from linksweep.surface import machine_parts, signals
+from linksweep.surface.drawings import Block, Drawing, Guide, drawing_of
 from linksweep.surface.storage import scene_of
-from linksweep.surface.style import BLACK, FORCES, GREY, SKY, axes_or_new, grid
+from linksweep.surface.style import BLACK, FORCE_COLORS, GREY, SKY, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 CURVE = 720  # positions along the coupler curve
 ARROW = 0.3  # of the drawing's extent: the longest force
-POSITIONS = ("Bx", "By", "Cx", "Cy")
-BAR, EDGE = "#DCE6EE", "#3F4B55"
+BLOCK = 0.13  # of the bars' lengths together: half a side of the block
+
+
+class Shape(NamedTuple):
+    """A mechanism in a position, lengths in [m]: its pins, and what of it moves on which curve."""
+
+    pins: dict[str, np.ndarray]
+    curve: np.ndarray  # (2, angles) of the coupler point, closed
+    point: np.ndarray
+    block: np.ndarray  # (2, angles): the places of the block's pin, the last one the present
+    along: np.ndarray  # (2, angles): what the block's sides run along
 
 
 def mechanism(
@@ -42,10 +52,11 @@ def mechanism(
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
     point : tuple of float, optional
-        The coupler point whose curve is drawn: (distance from pin B [m], angle from the line B→C [degree]); by default
-        the coupler's centre of gravity.
+        The point of the coupler (rod) whose curve is drawn: (distance from pin B [m], angle from the line B→C
+        [degree]); by default its centre of gravity. Of an inverted slider-crank a point of the rocker, seen from D.
     forces : bool
-        Whether to draw the pin forces F12 and F32 on the crank, F43 on the coupler and F14 on the rocker, to one scale.
+        Whether to draw the forces F12 and F32 on the crank, F43 on the coupler (rod, block) and F14 on the rocker
+        (slider), to one scale.
 
     Returns
     -------
@@ -64,18 +75,19 @@ def mechanism(
     'x [m]'
     """
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
+    drawing = drawing_of(scene.mechanism)
     angle = _angle(theta2)
-    cycle = _positions(scene, angle)
-    pins, curve, marked = _shape(scene, cycle, point)
-    acting = _pin_forces(scene, angle) if forces else {}
+    shape = _shape(scene, drawing, _positions(scene, drawing, angle), point)
+    acting = _joint_forces(scene, drawing, angle) if forces else {}
     ax = axes_or_new(ax)
-    _ground(ax, scene, pins)
-    _curve(ax, scene, curve)
-    _links(ax, pins, marked)
+    grid(ax)
+    _ground(ax, scene, drawing, shape)
+    ax.plot(*shape.curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
+    _links(ax, drawing, shape)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.2)
-    _forces(ax, acting, pins)
-    _names(ax, pins, marked, "P" if point else "$G_3$")
+    _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting})
+    _names(ax, shape, "P" if point else f"$G_{drawing.carrier.number}$")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
@@ -89,11 +101,15 @@ def _angle(theta2: Any) -> float:
         raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
 
 
-def _positions(scene: Scene, angle: float) -> xr.Dataset:
+def _positions(scene: Scene, drawing: Drawing, angle: float) -> xr.Dataset:
     """Positions of the pins over the revolution and, last, at the angle. Raises ValueError where it has none."""
-    geometry = replace(scene, omega2=0.0, alpha2=0.0, loads=(), drive="crank")
+    set_aside: dict[str, Any] = dict(drawing.ideal)
+    machine = replace(scene.mechanism, **set_aside)
+    geometry = Scene(machine, omega2=0.0, drive="crank")
+    outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
+    outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     turn = np.arange(CURVE) * (360.0 / CURVE)
-    cycle = sweep(geometry, theta2=[*turn, angle], outputs=POSITIONS)
+    cycle = sweep(geometry, theta2=[*turn, angle], outputs=outputs)
     signals.require_one_design(cycle.values())
     status, angles = cycle.status.values, cycle[signals.INDEX].values
     if status[-1]:
@@ -108,34 +124,46 @@ def _meaning(cycle: xr.Dataset) -> str:
     """What the last status says, to follow a subject."""
     word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values[-1])]
     said = {"cannot_assemble": "cannot be assembled", "toggle": "is at a toggle", "dead_centre": "is at a dead centre"}
+    said["jammed"] = "is jammed by friction"
     return said.get(word, word.replace("_", " "))
 
 
-def _pin_forces(scene: Scene, angle: float) -> dict[str, np.ndarray]:
-    """Components (x, y) of each pin force at the angle [N]. Raises ValueError where there are none."""
-    found = sweep(scene, theta2=[angle], outputs=[f"{pin}{axis}" for pin in signals.PIN_FORCES for axis in "xy"])
+def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.ndarray]:
+    """Components (x, y) of the force in each joint at the angle [N]. Raises ValueError where there are none."""
+    found = sweep(scene, theta2=[angle], outputs=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     signals.require_one_design(found.values())
     if found.status.values[-1]:
         raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(found)}")
     return {
-        pin: np.array([part.values.reshape(-1)[0] for part in signals.components(found, pin)])
-        for pin in signals.PIN_FORCES
+        force: np.array([part.values.reshape(-1)[0] for part in signals.components(found, force)])
+        for force in drawing.forces
     }
 
 
-def _shape(scene: Scene, cycle: xr.Dataset, point: Any) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
-    """Positions of the pins by letter, the coupler point's curve (2, angles), and where it is now [m]."""
-    four_bar = scene.mechanism
-    cos, sin = (_one(part) for part in cos_sin(four_bar.ground_angle))
-    ground = _one(four_bar.ground)
-    B, C = (np.array([cycle[f"{pin}x"].values, cycle[f"{pin}y"].values]) for pin in "BC")
-    distance, angle = point or (four_bar.coupler.cg_distance, four_bar.coupler.cg_angle)
-    along, across = (_one(distance) * _one(part) for part in cos_sin(angle))
-    x, y = (C - B) / _one(four_bar.coupler.length)
-    path = B + along * np.array([x, y]) + across * np.array([-y, x])
-    D = np.array([ground * cos, ground * sin])
-    pins = {"A": np.zeros(2), "B": B[:, -1], "C": C[:, -1], "D": D}
-    return pins, np.append(path[:, :-1], path[:, :1], axis=1), path[:, -1]
+def _shape(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
+    """Where everything is, and the curves that it moves on."""
+    machine, carrier = scene.mechanism, drawing.carrier
+    moving = {pin: np.array([cycle[f"{pin}x"].values, cycle[f"{pin}y"].values]) for pin in drawing.moving}
+    fixed = drawing.fixed(machine)
+    link = getattr(machine, carrier.role)
+    distance, turned = point or (link.cg_distance, link.cg_angle)
+    x, y = _axes(machine, drawing, cycle, carrier.number)
+    along, across = (_one(distance) * _one(part) for part in cos_sin(turned))
+    start = moving[carrier.pin] if carrier.pin in moving else fixed[carrier.pin][:, None]
+    path = start + along * np.array([x, y]) + across * np.array([-y, x])
+    curve = np.append(path[:, :-1], path[:, :1], axis=1)
+    pins = dict(sorted({**fixed, **{pin: places[:, -1] for pin, places in moving.items()}}.items()))
+    if drawing.block is None:
+        return Shape(pins, curve, path[:, -1], np.empty((2, 0)), np.empty((2, 0)))
+    sides = _axes(machine, drawing, cycle, drawing.block.number)
+    return Shape(pins, curve, path[:, -1], moving[drawing.block.pin], sides)
+
+
+def _axes(machine: Any, drawing: Drawing, cycle: xr.Dataset, link: int) -> np.ndarray:
+    """The direction of a link's own x axis at each angle of the cycle, (2, angles)."""
+    name = drawing.frames[link].angle
+    angle = cycle[name].values if name in cycle else np.full(cycle.sizes[signals.INDEX], _one(getattr(machine, name)))
+    return np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
 
 
 def _one(number: Any) -> float:
@@ -144,56 +172,97 @@ def _one(number: Any) -> float:
     return float(number)
 
 
-def _ground(ax: Axes, scene: Scene, pins: dict[str, np.ndarray]) -> None:
-    """The frame's line, a hatched support under each ground pin, and the circle that pin B runs on."""
-    from matplotlib.path import Path
-
-    ends = np.array([pins["A"], pins["D"]])
-    strokes = [[(x, -1.0), (x - 0.25, -1.3)] for x in np.linspace(-0.7, 0.9, 6)]
-    outline = [(0.0, 0.0), (-0.6, -1.0), (0.6, -1.0), (0.0, 0.0)]
-    lines = [outline, [(-0.9, -1.0), (0.9, -1.0)], *strokes]
-    codes = [Path.MOVETO if k == 0 else Path.LINETO for line in lines for k in range(len(line))]
-    support = Path([vertex for line in lines for vertex in line], codes)
-    ax.plot(*ends.T, color=GREY, linewidth=0.8, linestyle=(0.0, (8.0, 3.0, 1.0, 3.0)), zorder=2.0)
-    style: dict[str, Any] = {"markersize": 30.0, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
-    ax.plot(*ends.T, linestyle="none", marker=support, label="_ground", **style)
-    around = np.radians(np.linspace(0.0, 360.0, 181))
-    radius = _one(scene.mechanism.crank.length)
-    circle = radius * np.array([np.cos(around), np.sin(around)])
-    ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label="_crank circle")
+def _ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
+    """The frame's line or the guide, a support under each ground pin, and the circle that pin B runs on."""
+    machine: Any = scene.mechanism
+    standing = np.array([shape.pins[pin] for pin in drawing.fixed(machine)])
+    if len(standing) > 1:
+        machine_parts.centre_line(ax, standing)
+    if drawing.guide is not None:
+        _guide(ax, drawing.guide(machine), shape, _half_side(drawing, shape))
+    machine_parts.supports(ax, standing)
+    machine_parts.crank_circle(ax, _one(machine.crank.length))
 
 
-def _curve(ax: Axes, scene: Scene, curve: np.ndarray) -> None:
-    grid(ax)
-    ax.plot(*curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
-
-
-def _links(ax: Axes, pins: dict[str, np.ndarray], marked: np.ndarray) -> None:
-    """Bars from pin to pin with their numbers, the coupler point tied to its link, and the pins on top."""
-    plate = np.array([pins["B"], marked, pins["C"]])
-    ax.fill(*plate.T, facecolor=BAR, edgecolor=EDGE, linewidth=0.8, alpha=0.6, zorder=2.15)
-    for number, (start, end) in {2: ("A", "B"), 3: ("B", "C"), 4: ("D", "C")}.items():
-        bar = np.array([pins[start], pins[end]])
-        for width, color in ((9.0, EDGE), (7.2, BAR)):
-            ax.plot(*bar.T, color=color, linewidth=width, solid_capstyle="round", zorder=2.2, label=f"_link {number}")
-        middle: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 6.5, "zorder": 2.3, "color": EDGE}
-        x, y = bar[0] + 0.4 * (bar[1] - bar[0])
-        ax.text(x, y, str(number), **middle)
-    circles: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": EDGE, "markersize": 6.0, "zorder": 2.45}
-    ax.plot(*np.array(list(pins.values())).T, "o", label="_pins", **circles)
-    ax.plot(*marked, "o", color=SKY, markeredgecolor=EDGE, markersize=4.5, zorder=2.45, label="_point")
-
-
-def _names(ax: Axes, pins: dict[str, np.ndarray], marked: np.ndarray, point: str) -> None:
+def _guide(ax: Axes, guide: Guide, shape: Shape, half: float) -> None:
+    """The guide's centre line, its sides along the block's travel, and its offset from the crank's bearing."""
     from linksweep.surface.labels import label
 
-    for name, position in pins.items():
+    low, high = _travel(shape, guide.foot)
+    ends = min(low - 2.0 * half, 0.0), max(high + 2.0 * half, 0.0)
+    machine_parts.centre_line(ax, np.array([guide.foot + end * guide.along for end in ends]))
+    machine_parts.rails(ax, guide.foot + low * guide.along, guide.foot + high * guide.along, guide.along, half)
+    offset = float(np.hypot(*guide.foot))
+    if offset > 0.0:
+        ax.plot(*np.array([np.zeros(2), guide.foot]).T, color=GREY, linewidth=0.8, zorder=2.0, label="_offset")
+        label(ax, *(0.5 * guide.foot), (f"offset {offset:.4g} m", GREY))
+
+
+def _travel(shape: Shape, origin: np.ndarray) -> tuple[float, float]:
+    """Between which places the block slides along its line [m], seen from a point."""
+    places = np.sum((shape.block - origin[:, None]) * shape.along, axis=0)
+    return float(np.nanmin(places)), float(np.nanmax(places))
+
+
+def _half_side(drawing: Drawing, shape: Shape) -> float:
+    """Half a side of the block [m]."""
+    lengths = [shape.pins[end] - shape.pins[start] for start, end in drawing.bars.values()]
+    return BLOCK * sum(float(np.hypot(*length)) for length in [*lengths, shape.pins.get("D", np.zeros(2))])
+
+
+def _links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
+    """The block, bars from pin to pin with their numbers, the point tied to its link, and the pins on top."""
+    ends = {number: np.array([shape.pins[pin] for pin in pair]) for number, pair in drawing.bars.items()}
+    covered = [shape.point]
+    if drawing.block is not None:
+        covered.append(shape.pins[drawing.block.pin])
+        if drawing.block.on is not None:
+            number, pivot = drawing.block.on
+            ends[number] = _slideway(ax, drawing, shape, number, shape.pins[pivot])
+        bars = [ends[number] for number in drawing.bars]
+        _block(ax, drawing.block, shape, _half_side(drawing, shape), np.array(bars))
+    start, end = ends[drawing.carrier.number]
+    machine_parts.plate(ax, np.array([start, shape.point, end]), behind=drawing.carrier.number not in drawing.bars)
+    for number, pair in ends.items():
+        if number in drawing.bars:
+            machine_parts.bar(ax, number, pair)
+        machine_parts.number_of_bar(ax, number, pair, np.array(covered))
+    machine_parts.pins(ax, np.array(list(shape.pins.values())))
+    machine_parts.point(ax, shape.point)
+
+
+def _block(ax: Axes, block: Block, shape: Shape, half: float, bars: np.ndarray) -> None:
+    """The block with its number, where no bar covers that; `bars` has the ends of each."""
+    centre, (x, y) = shape.pins[block.pin], shape.along[:, -1]
+    machine_parts.block(ax, centre, np.array([x, y]), half)
+    places = centre + 0.7 * half * np.array([(x, y), (-x, -y), (-y, x), (y, -x)])
+    along_bars = bars[:, :1] + np.linspace(0.0, 1.0, 50)[:, None] * (bars[:, 1:] - bars[:, :1])
+    free = np.linalg.norm(places[:, None] - along_bars.reshape(-1, 2), axis=2).min(axis=1)
+    machine_parts.number_at(ax, block.number, places[np.argmax(free)])
+
+
+def _slideway(ax: Axes, drawing: Drawing, shape: Shape, number: int, pivot: np.ndarray) -> np.ndarray:
+    """A link that a block slides on, as long as its travel; its ends come back."""
+    along, half = shape.along[:, -1], _half_side(drawing, shape)
+    across = np.array([-along[1], along[0]])
+    foot = pivot + across * (across @ (shape.pins["B"] - pivot))
+    low, high = _travel(shape, pivot)
+    ends = np.array([foot + place * along for place in (min(low - 1.4 * half, 0.0), max(high + 1.4 * half, 0.0))])
+    machine_parts.bar(ax, number, np.array([pivot, foot]), behind=True)
+    machine_parts.bar(ax, number, ends, behind=True)
+    return ends
+
+
+def _names(ax: Axes, shape: Shape, point: str) -> None:
+    from linksweep.surface.labels import label
+
+    for name, position in shape.pins.items():
         label(ax, *position, (name, BLACK), fontweight="bold")
-    label(ax, *marked, (point, BLACK))
+    label(ax, *shape.point, (point, BLACK))
 
 
-def _forces(ax: Axes, forces: dict[str, np.ndarray], pins: dict[str, np.ndarray]) -> None:
-    """An arrow at each pin, to one scale, with its value [N]."""
+def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray]) -> None:
+    """An arrow from each joint, to one scale, with its value [N]."""
     from linksweep.surface.labels import arrow, label
 
     extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))
@@ -201,7 +270,7 @@ def _forces(ax: Axes, forces: dict[str, np.ndarray], pins: dict[str, np.ndarray]
     for name, vector in forces.items():
         size = float(np.hypot(*vector))
         if size > 0.0:
-            start = pins[signals.PIN_OF[name]]
+            start = starts[name]
             tip = start + vector * (ARROW * extent / largest)
-            arrow(ax, start, tip, FORCES[name])
-            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", FORCES[name]))
+            arrow(ax, start, tip, FORCE_COLORS[name])
+            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", FORCE_COLORS[name]))

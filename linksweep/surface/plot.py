@@ -15,6 +15,8 @@ import xarray as xr
 
 from linksweep.surface import signals
 from linksweep.surface.bearing_plot import bearing
+from linksweep.surface.drawings import Drawing, drawing_of_results
+from linksweep.surface.loop_plot import loop
 from linksweep.surface.mechanism_plot import mechanism
 from linksweep.surface.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, VERMILION, axes_or_new, grid
 
@@ -22,10 +24,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["bearing", "cycle", "forces", "mechanism", "torque"]
+__all__ = ["bearing", "cycle", "forces", "loop", "mechanism", "torque"]
 
 SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
 STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
+ROOM = 1.0 / 30.0  # of the angle axis: what an upright word takes
+LETTERS = 50  # of a legend in one line, at the usual spacing
 HEADROOM = 1.3  # of the largest value, for the legend and the labels of peaks
 A4_WIDTH = 7.1  # inches between the margins of an A4 page
 
@@ -50,7 +54,7 @@ class Mark(NamedTuple):
 
 
 def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
-    """Plot the magnitudes of pin forces [N] over the crank angle [degree], each peak marked with value and angle.
+    """Plot the magnitudes of forces in the joints [N] over the crank angle [degree], each peak with value and angle.
 
     Parameters
     ----------
@@ -58,7 +62,8 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
         From `linksweep.sweep`, with magnitudes (F32) or components (F32x, F32y), of one design; of a single force
         also up to six designs along one dimension, one line each.
     names : iterable of str, optional
-        The forces, such as ["F32", "F43"]; by default those of all pins that are in the Dataset.
+        The forces, such as ["F32", "F43"]; by default those of all pins, and of the guide, that are in
+        the Dataset.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
 
@@ -91,12 +96,13 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     _draw(ax, curves)
     ax.set_ylim(0.0, HEADROOM * top or 1.0)
     units = signals.unit(found[wanted[0]], "N")
-    said = "pin force" if len(wanted) > 1 else f"pin force {signals.symbol(wanted[0])}"
+    said = f"{_kind(drawing_of_results(ds), wanted)} force"
+    said += f" {signals.symbol(wanted[0])}" if len(wanted) == 1 else ""
     ax.set_ylabel(f"{said} [{units}]")
     widest = _shade(ax, ds, found[wanted[0]])
     _angle_axis(ax, curves[0].angles)
     runaway = any(found and found.value > HEADROOM * top for found in peaks)
-    _legend(ax, curves, widest if runaway else None)
+    _legend(ax, curves, widest, runaway)
     marks = [
         Mark(found, curve, curve.said)
         for found, curve in zip(peaks, curves, strict=True)
@@ -147,7 +153,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     widest = _shade(ax, ds, ds[name])
     _angle_axis(ax, curves[0].angles)
     if len(curves) > 1:
-        _legend(ax, curves, widest if any(abs(found.value) > size for found in every) else None)
+        _legend(ax, curves, widest, any(abs(found.value) > size for found in every))
     _mark(ax, [Mark(found, curve, said) for curve, pair in extremes for said, found in pair.items()], units)
     return ax
 
@@ -182,6 +188,7 @@ def cycle(ds: xr.Dataset) -> Figure:
 
     signals.require_angles(ds)
     pin, angle = _most_loaded(ds)
+    drawing = drawing_of_results(ds)
     with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
         layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
         figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout=layout)
@@ -190,7 +197,8 @@ def cycle(ds: xr.Dataset) -> Figure:
         bearing(ds, pin, ax=panels[1, 0])
         torque(ds, ax=panels[1, 1])
         where = f"Largest pin force, at $\\theta_2$ = {signals.angle_text(angle)}"
-        titles = (where, "Pin forces", f"Load of pin {signals.PIN_OF[pin]}: {signals.symbol(pin)}", "Drive torque")
+        kind = _kind(drawing, _names(ds, None)).capitalize()
+        titles = (where, f"{kind} forces", f"Load of {drawing.said(pin)}: {signals.symbol(pin)}", "Drive torque")
         for panel, title in zip(panels.flat, titles, strict=True):
             panel.set_title(title, loc="left")
     return figure
@@ -200,6 +208,8 @@ def _most_loaded(ds: xr.Dataset) -> tuple[str, float]:
     """The pin force that is largest, and the crank angle [degree] where it is."""
     found = {}
     for name in _names(ds, None):
+        if not drawing_of_results(ds).at_pin(name):
+            continue
         largest = signals.peak(*signals.revolution(ds, signals.magnitude(ds, name)))
         if largest is None:
             raise ValueError("there is no result at any angle of the Dataset: see its status, and linksweep.check")
@@ -213,19 +223,26 @@ def _names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
         wanted = [names] if isinstance(names, str) else list(dict.fromkeys(names))
         if wanted:
             return wanted
-    wanted = [name for name in signals.PIN_FORCES if signals.has_pin(ds, name)]
+    forces = drawing_of_results(ds).forces
+    wanted = [name for name in forces if signals.has_pin(ds, name)]
     if not wanted:
-        raise ValueError("the Dataset has no pin force: sweep with outputs=[..., 'F12', 'F32', 'F43', 'F14']")
+        raise ValueError(f"the Dataset has no pin force: sweep with outputs=[..., {', '.join(map(repr, forces))}]")
     return wanted
+
+
+def _kind(drawing: Drawing, names: Iterable[str]) -> str:
+    """What forces these are: "pin", "guide", "pin and guide"."""
+    return " and ".join(dict.fromkeys("pin" if drawing.at_pin(name) else drawing.joint_of[name] for name in names))
 
 
 def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
     """The lines to draw: one for each signal, or of a single signal one for each design."""
     curves: list[Curve] = []
+    joints = drawing_of_results(ds).joint_of
     for name, signal in found.items():
         for design, values in signals.designs(signal).items():
             color, dashes = STYLES[len(curves) % len(STYLES)]
-            text = design or f"{signals.symbol(name)} ({signals.PIN_OF.get(name, 'drive')})"
+            text = design or f"{signals.symbol(name)} ({joints.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
             said = signals.symbol(name) if len(found) > 1 else ""
             angles, row = signals.revolution(ds, values)
@@ -246,8 +263,9 @@ def _angle_axis(ax: Axes, angles: np.ndarray) -> None:
     span = angles[-1] - angles[0]
     if span >= 180.0:
         wide = ax.get_window_extent().width / ax.figure.dpi > 4.0
-        ax.xaxis.set_major_locator(MultipleLocator(45.0 if wide else 90.0))
-        ax.xaxis.set_minor_locator(MultipleLocator(15.0 if wide else 30.0))
+        step = (45.0 if wide else 90.0) * (2.0 if span > 400.0 else 1.0)
+        ax.xaxis.set_major_locator(MultipleLocator(step))
+        ax.xaxis.set_minor_locator(MultipleLocator(step / 3.0))
     if span > 0.0:
         ax.set_xlim(angles[0], angles[-1])
     ax.set_xlabel("crank angle $\\theta_2$ [°]")
@@ -276,32 +294,43 @@ def _shade(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None
     found = signals.gaps(ds, signal)
     for gap in found:
         ax.axvspan(gap.start, gap.stop, facecolor=SHADE, linewidth=0.0, zorder=0.4)
-        width = gap.stop - gap.start
-        if width >= 12.0:  # degrees; a narrower one has no room for a word
-            upright = "horizontal" if width >= 75.0 else "vertical"
-            middle = 0.5 * (gap.start + gap.stop)
-            style: dict[str, Any] = {
-                "ha": "center",
-                "va": "center",
-                "rotation": upright,
-                "fontsize": "small",
-                "color": GREY,
-            }
-            style["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
-            ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **style)
-    return max(found, key=lambda gap: gap.stop - gap.start, default=None)
+    found.sort(key=lambda gap: gap.start - gap.stop)
+    room, said = ROOM * np.ptp(ds[signals.INDEX].values), set()
+    for gap in found:
+        if gap.width >= room or gap.reason not in said:
+            _reason(ax, gap, room)
+        said.add(gap.reason)
+    return found[0] if found else None
 
 
-def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None) -> None:
-    """In the room above the curves; where a curve runs through that, in the gap beside it."""
-    compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5}
-    if gap is None:
-        columns = len(curves) if max(len(curve.text) for curve in curves) < 22 else 2
-        ax.legend(loc="upper center", ncols=columns, frameon=False, borderaxespad=0.2, **compact)
-    else:
+def _reason(ax: Axes, gap: signals.Gap, room: float) -> None:
+    """Why there is no result: a word in the gap, or beside it where there is no room [degree] for one."""
+    from linksweep.surface.labels import label
+
+    width, middle = gap.width, 0.5 * (gap.start + gap.stop)
+    if width < room:
+        label(ax, middle, float(np.mean(ax.get_ylim())), (gap.reason, GREY))
+        return
+    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": "small", "color": GREY}
+    style["rotation"] = "horizontal" if width >= 6.0 * room else "vertical"
+    style["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
+    ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **style)
+
+
+def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None, runaway: bool) -> None:
+    """In the room above the curves; where a curve runs through that, in the gap beside it, or where there is room."""
+    compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5, "frameon": False}
+    texts = [curve.text for curve in curves]
+    if not runaway:
+        columns = len(curves) if max(map(len, texts)) < 22 else 2
+        tight = {"handlelength": 1.8, "columnspacing": 0.8} if len("".join(texts)) > LETTERS else {}
+        ax.legend(loc="upper center", ncols=columns, borderaxespad=0.2, **compact | tight)
+    elif gap is not None and gap.width > np.ptp(ax.get_xlim()) / 4.0:
         middle = (0.5 * (gap.start + gap.stop), 0.01)
         place = {"bbox_to_anchor": middle, "bbox_transform": ax.get_xaxis_transform()}
-        ax.legend(loc="lower center", ncols=1, frameon=False, **place, **compact)
+        ax.legend(loc="lower center", ncols=1, **place, **compact)
+    else:
+        ax.legend(loc="best", ncols=1, **compact)
 
 
 def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 
 import numpy as np
 import xarray as xr
 
 
-def peak_table(found: xr.Dataset) -> str:
-    """The peaks of a scene as a table: quantity, value, unit, crank angle; of a batch, the worst design of each."""
-    rows = [("quantity", "value", "unit", "at theta2", *(f"worst {dim}" for dim in found.sizes))]
+def peak_table(found: xr.Dataset, index: str = "theta2") -> str:
+    """The peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
+    rows = [("quantity", "value", "unit", f"at {index}", *(f"worst {dim}" for dim in found.sizes))]
     for name in map(str, found.data_vars):
         if f"{name}_at" in found or name.endswith(("_mean", "_rms")):
             rows.append(_row(found, name))
@@ -56,15 +56,37 @@ def _remarks(found: xr.Dataset) -> list[str]:
     status = np.asarray(found.status.values).reshape(-1)
     partly, never = int((status == 1).sum()), int((status == 2).sum())
     who = "It" if status.size == 1 else f"{partly} of {status.size} designs"
-    said = [f"{who} cannot be assembled at every angle: peaks are those of the angles at which it can."] * bool(partly)
-    said += [f"{never} of {status.size} designs cannot be assembled at any angle."] * bool(never)
+    if "never_on_track" in found.status.attrs["flag_meanings"]:
+        somewhere = "does not stay on the track all the way round: peaks are those of where it is."
+        nowhere = "not on the track at any position."
+    else:
+        somewhere = "cannot be assembled at every angle: peaks are those of the angles at which it can."
+        nowhere = "cannot be assembled at any angle."
+    said = [f"{who} {somewhere}"] * bool(partly)
+    said += [f"{never} of {status.size} designs {nowhere}"] * bool(never)
     return ["", *said] if said else []
 
 
 def check_lines(found: xr.Dataset) -> list[str]:
     """What check found, in words."""
-    said = _of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)
+    said: Iterable[tuple[str, str]]
+    if "grashof" not in found:
+        said = ((str(name).replace("_", " "), _summary(found[name])) for name in found.data_vars)
+    else:
+        said = _of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)
     return [f"{title + ':':<26}{text}" for title, text in said]
+
+
+def _summary(finding: xr.DataArray) -> str:
+    """A finding in words: how many designs have each, or the range of its values."""
+    if "flag_meanings" in finding.attrs:
+        words, counts = _words(finding), np.bincount(finding.values.reshape(-1))
+        found = [(word, n) for word, n in zip(words, counts, strict=False) if n]
+        return found[0][0] if finding.size == 1 else ", ".join(f"{word} {n}" for word, n in found)
+    values = finding.values[np.isfinite(finding.values)]
+    unit = {"degree": "°", "1": ""}.get(_unit(finding), f" {_unit(finding)}")
+    ends = [f"{value:.6g}{unit}" for value in np.unique(values)]
+    return " to ".join([ends[0], ends[-1]] if len(ends) > 4 else ends) if ends else "none"
 
 
 def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:

@@ -9,11 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.four_bar import PINS
+from linksweep.surface.drawings import drawing_of_results, drive_of_results
 
 INDEX = "theta2"
-PIN_OF = {f"F{i}{j}": pin for pin, pair in PINS.items() for i, j in (pair, pair[::-1])}
-PIN_FORCES = tuple(f"F{i}{j}" for i, j in PINS.values())
+PERIODS = (360.0, 720.0)  # degrees: a revolution, and the two of a four-stroke engine
 TORQUES = ("T12", "T13", "T14")
 MOST_LINES = 6  # designs that one plot still tells apart
 
@@ -24,6 +23,10 @@ class Gap(NamedTuple):
     start: float
     stop: float
     reason: str
+
+    @property
+    def width(self) -> float:
+        return self.stop - self.start
 
 
 class Peak(NamedTuple):
@@ -36,7 +39,7 @@ class Peak(NamedTuple):
 
 def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Components x and y of a pin force; of F23 as well where there is only F32."""
-    _known_pin(pin)
+    _known_force(ds, pin)
     back = f"F{pin[2]}{pin[1]}"
     for name, sign in ((pin, 1.0), (back, -1.0)):
         if f"{name}x" in ds and f"{name}y" in ds:
@@ -46,7 +49,7 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
 
 def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
     """Magnitude of a pin force: the Dataset's own, or from its components."""
-    _known_pin(pin)
+    _known_force(ds, pin)
     for name in (pin, f"F{pin[2]}{pin[1]}"):
         if name in ds:
             return ds[name]
@@ -59,17 +62,20 @@ def has_pin(ds: xr.Dataset, pin: str) -> bool:
     return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, back))
 
 
-def _known_pin(pin: str) -> None:
-    if pin not in PIN_OF:
-        raise ValueError(f"pin = {pin!r}: must be one of {', '.join(PIN_OF)}")
+def _known_force(ds: xr.Dataset, pin: str) -> None:
+    known = drawing_of_results(ds).joint_of
+    if pin not in known:
+        raise ValueError(f"pin = {pin!r}: must be one of {', '.join(known)}")
 
 
 def torque_name(ds: xr.Dataset) -> str:
-    """The torque of the drive that the Dataset holds."""
-    for name in TORQUES:
+    """The torque of the drive: the scene says which, for a T14 may be the moment of a guide."""
+    drive = drive_of_results(ds)
+    wanted = (drawing_of_results(ds).drives[drive],) if drive else TORQUES
+    for name in wanted:
         if name in ds:
             return name
-    raise ValueError(f"the Dataset has none of {', '.join(TORQUES)}: sweep with outputs=[..., 'T12']")
+    raise ValueError(f"the Dataset has no {' nor '.join(wanted)}: sweep with outputs=[..., {wanted[0]!r}]")
 
 
 def unit(signal: xr.DataArray, default: str) -> str:
@@ -77,6 +83,7 @@ def unit(signal: xr.DataArray, default: str) -> str:
 
 
 def require_angles(ds: xr.Dataset) -> None:
+    drawing_of_results(ds)  # which refuses mechanisms that there are no plots of
     if INDEX not in ds.dims:
         raise ValueError("the Dataset has no dimension theta2: plots over the revolution take what ls.sweep returns")
 
@@ -109,13 +116,14 @@ def _said(value: object) -> str:
 
 
 def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
-    """Angles and signals as arrays: sorted by angle, and a grid of a full turn closed by its first sample again."""
+    """Angles and signals as arrays: sorted by angle, and a grid of a whole cycle closed by its first sample again."""
     angles = ds[INDEX].values.astype(float)
     order = np.argsort(angles, kind="stable")
     rows = [angles[order], *(_spread(signal, len(angles))[order] for signal in signals)]
-    if not is_full_turn(angles[order]):
+    period = full_turn(rows[0])
+    if period is None:
         return tuple(rows)
-    return (np.append(rows[0], rows[0][0] + 360.0), *(np.append(row, row[0]) for row in rows[1:]))
+    return (np.append(rows[0], rows[0][0] + period), *(np.append(row, row[0]) for row in rows[1:]))
 
 
 def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
@@ -124,10 +132,15 @@ def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
     return np.broadcast_to(signal.values.astype(float), (count,))
 
 
-def is_full_turn(angles: np.ndarray) -> bool:
-    """Whether sorted angles divide one turn evenly."""
-    steps = np.diff(angles, append=angles[0] + 360.0)
-    return len(angles) > 2 and np.allclose(steps, 360.0 / len(angles))
+def full_turn(angles: np.ndarray) -> float | None:
+    """The period [degree] that sorted angles divide evenly, one turn of the crank or two; None where neither."""
+    if len(angles) < 3:
+        return None
+    for period in PERIODS:
+        steps = np.diff(angles, append=angles[0] + period)
+        if np.allclose(steps, period / len(angles)):
+            return period
+    return None
 
 
 def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Lock
+from typing import Any
 
 import xarray as xr
 
@@ -131,6 +132,7 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
         )
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
     scene = parse_scene(text, name, arrays)
-    if scene.mechanism.branch == "both" and "branch" in ds.coords and not ds["branch"].dims:
-        return replace(scene, mechanism=replace(scene.mechanism, branch=str(ds["branch"].item())))
+    machine: Any = scene.mechanism
+    if getattr(machine, "branch", "") == "both" and "branch" in ds.coords and not ds["branch"].dims:
+        return replace(scene, mechanism=replace(machine, branch=str(ds["branch"].item())))
     return scene

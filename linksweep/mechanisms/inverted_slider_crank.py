@@ -1,0 +1,302 @@
+"""The inverted slider-crank: crank 2 (A-B), block 3 on its pin B, rocker 4 about D, along which the block slides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.engine.run import Field
+from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
+from linksweep.mechanisms.bodies import (
+    Body,
+    Equation,
+    arm_rows,
+    motion_quantities,
+    newton_euler_equations,
+    pin_force_quantities,
+    pin_force_rows,
+)
+from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.motion import CrankDriven
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
+from linksweep.physics import dyad_rpr, four_bar, inverted_slider_crank, planar
+
+BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
+LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
+PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
+BODIES = (
+    Body(2, "crank", steady=True),
+    Body(3, "block", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
+    Body(4, "rocker", pin_position=("Dx", "Dy")),
+)
+BLOCK = {"block_cg_x": 0.0, "block_cg_y": 0.0, "block_length": 1.0}
+"""The block as a body with its centre of gravity on its pin, its axes along and across the rocker's line."""
+
+
+@dataclass(frozen=True)
+class InvertedSliderCrank(CrankDriven):
+    """An inverted slider-crank: a shaper's quick-return, Whitworth's, a cylinder-driven rocker.
+
+    Parameters
+    ----------
+    crank : Link, Bar or Disk; its first pin is A, the block turns on its second, B
+    rocker : Link, Bar or Disk; its first pin is D. Its line is the direction in which the block slides, its centre of
+        gravity and its loads are polar from D and that direction; its length is a reference that no result depends on
+    ground : distance A-D [m]
+    block_mass : [kg], at B
+    block_inertia : about B [kg m²]; the block turns with the rocker
+    offset : distance of the line of sliding from D, to the left of the rocker's direction [m], either sign
+    branch : "open" (B ahead of D along the rocker), "crossed" (behind), or "both" (adds the dimension `branch`)
+    ground_angle : direction of the line A→D to x [degree]
+
+    All numbers may be DataArrays of design dims. A load on "block" acts at a point from B, in axes along and across
+    the rocker's line.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds, and for lengths that cannot be joined at any crank angle.
+
+    Notes
+    -----
+    The contact without friction of rocker and block is a normal force F43n through B and a moment T43. Of the pin
+    forces it takes the place of F43x, F43y in the nine unknowns; those are given besides.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> crank, rocker = ls.Disk(0.12, 0.2, 0.03, 7800), ls.Link(0.7, 18.0, 0.8, cg_distance=0.35)
+    >>> ls.InvertedSliderCrank(crank, rocker, ground=0.36, block_mass=1.5).branch
+    'open'
+    """
+
+    crank: Link | Bar | Disk
+    rocker: Link | Bar | Disk
+    ground: Number = parameter("length", above=0.0)
+    block_mass: Number = parameter("mass", at_least=0.0)
+    block_inertia: Number = parameter("inertia", 0.0, at_least=0.0)
+    offset: Number = parameter("length", 0.0)
+    branch: str = "open"
+    ground_angle: Number = parameter("angle", 0.0)
+
+    drives: ClassVar[dict[str, str]] = {"crank": "T12", "rocker": "T14"}
+    links: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
+    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
+
+    def __post_init__(self) -> None:
+        found = []
+        for role in ("crank", "rocker"):
+            link = getattr(self, role)
+            sound = isinstance(link, Link | Bar | Disk)
+            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
+        refuse(found)
+        refuse(self._never_closes())
+
+    def lengths(self) -> tuple[Number, Number, Number]:
+        """What decides how it moves: crank, ground, offset."""
+        return self.crank.length, self.ground, self.offset
+
+    def _never_closes(self) -> list[str]:
+        a, d, e = self.lengths()
+        if any(hasattr(number, "dims") for number in (a, d, e)) or abs(e) <= a + d:
+            return []
+        return [
+            f"offset = {e:.15g} m is {abs(e) - a - d:.6g} m beyond the reach of crank + ground: "
+            f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
+        ]
+
+    def parameters(self) -> dict[str, Any]:
+        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
+        ground_cos, ground_sin = cos_sin(self.ground_angle)
+        cos_half, sin_half = cos_sin(0.5 * self.ground_angle)
+        numbers: dict[str, Any] = {
+            "ground_length": self.ground,
+            "ground_cos": ground_cos,
+            "ground_sin": ground_sin,
+            "ground_cos_half": cos_half,
+            "ground_sin_half": sin_half,
+            "offset": self.offset,
+            "block_mass": self.block_mass,
+            "block_inertia": self.block_inertia,
+            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+        }
+        return numbers | BLOCK | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """Labels of the dimensions that the mechanism itself brings."""
+        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
+
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        """All that can be computed for this drive and loads of these forms."""
+        return _table(drive, loads)
+
+    def kinematics(self) -> tuple[str, ...]:
+        return ("theta4", "omega4", "alpha4", "slide", "slide_velocity", "slide_acceleration")
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        """The nine unknowns of the 9×9: the contact of rocker and block as normal force and moment."""
+        return ("F12x", "F12y", "F32x", "F32y", "F43n", "T43", "F14x", "F14y", self.drives[drive])
+
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        """What a sweep gives besides the kinematics."""
+        return (*self.unknowns(drive), "F43x", "F43y")
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """The 9×9: the rows of document 2 (ME 470), with n = (−r3y, r3x) across the line of sliding."""
+        torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
+        x3, y3, m3 = newton_euler_equations(3, {"F32": (-1.0, "R23")}, "T43")
+        x4, y4, m4 = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque["rocker"])
+        x3.coefficients["F43n"], y3.coefficients["F43n"] = (-1.0, "r3y"), (1.0, "r3x")
+        x4.coefficients["F43n"], y4.coefficients["F43n"] = (1.0, "r3y"), (-1.0, "r3x")
+        m4.coefficients.update(F43n=(-1.0, "contact_arm"), T43=-1.0)
+        crank = newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"])
+        return (*crank, x3, y3, m3, x4, y4, m4)
+
+    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """What can be checked in closed form, and the numbers that each takes."""
+        return (classes, self.lengths()), (angles, (*self.lengths(), self.ground_angle))
+
+    def jumps(self) -> tuple[Number, ...]:
+        """Crank angles at which a force may jump [degree]: none."""
+        return ()
+
+    @cached_property
+    def closes_everywhere(self) -> bool:
+        """Whether every design closes at every angle with a margin that rounding cannot touch."""
+        a, d, e = self.lengths()
+        return bool(np.all(abs(d - a) - abs(e) > 1e-9 * (a + d)))
+
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return ("F12", "F32", "F43", "F14", "T43", self.drives[drive])
+
+
+@lru_cache(maxsize=64)
+def _table(drive: str, loads: tuple[Form, ...]) -> Table:
+    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
+    for i, j in PINS.values():
+        rows += pin_force_rows(i, j)
+    rows += [*arm_rows(2, "R12", "R32"), *_arms()]
+    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
+
+
+def _arms() -> list[Row | Total]:
+    """From the centres of gravity of block and rocker to their pins, and to the normal force."""
+    return [
+        Row(planar.difference, ("R23x", "R23y"), (0.0, 0.0, "rG3x", "rG3y")),
+        Row(planar.difference, ("R14x", "R14y"), (0.0, 0.0, "rG4x", "rG4y")),
+        Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
+    ]
+
+
+def _position() -> list[Row | Total]:
+    return [
+        Row(four_bar.crank_pin, ("r2x", "r2y")),
+        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
+        Row(inverted_slider_crank.slide_squared, ("slide_squared",)),
+        Row(inverted_slider_crank.closure_noise, ("noise",)),
+        Row(inverted_slider_crank.assembly, ("assembly",)),
+        Row(dyad_rpr.rpr_close, ("slide", "inverse_slide", "r3x", "r3y")),
+        Row(dyad_rpr.rpr_transmission_angle, ("transmission_angle",)),
+        Row(planar.along, ("r4x", "r4y"), ("rocker_length", "r3x", "r3y")),
+        Row(planar.dot, ("crank_along",), ("r2x", "r2y", "r3x", "r3y")),
+        Row(planar.direction, ("theta4",), ("r3x", "r3y")),
+        Row(planar.same, ("theta3",), ("theta4",)),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
+    ]
+
+
+def _rates() -> list[Row | Total]:
+    return [
+        Row(dyad_rpr.rpr_velocity_ratios, ("ratio4", "ratio_slide")),
+        Row(planar.product, ("omega4",), ("omega2", "ratio4")),
+        Row(planar.same, ("omega3",), ("omega4",)),
+        Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(dyad_rpr.rpr_accelerations, ("alpha4", "slide_acceleration")),
+        Row(planar.same, ("alpha3",), ("alpha4",)),
+    ]
+
+
+def _forces(drive: str) -> list[Row | Total]:
+    """The contact's normal force from the moment equations free of the drive; the rest follows by addition.
+
+    The torque comes from virtual work, in which block and rocker turn together.
+    """
+    normal: dict[str, Callable] = {
+        "crank": inverted_slider_crank.normal_force_on_block,
+        "rocker": inverted_slider_crank.normal_force_from_crank,
+    }
+    ratios: dict[str, str | float] = {"crank": 1.0, "rocker": "ratio4"}
+    work = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
+    return [
+        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(normal[drive], ("F43n",)),
+        Row(planar.opposite, ("T43",), ("N3",)),
+        Row(inverted_slider_crank.normal_vector, ("F43x", "F43y"), ("F43n", "r3x", "r3y")),
+        Row(four_bar.coupler_balance, ("F32x", "F32y")),
+        Row(four_bar.rocker_balance, ("F14x", "F14y")),
+        Row(four_bar.crank_balance, ("F12x", "F12y")),
+        Row(four_bar.work_on_crank, ("work",), work),
+        Row(four_bar.balancing_torque, (InvertedSliderCrank.drives[drive],), ("work", ratios[drive])),
+        *_status(drive),
+    ]
+
+
+def _status(drive: str) -> list[Row | Total]:
+    if drive == "crank":
+        return [Row(dyad_rpr.rpr_status, ("status",))]
+    return [
+        Row(dyad_rpr.rpr_status, ("closure",)),
+        Row(four_bar.drive_status, ("status",), ("closure", "crank_along", "crank_length", 1.0)),
+    ]
+
+
+def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
+    driven = {"crank": "omega2", "rocker": "omega4"}[drive]
+    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
+    return [
+        Row(planar.product, ("power",), (InvertedSliderCrank.drives[drive], driven)),
+        Row(planar.relative_sum, ("power_residual",), ("power", *terms)),
+    ]
+
+
+def _quantities(drive: str) -> list[Quantity]:
+    torque = InvertedSliderCrank.drives[drive]
+    found = [
+        Quantity("theta3", "degree", "angle of the block, the rocker's"),
+        Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
+        Quantity("transmission_angle", "degree", "acute angle between the line D-B and the normal force on the rocker"),
+        Quantity("slide", "m", "position of the block along the rocker's line, from the foot of D on it"),
+        Quantity("slide_velocity", "m s-1", "velocity of the block along the rocker's line, relative to the rocker"),
+        Quantity("slide_acceleration", "m s-2", "acceleration of the block along the rocker's line, relative to it"),
+        Quantity("Bx", "m", "position of pin B from A along x"),
+        Quantity("By", "m", "position of pin B from A along y"),
+        Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
+        Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
+        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"),
+        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
+        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
+        Quantity(
+            "power_residual",
+            "1",
+            "sum of the powers of drive, loads, gravity and inertia, relative to the largest of them",
+        ),
+    ]
+    for body in BODIES:
+        found += motion_quantities(body.number, body.role)
+    for pin, (i, j) in PINS.items():
+        found += pin_force_quantities(i, j, pin, LINKS)
+    return found

@@ -1,0 +1,93 @@
+"""Where an inverted slider-crank closes, and how its rocker moves, in closed form, for arrays of designs.
+
+The block's distance from D, between |d − a| and d + a, must exceed the offset e of the rocker's line (see
+`linksweep.physics.inverted_slider_crank`). It equals |e| where tan²(φ/2) = (e² − (d−a)²)/((d+a)² − e²).
+
+For a < d the rocker swings. It turns round where its line touches the crank's circle: sin ψ = (e ∓ a)/d with ψ its
+angle from the frame line, the crank square to it. Between those the crank turns through 180° ± the swing, asin((a +
+e)/d) + asin((a − e)/d). For a > d the rocker turns fully (Whitworth); square to the frame line, it divides the crank's
+turn into 180° ± (asin((d + e)/a) + asin((d − e)/a)).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linksweep.mechanisms.finding import ASSEMBLY, Finding
+
+MOTIONS = ("swings", "turns_fully", "limited")
+"""What the rocker does: as the crank turns, or as it goes back and forth between its limits."""
+
+REVERSALS = ("open_greatest", "open_least", "crossed_greatest", "crossed_least")
+"""By branch, where theta4 is greatest and least."""
+
+TOGGLES = ("toggle", "toggle_mirrored")
+
+
+def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+    """What the lengths alone decide."""
+    e = np.abs(e)
+    whole = e < np.abs(d - a)
+    assembly = np.where(whole, 0, np.where(e < d + a, 1, 2)).astype(np.int8)
+    motion = np.where(whole, np.where(a < d, 0, 1), 2).astype(np.int8)
+    lean = _lean(a, d, e, whole)
+    nearest = np.maximum(np.abs(d - a), e)
+    angle = np.degrees(np.arctan2(np.sqrt((nearest - e) * (nearest + e)), e))
+    return {
+        "assembly": Finding(assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
+        "rocker_motion": Finding(motion, "how the rocker moves", words=MOTIONS),
+        "swing": Finding(np.where(motion == 0, lean, np.nan), "angle through which the rocker swings"),
+        "time_ratio": Finding(
+            (180.0 + lean) / (180.0 - lean),
+            "time of the slow stroke over the quick one at constant omega2 (rocker turning fully: of its half-turns, "
+            "from square to the frame line to square)",
+            "1",
+        ),
+        "transmission_angle_min": Finding(
+            np.where(assembly == 2, np.nan, angle), "smallest acute angle between the line D-B and the normal force"
+        ),
+    }
+
+
+def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Crank angles, which turn with the frame line."""
+    toggle = _toggle(a, d, e)
+    whole = np.abs(e) < np.abs(d - a)
+    start = np.where(whole, 0.0, np.mod(toggle + ground_angle, 360.0))
+    end = start + np.where(whole, 360.0, 360.0 - 2.0 * toggle)
+    toggles = np.mod(np.stack([toggle, -toggle], axis=-1) + ground_angle[..., None], 360.0)
+    reversals = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
+    return {
+        "arc_start": Finding(start[..., None], "crank angle at which the assembled arc starts", along=("arc", ())),
+        "arc_end": Finding(end[..., None], "crank angle at which it ends (may pass 360)", along=("arc", ())),
+        "toggle_angle": Finding(toggles, "line D-B square to the rocker's line", along=("toggle", TOGGLES)),
+        "reversal_angle": Finding(
+            reversals, "crank angle at which the rocker turns round", along=("reversal", REVERSALS)
+        ),
+    }
+
+
+def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """By how much the crank's two parts of a turn differ from 180°; NaN where it does not turn fully."""
+    short, long = np.minimum(a, d), np.maximum(a, d)
+    return np.where(whole, _arcsine(short + e, long) + _arcsine(short - e, long), np.nan)
+
+
+def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
+    """φ in [0, 180] with |DB| = |e|; NaN where there is none."""
+    with np.errstate(invalid="ignore"):
+        near, far = (e - (d - a)) * (e + (d - a)), ((d + a) - e) * ((d + a) + e)
+        return 2.0 * np.degrees(np.arctan2(np.sqrt(near), np.sqrt(far)))
+
+
+def _reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
+    """φ at which the rocker turns round, on a trailing axis; NaN where it does not swing."""
+    ahead, behind = _arcsine(a - e, d), _arcsine(a + e, d)
+    found = np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)
+    return np.where((a + np.abs(e) < d)[..., None], found, np.nan)
+
+
+def _arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """asin(part/whole) [degree] from half angles, without the loss near ±90; NaN beyond."""
+    with np.errstate(invalid="ignore"):
+        return 90.0 - 2.0 * np.degrees(np.arctan2(np.sqrt(whole - part), np.sqrt(whole + part)))

@@ -1,0 +1,167 @@
+"""The loop track: a car on the inside of a vertical loop."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.actions import Form
+from linksweep.mechanisms.bodies import Equation
+from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.loop_track_limits import events, lap, peak_positions
+from linksweep.mechanisms.motion import OverDesigns
+from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.physics import loop_track, planar
+
+UNKNOWNS = ("normal_force", "a_tangential")
+
+
+@dataclass(frozen=True)
+class LoopTrack:
+    """A car, small against the loop, on the inside of a vertical loop; its drive pushes along the track.
+
+    Parameters
+    ----------
+    radius : of the loop [m]
+    mass : of the car [kg]
+
+    Both may be DataArrays of design dims. The index of its results is `theta`, the position on the loop [degree]: 0 at
+    the bottom, counter-clockwise, the way the car goes. It is a place on one lap from the bottom: 390 is 30.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds.
+
+    Notes
+    -----
+    A scene gives `speed`, `thrust` and `profile`. With profile="constant" the car has that speed at every position,
+    while a_tangential is what the forces give there: the statement of document 3, lecture 17, example 17-4. Status is
+    left_track where the track would have to pull. With profile="energy" the speed is that at the bottom and follows
+    work and energy; from where the car first leaves the track, or stalls, there are no values for the rest of the lap.
+
+    a_radial is positive towards the centre. The document prints +v²/R for it where it takes the outward normal as
+    positive; the numbers are right.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> car = ls.LoopTrack(radius=30.0, mass=700.0)
+    >>> scene = ls.Scene(car, speed=100.0, thrust=10_000.0, gravity=(0.0, -9.81))
+    >>> there = ls.sweep(scene, theta2=[30.0])
+    >>> round(float(there.normal_force[0]))
+    239280
+    """
+
+    radius: Number = parameter("length", above=0.0)
+    mass: Number = parameter("mass", above=0.0)
+
+    index: ClassVar[str] = "theta"
+    period: ClassVar[float] = 360.0
+    position: ClassVar[str] = "position on the loop from the bottom, positive counter-clockwise"
+    spot: ClassVar[str] = "position"
+    motion: ClassVar[tuple[str, ...]] = ("speed", "thrust", "profile")
+    defaults: ClassVar[Mapping[str, Any]] = {"thrust": 0.0, "profile": "constant"}
+    profiles: ClassVar[Mapping[str, float]] = {"constant": 0.0, "energy": 1.0}
+    drives: ClassVar[dict[str, str]] = {}
+    links: ClassVar[tuple[str, ...]] = ()
+    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
+    round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
+    round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
+    closes_everywhere: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        refuse(problems(self))
+
+    def parameters(self) -> dict[str, Any]:
+        """The numbers that the physics wires by name."""
+        return {"radius": self.radius, "mass": self.mass}
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """It brings no dimension of its own."""
+        return {}
+
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        """All that can be computed; nothing drives it but the scene's thrust."""
+        return _table()
+
+    def kinematics(self) -> tuple[str, ...]:
+        return ("speed", "a_radial", "a_tangential")
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        return UNKNOWNS
+
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        return ("normal_force",)
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """The 2×2 of document 3, lecture 17, example 17-4: the identity, the right side already solved."""
+        return (
+            Equation("sum F along n (inwards)", {"normal_force": 1.0}, "raw_force"),
+            Equation("sum F along t over m", {"a_tangential": 1.0}, "raw_a_tangential"),
+        )
+
+    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """Nothing can be said of the loop alone."""
+        return ()
+
+    def jumps(self) -> tuple[Number, ...]:
+        return ()
+
+    def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
+        """Where the car leaves the track or stalls [rad], from the bottom."""
+        return ((events, self._numbers(motion)),)
+
+    def driven_findings(self, motion: Mapping[str, Number]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """What becomes of the car in one lap."""
+        return ((lap, self._numbers(motion)),)
+
+    def driven_peaks(self, motion: Mapping[str, Number]) -> OverDesigns:
+        """Where force, speed and acceleration are extreme, in closed form [degree]."""
+        return ((peak_positions, self._numbers(motion)),)
+
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return ("normal_force",)
+
+    def _numbers(self, motion: Mapping[str, Number]) -> tuple[Number, ...]:
+        names = ("entry_speed", "thrust", "gravity_x", "gravity_y", "work_counts")
+        return (self.radius, self.mass, *(motion[name] for name in names))
+
+
+@lru_cache(maxsize=1)
+def _table() -> Table:
+    gated = ("squared_speed", "normal_force", "a_tangential")
+    rows: list[Row | Total] = [
+        Row(loop_track.gravity_on_track, ("gravity_forward", "gravity_inward")),
+        Row(loop_track.squared_speed, ("raw_squared_speed",)),
+        Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),
+        Row(loop_track.tangential_acceleration, ("raw_a_tangential",)),
+        Row(
+            loop_track.status_on_track,
+            ("status",),
+            ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts"),
+        ),
+        Row(loop_track.only_on_track, gated, ("status", "raw_squared_speed", "raw_force", "raw_a_tangential")),
+        Row(loop_track.centripetal, ("a_radial",)),
+        Row(planar.root, ("speed",), ("squared_speed",)),
+        Row(planar.square, ("a_total_squared",), ("a_radial", "a_tangential")),
+        Row(planar.root, ("a_total",), ("a_total_squared",)),
+        Row(loop_track.ground_axes, ("a_total_x", "a_total_y")),
+        Row(planar.direction, ("a_total_angle",), ("a_total_x", "a_total_y")),
+        Row(loop_track.round_trip, ("assembly",)),
+    ]
+    return Table("theta", tuple(rows), tuple(_quantities()))
+
+
+def _quantities() -> list[Quantity]:
+    return [
+        Quantity("speed", "m s-1", "speed of the car along the track, counter-clockwise"),
+        Quantity("a_radial", "m s-2", "acceleration of the car across the track, positive towards the centre"),
+        Quantity("a_tangential", "m s-2", "acceleration of the car along the track, positive counter-clockwise"),
+        Quantity("normal_force", "N", "force of the track on the car, positive towards the centre"),
+        Quantity("a_total", "m s-2", "magnitude of the car's acceleration", squared="a_total_squared"),
+        Quantity("a_total_angle", "degree", "direction of the car's acceleration from x, in (-180, 180]"),
+    ]

@@ -1,0 +1,56 @@
+"""The dyad of a pin, a slider and a pin (RPR): a block on pin B slides along a line that turns about pin D.
+
+With u the direction of the line and n = u⊥ its left normal, the line passes D at the offset e and B lies on it at s:
+
+    w = D→B = s u + e n,    s = ±√(|w|² − e²),    u = (s w − e w⊥)/|w|²         open branch: s > 0, B ahead of D
+
+s² comes from the mechanism in a form that does not cancel. Block and line turn together, ω3 = ω4.
+"""
+
+from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.planar import cross, dot
+
+
+def rpr_close(
+    DBx: Number, DBy: Number, slide_squared: Number, offset: Number, branch_sign: Number
+) -> tuple[Number, Number, Number, Number]:
+    """s, its inverse, and the line's direction u."""
+    root = sqrt(slide_squared)
+    slide, inverse = branch_sign * root, 1.0 / (slide_squared + offset * offset)
+    along, across = slide * inverse, offset * inverse
+    return slide, branch_sign / root, along * DBx + across * DBy, along * DBy - across * DBx
+
+
+def rpr_status(slide_squared: Number, noise: Number) -> Number:
+    """0 ok, 1 cannot assemble, 2 toggle: D→B square to the line, as far as the lengths can tell."""
+    return where(abs(slide_squared) > noise, where(slide_squared > 0.0, 0.0, 1.0), 2.0)
+
+
+def rpr_velocity_ratios(
+    r2x: Number, r2y: Number, DBx: Number, DBy: Number, crank_along: Number, inverse_slide: Number
+) -> tuple[Number, Number]:
+    """ω4/ω2 and s'/ω2, from ω2 × r2 = s' u + ω4 × w: across the line, and along w."""
+    return crank_along * inverse_slide, cross(r2x, r2y, DBx, DBy) * inverse_slide
+
+
+def rpr_accelerations(
+    aBx: Number,
+    aBy: Number,
+    omega4: Number,
+    slide: Number,
+    slide_velocity: Number,
+    inverse_slide: Number,
+    offset: Number,
+    r3x: Number,
+    r3y: Number,
+) -> tuple[Number, Number]:
+    """α4 and s'', from a_B = s'' u + 2 ω4 × s' u (Coriolis) + α4 × w − ω4² w, across the line and along it."""
+    square4 = omega4 * omega4
+    across = cross(r3x, r3y, aBx, aBy) - 2.0 * (slide_velocity * omega4)
+    alpha4 = (across + square4 * offset) * inverse_slide
+    return alpha4, dot(aBx, aBy, r3x, r3y) + alpha4 * offset + square4 * slide
+
+
+def rpr_transmission_angle(slide: Number, offset: Number) -> Number:
+    """Acute angle between D→B and the line's normal [degree]: 90 where B lies on a line through D, 0 at a toggle."""
+    return degrees(atan2(abs(slide), abs(offset)))

@@ -1,0 +1,171 @@
+"""A column of a CSV file as a DataArray over theta2: an indicator diagram, a measured torque.
+
+::
+
+    theta2,P
+    0,11.2
+    5,12.9
+    ...
+
+The first line names the columns; the first column is theta2 [degree], in rising order, over one turn (360) or two
+(720). The last row may close the cycle by repeating the first. In a scene file the column stands in place of a number:
+``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column` may be
+left out where there are but two, and `unit` where the values are in SI units.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.validate import did_you_mean, name_problems, refuse
+from linksweep.scene.units import accepted_unit, quantity, shown
+
+KEYS = ("csv", "column", "unit")
+MOST_SHOWN = 5
+"""Bad cells of a file that a message lists one by one."""
+
+
+class Row(NamedTuple):
+    line: int
+    cells: list[str]
+
+
+class Sample(NamedTuple):
+    line: int
+    angle: float
+    value: float
+
+
+def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
+    """Read the inline table that stands in place of a number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``.
+
+    Parameters
+    ----------
+    table : dict
+        `csv`, the file; `column`, its name in the first line; `unit` of its values.
+    kind : str
+        What is measured: a key of `KINDS`.
+    folder : Path
+        What the file's place is relative to.
+
+    Returns
+    -------
+    DataArray
+        Values [`KINDS[kind].unit`] over theta2 [degree].
+
+    Raises
+    ------
+    ValueError
+        One problem a line, each starting with its key in the table; those of the file with its name and line.
+    """
+    listed = f"; a CSV column has {', '.join(KEYS)}"
+    refuse([f"{key}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
+    unit = _unit(table, kind)
+    if not isinstance(table["csv"], str):
+        raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
+    name, rows = table["csv"], _rows(table["csv"], folder)
+    samples = _samples(name, rows, _column(table, rows[0].cells))
+    refuse(_angle_problems(name, samples))
+    angles = np.array([sample.angle for sample in samples])
+    values = [quantity(sample.value, kind, unit) for sample in samples]
+    return xr.DataArray(values, {"theta2": angles}, "theta2")
+
+
+def _unit(table: dict[str, Any], kind: str) -> str | None:
+    try:
+        return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
+    except ValueError as error:
+        raise ValueError(f"unit = {shown(table['unit'])}: {error}") from None
+
+
+def _rows(name: str, folder: Path) -> list[Row]:
+    """The lines of the file that hold something, with their numbers."""
+    path = folder / name
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*.csv")])
+        raise ValueError(f"csv: {name}: there is no such file in {folder}{near}; give its place from there") from None
+    except OSError as error:
+        raise ValueError(f"csv: {name}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"csv: {name}: is not a text file in UTF-8; save it as one") from None
+    header = next((line for line in text.splitlines() if line.strip()), "")
+    delimiter = max(",;\t", key=header.count)
+    reader = csv.reader(text.splitlines(), delimiter=delimiter)
+    rows = [Row(reader.line_num, [cell.strip() for cell in cells]) for cells in reader if any(map(str.strip, cells))]
+    if not rows or rows[0].cells[0] != "theta2" or len(rows[0].cells) < 2:
+        line, first = (rows[0].line, rows[0].cells) if rows else (1, [])
+        raise ValueError(
+            f"csv: {name}:{line}: its columns are {', '.join(map(shown, first)) or 'none'}: the first line must name "
+            f"them, the first of them theta2 (in degrees), as in theta2,P"
+        )
+    return rows
+
+
+def _column(table: dict[str, Any], header: list[str]) -> int:
+    """Place of the column asked for."""
+    if "column" not in table:
+        listed = ", ".join(header[1:])
+        refuse([] if len(header) == 2 else [f"csv: column is missing; write column = one of {listed}"])
+        return 1
+    refuse(name_problems("column", table["column"], header[1:]))
+    return header.index(table["column"])
+
+
+def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:
+    header, *body = rows
+    found, samples = [], []
+    for line, cells in body:
+        if len(cells) != len(header.cells):
+            found.append(f"csv: {name}:{line}: has {len(cells)} cells, but the first line names {len(header.cells)}")
+            continue
+        angle, value = _number(cells[0]), _number(cells[column])
+        for k, number in {0: angle, column: value}.items():
+            if not math.isfinite(number):
+                comma = ", with a decimal point" if "," in cells[k] else ""
+                found.append(f"csv: {name}:{line}: {header.cells[k]} = {shown(cells[k])}: must be a number{comma}")
+        samples.append(Sample(line, angle, value))
+    more = [f"csv: {name}: and {len(found) - MOST_SHOWN} more lines like these"] if len(found) > MOST_SHOWN else []
+    refuse(found[:MOST_SHOWN] + more)
+    return samples
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
+
+
+def _angle_problems(name: str, samples: list[Sample]) -> list[str]:
+    """Whether the angles rise, and go once or twice all the way round."""
+    if len(samples) < 4:
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
+    angles = np.array([sample.angle for sample in samples])
+    steps = np.diff(angles)
+    if not (steps > 0.0).all():
+        k = int(np.argmin(steps > 0.0))
+        twice = (
+            "stands twice: give each angle once" if steps[k] == 0.0 else "is less than the one before: sort the rows"
+        )
+        return [f"csv: {name}:{samples[k + 1].line}: theta2 = {samples[k + 1].angle:.15g} {twice}"]
+    span = float(angles[-1] - angles[0])
+    period = 360.0 if span <= 360.0 else 720.0
+    if not 0.0 <= period - span <= 1.5 * steps.max() or steps.max() > 0.5 * period:
+        return [
+            f"csv: {name}: its angles run from {angles[0]:.15g} to {angles[-1]:.15g} degrees, steps at most "
+            f"{steps.max():.6g}: they must go round one turn (360) or two (720)"
+        ]
+    if span == period and samples[0].value != samples[-1].value:
+        return [
+            f"csv: {name}:{samples[-1].line}: its values at {angles[0]:.15g} and {angles[-1]:.15g} degrees differ, but "
+            f"they are the same position; make them equal or leave one out"
+        ]
+    return []
