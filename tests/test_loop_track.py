@@ -292,6 +292,10 @@ def test_the_plot_shows_the_force_and_where_it_ends():
     x, y = driven.get_data()
     last = np.flatnonzero(np.isfinite(x))[-1]
     assert np.degrees(np.arctan2(x[last], -y[last])) == pytest.approx(float(cycle.theta[cycle.status == 0][-1]))
+    (level,) = [
+        line for line in ls.plot.loop(ls.sweep(ls.Scene(CAR, speed=12.0))).axes[1].lines if len(line.get_xdata()) == 720
+    ]
+    assert set(level.get_ydata()) == {3360.0}
     with pytest.raises(ValueError, match="several designs, over entry"):
         ls.plot.loop(ls.sweep(study()))
     with pytest.raises(ValueError, match="no normal_force over theta"):

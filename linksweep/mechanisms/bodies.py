@@ -159,3 +159,20 @@ def motion_quantities(k: int, role: str) -> list[Quantity]:
         Quantity(f"aG{k}x", "m s-2", f"acceleration of the {role}'s centre of gravity along x"),
         Quantity(f"aG{k}y", "m s-2", f"acceleration of the {role}'s centre of gravity along y"),
     ]
+
+
+def position_quantities(*pins: str) -> list[Quantity]:
+    said = {"x": "along x", "y": "along y"}
+    return [
+        Quantity(f"{pin}{axis}", "m", f"position of pin {pin} from A {said[axis]}") for pin in pins for axis in "xy"
+    ]
+
+
+def drive_quantities(torque: str, link: str, powers: str = "drive, loads, gravity and inertia") -> list[Quantity]:
+    """The drive's torque and power, and what checks them."""
+    return [
+        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({link}), positive counter-clockwise"),
+        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
+        Quantity("power_residual", "1", f"sum of the powers of {powers}, relative to the largest of them"),
+        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
+    ]

@@ -15,10 +15,12 @@ from linksweep.mechanisms.bodies import (
     Body,
     Equation,
     arm_rows,
+    drive_quantities,
     motion_quantities,
     newton_euler_equations,
     pin_force_quantities,
     pin_force_rows,
+    position_quantities,
 )
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
@@ -26,7 +28,7 @@ from linksweep.mechanisms.four_bar_limits import angles, classes
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.motion import CrankDriven
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import dyad_rrr, four_bar, inertia, planar
+from linksweep.physics import crank_driven, dyad_rrr, four_bar, inertia, planar
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
@@ -189,8 +191,8 @@ def _table(drive: str, loads: tuple[Form, ...]) -> Table:
 
 def _position() -> list[Row | Total]:
     return [
-        Row(four_bar.crank_pin, ("r2x", "r2y")),
-        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
         Row(four_bar.closure_noise, ("low_noise", "high_noise")),
@@ -211,7 +213,7 @@ def _rates() -> list[Row | Total]:
         Row(planar.product, ("omega3",), ("omega2", "ratio3")),
         Row(planar.product, ("omega4",), ("omega2", "ratio4")),
         Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rrr.rrr_accelerations, ("alpha3", "alpha4")),
     ]
 
@@ -224,11 +226,11 @@ def _forces(drive: str) -> list[Row | Total]:
     ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3", "rocker": "ratio4"}
     return [
         *(_crank_driven() if drive == "crank" else _driven_beyond_the_crank(drive)),
-        Row(four_bar.coupler_balance, ("F32x", "F32y")),
-        Row(four_bar.rocker_balance, ("F14x", "F14y")),
-        Row(four_bar.crank_balance, ("F12x", "F12y")),
-        Row(four_bar.work_on_crank, ("work",)),
-        Row(four_bar.balancing_torque, (FourBar.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.coupler_balance, ("F32x", "F32y")),
+        Row(crank_driven.rocker_balance, ("F14x", "F14y")),
+        Row(crank_driven.crank_balance, ("F12x", "F12y")),
+        Row(crank_driven.work_on_crank, ("work",)),
+        Row(crank_driven.balancing_torque, (FourBar.drives[drive],), ("work", ratios[drive])),
     ]
 
 
@@ -243,12 +245,12 @@ def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
     other = {"coupler": "rocker_length", "rocker": "coupler_length"}[drive]
     return [
         Row(planar.opposite, ("moment_r3",), ("N3",)),
-        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
         Row(planar.cross, ("leverage",), (*p[:2], *q[:2])),
         Row(inertia.inverse_cross, ("inverse_leverage",), (*p[:2], *q[:2])),
         Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*p, *q, "inverse_leverage")),
         Row(dyad_rrr.rrr_status, ("closure",)),
-        Row(four_bar.drive_status, ("status",), ("closure", "leverage", "crank_length", other)),
+        Row(crank_driven.drive_status, ("status",), ("closure", "leverage", "crank_length", other)),
     ]
 
 
@@ -262,23 +264,12 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 
 def _quantities(drive: str) -> list[Quantity]:
-    torque = FourBar.drives[drive]
     found = [
+        *position_quantities("B", "C"),
+        *drive_quantities(FourBar.drives[drive], drive),
         Quantity("theta3", "degree", "angle of the coupler B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
-        Quantity("Bx", "m", "position of pin B from A along x"),
-        Quantity("By", "m", "position of pin B from A along y"),
-        Quantity("Cx", "m", "position of pin C from A along x"),
-        Quantity("Cy", "m", "position of pin C from A along y"),
-        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"),
-        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
-        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
-        Quantity(
-            "power_residual",
-            "1",
-            "sum of the powers of drive, loads, gravity and inertia, relative to the largest of them",
-        ),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)

@@ -16,10 +16,12 @@ from linksweep.mechanisms.bodies import (
     Body,
     Equation,
     arm_rows,
+    drive_quantities,
     motion_quantities,
     newton_euler_equations,
     pin_force_quantities,
     pin_force_rows,
+    position_quantities,
 )
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
@@ -27,7 +29,7 @@ from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.motion import CrankDriven
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import dyad_rpr, four_bar, inverted_slider_crank, planar
+from linksweep.physics import crank_driven, dyad_rpr, inverted_slider_crank, planar
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
@@ -200,8 +202,8 @@ def _arms() -> list[Row | Total]:
 
 def _position() -> list[Row | Total]:
     return [
-        Row(four_bar.crank_pin, ("r2x", "r2y")),
-        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
         Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
         Row(inverted_slider_crank.slide_squared, ("slide_squared",)),
         Row(inverted_slider_crank.closure_noise, ("noise",)),
@@ -224,7 +226,7 @@ def _rates() -> list[Row | Total]:
         Row(planar.same, ("omega3",), ("omega4",)),
         Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
         Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rpr.rpr_accelerations, ("alpha4", "slide_acceleration")),
         Row(planar.same, ("alpha3",), ("alpha4",)),
     ]
@@ -242,15 +244,15 @@ def _forces(drive: str) -> list[Row | Total]:
     ratios: dict[str, str | float] = {"crank": 1.0, "rocker": "ratio4"}
     work = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
     return [
-        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
         Row(normal[drive], ("F43n",)),
         Row(planar.opposite, ("T43",), ("N3",)),
         Row(inverted_slider_crank.normal_vector, ("F43x", "F43y"), ("F43n", "r3x", "r3y")),
-        Row(four_bar.coupler_balance, ("F32x", "F32y")),
-        Row(four_bar.rocker_balance, ("F14x", "F14y")),
-        Row(four_bar.crank_balance, ("F12x", "F12y")),
-        Row(four_bar.work_on_crank, ("work",), work),
-        Row(four_bar.balancing_torque, (InvertedSliderCrank.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.coupler_balance, ("F32x", "F32y")),
+        Row(crank_driven.rocker_balance, ("F14x", "F14y")),
+        Row(crank_driven.crank_balance, ("F12x", "F12y")),
+        Row(crank_driven.work_on_crank, ("work",), work),
+        Row(crank_driven.balancing_torque, (InvertedSliderCrank.drives[drive],), ("work", ratios[drive])),
         *_status(drive),
     ]
 
@@ -260,7 +262,7 @@ def _status(drive: str) -> list[Row | Total]:
         return [Row(dyad_rpr.rpr_status, ("status",))]
     return [
         Row(dyad_rpr.rpr_status, ("closure",)),
-        Row(four_bar.drive_status, ("status",), ("closure", "crank_along", "crank_length", 1.0)),
+        Row(crank_driven.drive_status, ("status",), ("closure", "crank_along", "crank_length", 1.0)),
     ]
 
 
@@ -274,26 +276,17 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 
 def _quantities(drive: str) -> list[Quantity]:
-    torque = InvertedSliderCrank.drives[drive]
     found = [
+        *position_quantities("B"),
+        *drive_quantities(InvertedSliderCrank.drives[drive], drive),
         Quantity("theta3", "degree", "angle of the block, the rocker's"),
         Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the line D-B and the normal force on the rocker"),
         Quantity("slide", "m", "position of the block along the rocker's line, from the foot of D on it"),
         Quantity("slide_velocity", "m s-1", "velocity of the block along the rocker's line, relative to the rocker"),
         Quantity("slide_acceleration", "m s-2", "acceleration of the block along the rocker's line, relative to it"),
-        Quantity("Bx", "m", "position of pin B from A along x"),
-        Quantity("By", "m", "position of pin B from A along y"),
         Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
         Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
-        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({drive}), positive counter-clockwise"),
-        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
-        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
-        Quantity(
-            "power_residual",
-            "1",
-            "sum of the powers of drive, loads, gravity and inertia, relative to the largest of them",
-        ),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)

@@ -15,10 +15,12 @@ from linksweep.mechanisms.bodies import (
     Body,
     Equation,
     arm_rows,
+    drive_quantities,
     motion_quantities,
     newton_euler_equations,
     pin_force_quantities,
     pin_force_rows,
+    position_quantities,
 )
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
@@ -26,7 +28,7 @@ from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.motion import CrankDriven
 from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import dyad_rrp, four_bar, planar, slider_crank
+from linksweep.physics import crank_driven, dyad_rrp, planar, slider_crank
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
@@ -206,8 +208,8 @@ def _table(drive: str, loads: tuple[Form, ...]) -> Table:
 
 def _position() -> list[Row | Total]:
     return [
-        Row(four_bar.crank_pin, ("r2x", "r2y")),
-        Row(four_bar.frame_half_angle, ("sin_half", "cos_half")),
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
         Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
         Row(slider_crank.closure_factors, ("low", "high")),
         Row(slider_crank.closure_noise, ("noise",)),
@@ -227,10 +229,10 @@ def _rates() -> list[Row | Total]:
         Row(planar.product, ("omega3",), ("omega2", "ratio3")),
         Row(planar.product, ("v_slider",), ("omega2", "ratio_slider")),
         Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(four_bar.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
-        Row(slider_crank.guide_vector, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
-        Row(slider_crank.guide_vector, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
+        Row(planar.along, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
+        Row(planar.along, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
     ]
 
 
@@ -244,7 +246,7 @@ def _forces(drive: str) -> list[Row | Total]:
     return [
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
         Row(slider_crank.inverse_or_nan, ("inverse_crank_along",), ("crank_along",)),
-        Row(four_bar.moment_on_crank, ("moment_r2",)),
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
         Row(slider_crank.friction_direction, ("direction",)),
         Row(
             slider_crank.guide_force,
@@ -253,11 +255,11 @@ def _forces(drive: str) -> list[Row | Total]:
         ),
         Row(slider_crank.guide_force_in_ground_axes, ("F14x", "F14y")),
         Row(planar.vector_sum, ("F43x", "F43y"), ("F14x", "F14y", "Q4x", "Q4y")),
-        Row(four_bar.coupler_balance, ("F32x", "F32y")),
-        Row(four_bar.crank_balance, ("F12x", "F12y")),
+        Row(crank_driven.coupler_balance, ("F32x", "F32y")),
+        Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(planar.opposite, ("T14",), ("N4",)),
         Row(slider_crank.work_on_crank, ("work",)),
-        Row(four_bar.balancing_torque, (SliderCrank.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.balancing_torque, (SliderCrank.drives[drive],), ("work", ratios[drive])),
         Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
         Total("friction_rhs", ()),
         *_status(drive),
@@ -268,7 +270,9 @@ def _status(drive: str) -> list[Row | Total]:
     closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
     leverage: list[Row | Total] = [Row(planar.same, ("leverage_status",), ("closure",))]
     if drive == "coupler":
-        leverage = [Row(four_bar.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))]
+        leverage = [
+            Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))
+        ]
     return [*closure, *leverage, Row(slider_crank.jammed_status, ("status",), ("leverage_status", "wedging"))]
 
 
@@ -283,29 +287,18 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 
 def _quantities(drive: str) -> list[Quantity]:
-    torque = SliderCrank.drives[drive]
     found = [
+        *position_quantities("B", "C"),
+        *drive_quantities(SliderCrank.drives[drive], drive, "drive, friction, loads, gravity and inertia"),
         Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
         Quantity("x_slider", "m", "position of the slider along the guide, from the foot of A on it"),
         Quantity("v_slider", "m s-1", "velocity of the slider along the guide"),
         Quantity("a_slider", "m s-2", "acceleration of the slider along the guide"),
-        Quantity("Bx", "m", "position of pin B from A along x"),
-        Quantity("By", "m", "position of pin B from A along y"),
-        Quantity("Cx", "m", "position of pin C from A along x"),
-        Quantity("Cy", "m", "position of pin C from A along y"),
-        Quantity(torque, "N m", f"torque of the drive on link {torque[2]}, positive counter-clockwise"),
         Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
         Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
         Quantity("friction_force", "N", "force of the guide on the slider along it"),
         Quantity("friction_power", "W", "power of friction on the slider, never positive"),
-        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
-        Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
-        Quantity(
-            "power_residual",
-            "1",
-            "sum of the powers of drive, friction, loads, gravity and inertia, relative to the largest of them",
-        ),
     ]
     for body in BODIES[:2]:
         found += motion_quantities(body.number, body.role)

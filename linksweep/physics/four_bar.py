@@ -9,25 +9,7 @@ Half angles keep every digit where cos φ would drop them, and lengths subtracte
 change point with equal links. Open or crossed, the mechanism closes while low·high > 0.
 """
 
-import math
-
 from linksweep.physics.arithmetic import NOISE, Number, where
-from linksweep.physics.planar import cross
-
-
-def crank_pin(crank_length: Number, cos2: Number, sin2: Number) -> tuple[Number, Number]:
-    """r2 = A→B."""
-    return crank_length * cos2, crank_length * sin2
-
-
-def frame_half_angle(
-    sin2_half: Number, cos2_half: Number, ground_sin_half: Number, ground_cos_half: Number
-) -> tuple[Number, Number]:
-    """sin and cos of φ/2 = (θ2 − ground angle)/2."""
-    return (
-        sin2_half * ground_cos_half - cos2_half * ground_sin_half,
-        cos2_half * ground_cos_half + sin2_half * ground_sin_half,
-    )
 
 
 def diagonal(
@@ -75,57 +57,3 @@ def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number
     largest_low, least_high = closure_factors(*lengths, 1.0, 0.0)
     partly = where(least_low < 0.0, 1.0, where(least_high < 0.0, 1.0, 0.0))
     return where(largest_low < 0.0, 2.0, where(largest_high < 0.0, 2.0, partly))
-
-
-def crank_pin_acceleration(omega2: Number, alpha2: Number, r2x: Number, r2y: Number) -> tuple[Number, Number]:
-    """a_B = α2 × r2 − ω2² r2."""
-    centripetal = omega2 * omega2
-    return -alpha2 * r2y - centripetal * r2x, alpha2 * r2x - centripetal * r2y
-
-
-def coupler_balance(F43x: Number, F43y: Number, Q3x: Number, Q3y: Number) -> tuple[Number, Number]:
-    """F32, from −F32 + F43 + Q3 = 0."""
-    return F43x + Q3x, F43y + Q3y
-
-
-def rocker_balance(F43x: Number, F43y: Number, Q4x: Number, Q4y: Number) -> tuple[Number, Number]:
-    """F14, from F14 − F43 + Q4 = 0."""
-    return F43x - Q4x, F43y - Q4y
-
-
-def crank_balance(F32x: Number, F32y: Number, Q2x: Number, Q2y: Number) -> tuple[Number, Number]:
-    """F12, from F12 + F32 + Q2 = 0."""
-    return -F32x - Q2x, -F32y - Q2y
-
-
-def moment_on_crank(N2: Number, Q3x: Number, Q3y: Number, r2x: Number, r2y: Number) -> Number:
-    """r2 × F43 where the crank's torques are all known: its moments about A, with F32 = F43 + Q3."""
-    return -N2 - cross(r2x, r2y, Q3x, Q3y)
-
-
-def work_on_crank(
-    N2: Number,
-    N3: Number,
-    N4: Number,
-    Q3x: Number,
-    Q3y: Number,
-    r2x: Number,
-    r2y: Number,
-    ratio3: Number,
-    ratio4: Number,
-) -> Number:
-    """Virtual work per turn of the crank of all loads, weights and inertia forces: no pin force enters."""
-    return N2 + cross(r2x, r2y, Q3x, Q3y) + ratio3 * N3 + ratio4 * N4
-
-
-def balancing_torque(work: Number, ratio: Number) -> Number:
-    """Torque on a link turning `ratio` times as fast as the crank that does the opposite virtual work."""
-    return where(abs(ratio) > 0.0, -work / ratio, math.nan)
-
-
-def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:
-    """The closure's status, or 3 (dead centre) where the driven link stands still and no torque on it can drive.
-
-    The leverage is the cross product of the two other links, of lengths p and q.
-    """
-    return where(abs(leverage) > NOISE * p * q, closure, where(closure > 0.0, closure, 3.0))

@@ -42,11 +42,6 @@ def assembly(crank_length: Number, rod_length: Number, offset: Number) -> Number
     return where(reach + crank_length < 0.0, 0.0, where(reach - crank_length < 0.0, 1.0, 2.0))
 
 
-def guide_vector(along: Number, guide_cos: Number, guide_sin: Number) -> tuple[Number, Number]:
-    """A vector along the guide in ground axes."""
-    return along * guide_cos, along * guide_sin
-
-
 def slider_position(crank_along: Number, rod_along: Number) -> Number:
     """Position of C along the guide, from the foot of A on it."""
     return crank_along + rod_along

@@ -31,7 +31,7 @@ def sweep(
     ----------
     scene : Scene
     theta2 : a count N, for the grid arange(N)·360/N, or any array of angles [degree]; where a load takes two turns, as
-        in a four-stroke engine, the grid is arange(N)·720/N
+        in a four-stroke engine, the grid is arange(N)·720/N. For a car in a loop these are positions, `theta`
     outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine
         unknowns
     solver : "fast" (the 9×9 eliminated by hand) or "dense" (the full 9×9 by LAPACK with partial pivoting, as a check)

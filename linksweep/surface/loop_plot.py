@@ -60,9 +60,10 @@ def loop(ds: xr.Dataset) -> Figure:
 
 
 def _rows(ds: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Positions in order, and the force there."""
-    order = np.argsort(ds[signals.INDEX].values)
-    return ds[signals.INDEX].values[order], ds["normal_force"].values[order]
+    """Positions in order, and the force there; without gravity it is the same everywhere."""
+    angles = ds[signals.INDEX].values
+    order = np.argsort(angles)
+    return angles[order], np.broadcast_to(ds["normal_force"].values, angles.shape)[order]
 
 
 def _force(ax: Axes, ds: xr.Dataset) -> None:
