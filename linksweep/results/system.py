@@ -16,7 +16,7 @@ from linksweep.scene.scene import Scene
 
 
 def system(scene: Scene, theta2: Any) -> xr.Dataset:
-    """The 9×9 Newton–Euler system of a scene, as the textbook prints it.
+    """The square Newton–Euler system of a scene, as the textbook prints it.
 
     Parameters
     ----------
@@ -28,9 +28,17 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     Dataset with `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy
     are in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
 
-    Source: document 2 (ME 470), the matrix of R vectors, with weights and loads on every link added, R_23 read as
-    R_23x. With drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3,
-    lecture 17).
+    Sources, with their misprints mended:
+
+    - Four-bar: document 2 (ME 470), the matrix of R vectors, R_23 read as R_23x, with weights and loads on every link;
+      document 1's matrix is the same with F23, F34 for F32, F43, once the signs of row 3 are turned. With
+      drive="coupler" or "rocker" the torque's column moves to that link's moment row (document 3, lecture 17, where
+      the four-bar's ΣT on link 2 lacks T12 and has a wrong third term).
+    - Slider-crank: document 1's rows, nine columns instead of the ten printed, row 6 with F34 = −F43, the friction row
+      with the sign that its abs() stands for, moments of the crank about its centre of gravity. With drive="coupler"
+      T13 stands on the rod, T12 is known (document 3; its row T14 = 0 is trivial and left out: `T14` comes from sweep).
+    - Inverted slider-crank: the same equations with the slide's normal force F43n and moment T43. The loop: document
+      3's 2×2, example 17-4.
 
     Examples
     --------
