@@ -57,12 +57,13 @@ def status_attributes(meanings: Iterable[str]) -> dict:
 
 def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
     """Labels of the design dims, and every parameter that has design dims, under its path."""
-    return scene.labels | {path: array.variable for path, array in scene.arrays.items() if "theta2" not in array.dims}
+    index = scene.mechanism.index
+    return scene.labels | {path: array for path, array in scene.parameters.items() if index not in array.dims}
 
 
 def cycle_coordinates(scene: Scene) -> dict[str, xr.Variable]:
     """The same, and the parameters that change over the revolution."""
-    return scene.labels | {path: array.variable for path, array in scene.arrays.items()}
+    return scene.labels | scene.parameters
 
 
 def origin_attributes(scene: Scene, command: str) -> dict[str, str]:

@@ -16,6 +16,7 @@ from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.motion import OverDesigns
 from linksweep.mechanisms.validate import (
+    UNITS,
     Number,
     Rule,
     choice_problems,
@@ -165,12 +166,23 @@ class Scene:
     @cached_property
     def arrays(self) -> dict[str, xr.DataArray]:
         """The scene's DataArrays by the path of the parameter that each is."""
-        return {path: value for path, value in _numbers(self) if isinstance(value, xr.DataArray)}
+        return {path: value for path, value, _ in _numbers(self) if isinstance(value, xr.DataArray)}
+
+    @cached_property
+    def parameters(self) -> dict[str, xr.Variable]:
+        """The same as variables that say their unit, without what the user's arrays carry besides."""
+        units = {path: UNITS.get(kind, "") for path, _, kind in _numbers(self)}
+        return {
+            path: xr.Variable(
+                array.dims, array.values.astype(float), {"units": units[path], "long_name": f"parameter {path}"}
+            )
+            for path, array in self.arrays.items()
+        }
 
     @cached_property
     def functions(self) -> dict[str, Any]:
         """The scene's functions of theta2 by path."""
-        return {path: value for path, value in _numbers(self) if callable(value) and not hasattr(value, "dims")}
+        return {path: value for path, value, _ in _numbers(self) if callable(value) and not hasattr(value, "dims")}
 
     @cached_property
     def gas(self) -> dict[str, GasPressure]:
@@ -231,7 +243,7 @@ class Scene:
         """Coordinates of the design dims that have some."""
         found = {dim: xr.Variable(dim, names) for dim, names in self.mechanism.coordinates().items()}
         for array in self.arrays.values():
-            found |= {str(dim): array[dim].variable for dim in array.dims if dim in array.coords}
+            found |= {str(dim): _plain(array[dim].variable) for dim in array.dims if dim in array.coords}
         found.pop(self.mechanism.index, None)
         return found
 
@@ -282,19 +294,32 @@ def _form(field: Field) -> tuple[str, ...] | float:
     return float(field.values) if not field.dims and field.values in (0.0, 1.0) else field.dims
 
 
-def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Every number of a scene with its path, as messages write it."""
+def _plain(variable: xr.Variable) -> xr.Variable:
+    """A coordinate with those of its attributes that every file format takes, and no memory of a file it came from."""
+    kept = {k: v for k, v in variable.attrs.items() if isinstance(v, str | int | float) and not isinstance(v, bool)}
+    return xr.Variable(variable.dims, variable.values, kept)
+
+
+PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
+"""Kinds of the numbers that come in pairs."""
+
+
+def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
+    """Every number of a scene with its path, as messages write it, and its kind ("" where that varies)."""
     for item in fields(owner):
         value, path = getattr(owner, item.name), prefix + item.name
         if "rule" in item.metadata and not is_dataclass(value):
-            yield path, value
+            yield path, value, item.metadata["rule"].kind
         elif item.name == "loads":
             for k, load in enumerate(value, 1):
                 yield from _numbers(load, f"loads[{k}].")
         elif is_dataclass(value):
             yield from _numbers(value, "" if item.name == "mechanism" else path + ".")
         elif isinstance(value, tuple | list):
-            yield from ((f"{path}[{k}]", number) for k, number in enumerate(value, 1))
+            kinds = PAIRS.get(item.name, ("",) * len(value))
+            yield from (
+                (f"{path}[{k}]", number, kind) for k, (number, kind) in enumerate(zip(value, kinds, strict=False), 1)
+            )
 
 
 def _content(value: Any) -> Any:
