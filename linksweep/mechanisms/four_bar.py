@@ -265,11 +265,11 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 def _quantities(drive: str) -> list[Quantity]:
     found = [
-        *position_quantities("B", "C"),
-        *drive_quantities(FourBar.drives[drive], drive),
         Quantity("theta3", "degree", "angle of the coupler B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
+        *position_quantities("B", "C"),
+        *drive_quantities(FourBar.drives[drive], drive),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)

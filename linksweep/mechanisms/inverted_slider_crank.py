@@ -277,8 +277,6 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 def _quantities(drive: str) -> list[Quantity]:
     found = [
-        *position_quantities("B"),
-        *drive_quantities(InvertedSliderCrank.drives[drive], drive),
         Quantity("theta3", "degree", "angle of the block, the rocker's"),
         Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the line D-B and the normal force on the rocker"),
@@ -287,6 +285,8 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("slide_acceleration", "m s-2", "acceleration of the block along the rocker's line, relative to it"),
         Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
         Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
+        *position_quantities("B"),
+        *drive_quantities(InvertedSliderCrank.drives[drive], drive),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)

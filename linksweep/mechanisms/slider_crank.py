@@ -288,8 +288,6 @@ def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 def _quantities(drive: str) -> list[Quantity]:
     found = [
-        *position_quantities("B", "C"),
-        *drive_quantities(SliderCrank.drives[drive], drive, "drive, friction, loads, gravity and inertia"),
         Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
         Quantity("x_slider", "m", "position of the slider along the guide, from the foot of A on it"),
@@ -299,6 +297,8 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
         Quantity("friction_force", "N", "force of the guide on the slider along it"),
         Quantity("friction_power", "W", "power of friction on the slider, never positive"),
+        *position_quantities("B", "C"),
+        *drive_quantities(SliderCrank.drives[drive], drive, "drive, friction, loads, gravity and inertia"),
     ]
     for body in BODIES[:2]:
         found += motion_quantities(body.number, body.role)
