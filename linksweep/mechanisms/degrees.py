@@ -1,4 +1,4 @@
-"""cos and sin of angles in degrees: exact at multiples of 90, as accurate at a million turns as at none."""
+"""Trigonometry in degrees: cos and sin exact at multiples of 90, as accurate at a million turns as at none."""
 
 from __future__ import annotations
 
@@ -19,3 +19,9 @@ def cos_sin(degrees):
         np.choose(quadrant, (sin, cos, -sin, -cos)) + 0.0,
     )
     return values if np.ndim(degrees) else tuple(map(float, values))
+
+
+def arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """asin(part/whole) [degree] from half angles, without the loss near ±90; NaN beyond."""
+    with np.errstate(invalid="ignore"):
+        return 90.0 - 2.0 * np.degrees(np.arctan2(np.sqrt(whole - part), np.sqrt(whole + part)))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from linksweep.mechanisms.degrees import arcsine
 from linksweep.mechanisms.finding import ASSEMBLY, Finding
 
 MOTIONS = ("swings", "turns_fully", "limited")
@@ -70,7 +71,7 @@ def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray
 def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """By how much the crank's two parts of a turn differ from 180°; NaN where it does not turn fully."""
     short, long = np.minimum(a, d), np.maximum(a, d)
-    return np.where(whole, _arcsine(short + e, long) + _arcsine(short - e, long), np.nan)
+    return np.where(whole, arcsine(short + e, long) + arcsine(short - e, long), np.nan)
 
 
 def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
@@ -82,12 +83,6 @@ def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
 
 def _reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
     """φ at which the rocker turns round, on a trailing axis; NaN where it does not swing."""
-    ahead, behind = _arcsine(a - e, d), _arcsine(a + e, d)
+    ahead, behind = arcsine(a - e, d), arcsine(a + e, d)
     found = np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)
     return np.where((a + np.abs(e) < d)[..., None], found, np.nan)
-
-
-def _arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """asin(part/whole) [degree] from half angles, without the loss near ±90; NaN beyond."""
-    with np.errstate(invalid="ignore"):
-        return 90.0 - 2.0 * np.degrees(np.arctan2(np.sqrt(whole - part), np.sqrt(whole + part)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from linksweep.mechanisms.degrees import arcsine
 from linksweep.mechanisms.finding import ASSEMBLY, Finding
 
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
@@ -55,14 +56,8 @@ def wedging(
 
 def _crossings(a: np.ndarray, height: np.ndarray, e: np.ndarray) -> np.ndarray:
     """φ with e − a sin φ = −height (upper) and = height (lower), two of each on a trailing axis; NaN where none."""
-    upper, lower = _arcsine(e + height, a), _arcsine(e - height, a)
+    upper, lower = arcsine(e + height, a), arcsine(e - height, a)
     return np.stack([upper, 180.0 - upper, 180.0 - lower, 360.0 + lower], axis=-1)
-
-
-def _arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """asin(part/whole) [degree] from half angles, without the loss near ±90; NaN beyond."""
-    with np.errstate(invalid="ignore"):
-        return 90.0 - 2.0 * np.degrees(np.arctan2(np.sqrt(whole - part), np.sqrt(whole + part)))
 
 
 def _arcs(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
