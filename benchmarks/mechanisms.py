@@ -23,12 +23,20 @@ def slider_crank(friction: float) -> ls.Scene:
     return ls.Scene(mechanism, GENERAL.omega2, GENERAL.alpha2, (GENERAL.gx, GENERAL.gy))
 
 
+def inverted_slider_crank() -> ls.Scene:
+    """The same crank, its pin in a block that slides along an offset rocker."""
+    bars = scene(GENERAL).mechanism
+    mechanism = ls.InvertedSliderCrank(bars.crank, bars.rocker, GENERAL.d, GENERAL.m3, GENERAL.I3, offset=0.02)
+    return ls.Scene(mechanism, GENERAL.omega2, GENERAL.alpha2, (GENERAL.gx, GENERAL.gy))
+
+
 SCENES = {
     FOUR_BAR: scene(GENERAL),
     "slider-crank": slider_crank(friction=0.0),
     "slider-crank with friction": slider_crank(friction=0.1),
+    "inverted slider-crank": inverted_slider_crank(),
 }
-GOALS = {"slider-crank": 1.0, "slider-crank with friction": 1.5}
+GOALS = {"slider-crank": 1.0, "slider-crank with friction": 1.5, "inverted slider-crank": None}
 
 
 def rows(size: Size) -> list[Row]:

@@ -27,6 +27,13 @@ def slider_crank(length=1.0, mass=1.0, time=1.0):
     return scene(mechanism, "rod", "slider", length, mass, time)
 
 
+def inverted_slider_crank(length=1.0, mass=1.0, time=1.0):
+    crank, rocker = link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass), link(0.3, 0.7, 3e-3, 0.1, -10.0, length, mass)
+    block = {"block_mass": 0.4 * mass, "block_inertia": 1e-4 * mass * length**2}
+    mechanism = ls.InvertedSliderCrank(crank, rocker, 0.2 * length, **block, offset=0.02 * length, ground_angle=15.0)
+    return scene(mechanism, "rocker", "block", length, mass, time)
+
+
 def link(size, weight, about, distance, angle, length, mass):
     return ls.Link(size * length, weight * mass, about * (mass * length**2), distance * length, angle)
 
@@ -41,7 +48,7 @@ def scene(mechanism, pushed, turned, length, mass, time):
 
 QUANTITIES = [
     pytest.param(machine, name, id=f"{machine.__name__}-{name}")
-    for machine in (four_bar, slider_crank)
+    for machine in (four_bar, slider_crank, inverted_slider_crank)
     for name in machine().table.quantity
     if name != "cond"  # as printed it mixes forces and moments
 ]
