@@ -12,7 +12,6 @@
 # ---
 
 # %% [markdown]
-# %% [markdown]
 # # What loads the bearings of this engine: the gas or the inertia?
 #
 # One upright cylinder of half a litre, four strokes, 3000 rpm. The gas presses on the piston once in two revolutions, the

@@ -65,7 +65,10 @@ def largest_lane(work):
 
 
 def parabola_peak(row, angles, period, at):
-    """Vertex of the parabola through a largest sample and its neighbours; the sample itself where there is none."""
+    """Vertex of the parabola through a largest sample and its neighbours; the sample itself where there is none.
+
+    Nor is there one beside a jump or a kink: the curve must bend the same way at both neighbours.
+    """
     n = len(row)
     x, y = angles[at], row[at]
     if n < 3 or (period == 0.0 and (at == 0 or at == n - 1)):
@@ -79,6 +82,8 @@ def parabola_peak(row, angles, period, at):
     bend = fall_before + fall_after
     if not (bend > 0.0 and bend < math.inf):
         return y, x
+    if not (bends_down(row, angles, period, left) and bends_down(row, angles, period, right)):
+        return y, x
     slope = (fall_before * after - fall_after * before) / (before + after)
     shift = 0.5 * slope * (before + after) / bend
     angle = x + shift
@@ -86,6 +91,18 @@ def parabola_peak(row, angles, period, at):
         angle = angle + period if angle < 0.0 else angle
         angle = angle - period if angle >= period else angle
     return y + 0.5 * slope * shift, angle
+
+
+def bends_down(row, angles, period, at):
+    """Whether a sample lies on or above the line through its neighbours; true at an end that has only one."""
+    n = len(row)
+    if period == 0.0 and (at == 0 or at == n - 1):
+        return True
+    left = at - 1 if at > 0 else n - 1
+    right = at + 1 if at < n - 1 else 0
+    before = (angles[at] - angles[left]) + (period if at == 0 else 0.0)
+    after = (angles[right] - angles[at]) + (period if at == n - 1 else 0.0)
+    return (row[at] - row[left]) * after >= (row[right] - row[at]) * before
 
 
 def mean(row, angles, period, work):

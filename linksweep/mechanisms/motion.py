@@ -27,7 +27,7 @@ class CrankDriven:
     motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
     defaults: ClassVar[Mapping[str, Number]] = {"alpha2": 0.0, "drive": "crank"}
     profiles: ClassVar[Mapping[str, float]] = {}
-    round_trip: ClassVar[str] = "whether the mechanism can be assembled all the way round"
+    round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble")
 
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:

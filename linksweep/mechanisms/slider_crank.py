@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
@@ -26,7 +27,7 @@ from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.motion import CrankDriven
-from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging
+from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging, wedging_by_crank
 from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
 from linksweep.physics import crank_driven, dyad_rrp, planar, slider_crank
 
@@ -169,7 +170,14 @@ class SliderCrank(CrankDriven):
         """What can be checked in closed form, and the numbers that each takes."""
         lengths = (self.crank.length, self.rod.length, self.offset)
         turned = (*lengths, self.slide_angle)
-        return (classes, lengths), (angles, turned), (wedging, (*turned, self.friction))
+        return (classes, lengths), (angles, turned)
+
+    def driven_findings(self, motion: Mapping[str, Any]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """Where friction wedges the slider, by the link whose moment equation is free of the drive."""
+        if motion["drive"] == "coupler":
+            return ((wedging_by_crank, (self.slide_angle, self.friction)),)
+        lengths = (self.crank.length, self.rod.length, self.offset)
+        return ((wedging, (*lengths, self.slide_angle, self.friction)),)
 
     def jumps(self) -> tuple[Number, ...]:
         """Dead centres: crank angles [degree] with the rod in line with it; the slider turns round, friction jumps."""

@@ -24,11 +24,9 @@ def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     along = np.sqrt((b - highest) * (b + highest))
     never = assembly == 2
     angle = np.where(never, np.nan, np.degrees(np.arctan2(along, highest)))
-    wedging = np.where(never, np.nan, along / highest)
     return {
         "assembly": Finding(assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
         "transmission_angle_min": Finding(angle, "smallest acute angle between the rod and the guide's normal"),
-        "friction_to_jam": Finding(wedging, "least coefficient of friction that wedges the slider, crank driven", "1"),
     }
 
 
@@ -48,10 +46,28 @@ def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray)
 def wedging(
     a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray
 ) -> dict[str, Finding]:
-    """Crank angles between which friction wedges the slider: about 90° from the guide, and about 270°."""
-    begin = np.mod(_crossings(a, b / np.hypot(1.0, friction), e) + slide_angle[..., None], 360.0)
-    found = np.where(friction[..., None] > 0.0, begin, np.nan)
-    return {"jam_angle": Finding(found, "wedging by friction begins, crank driven", along=("side", SIDES))}
+    """Crank driven: angles about 90° and 270° from the guide between which friction wedges; the least that does."""
+    highest = np.minimum(a + np.abs(e), b)
+    with np.errstate(divide="ignore"):
+        least = np.where(np.abs(e) < a + b, np.sqrt((b - highest) * (b + highest)) / highest, np.nan)
+    return _jams(_crossings(a, b / np.hypot(1.0, friction), e), slide_angle, friction, least)
+
+
+def wedging_by_crank(slide_angle: np.ndarray, friction: np.ndarray) -> dict[str, Finding]:
+    """Rod driven: friction wedges where the crank's own slope to the guide is too steep, with any μ at 90°."""
+    with np.errstate(divide="ignore"):
+        steep = np.degrees(np.arctan(1.0 / friction))
+    begin = np.stack([steep, 180.0 - steep, 180.0 + steep, 360.0 - steep], axis=-1)
+    return _jams(begin, slide_angle, friction, np.zeros(friction.shape))
+
+
+def _jams(begin: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray, least: np.ndarray) -> dict[str, Finding]:
+    turned = np.where(friction[..., None] > 0.0, np.mod(begin + slide_angle[..., None], 360.0), np.nan)
+    said = "friction wedges the slider between upper and upper_beyond, and between lower_beyond and lower"
+    return {
+        "jam_angle": Finding(turned, said, along=("side", SIDES)),
+        "friction_to_jam": Finding(least, "least coefficient of friction that wedges the slider", "1"),
+    }
 
 
 def _crossings(a: np.ndarray, height: np.ndarray, e: np.ndarray) -> np.ndarray:

@@ -28,6 +28,14 @@ def check(scene: Scene) -> xr.Dataset:
     - `toggle_angle` (toggle) [degree]: theta2 at which coupler and rocker lie in one line; NaN where there is none
     - `transmission_angle_min` [degree]: smallest acute angle between coupler and rocker on those arcs
 
+    Of a SliderCrank the same but for `grashof`, and where friction wedges the slider:
+
+    - `jam_angle` (side) [degree]: it does between upper and upper_beyond, and between lower_beyond and lower
+    - `friction_to_jam`: the least coefficient of friction that wedges at all
+
+    Of an InvertedSliderCrank also `rocker_motion` (swings, turns_fully, limited), `swing` and `reversal_angle` [degree]
+    and `time_ratio` of a rocker that swings.
+
     Of a LoopTrack, over the design dims of the scene:
 
     - `lap`: whole, leaves_track, stalls: what becomes of the car in one lap from the bottom
@@ -47,7 +55,8 @@ def check(scene: Scene) -> xr.Dataset:
     require_scene(scene)
     variables: dict[str, xr.Variable] = {}
     labels: dict[str, xr.Variable] = {}
-    for findings, numbers in (*scene.mechanism.findings(), *scene.mechanism.driven_findings(scene.motion)):
+    driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
+    for findings, numbers in (*scene.mechanism.findings(), *driven):
         arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
         for name, found in findings(*(array.values for array in arrays)).items():
             variables[name] = _variable(found, arrays[0].dims)

@@ -41,9 +41,14 @@ def compute(
     return evaluate(request, {**inputs.fields, **given}, grid, inputs.sizes, threads)
 
 
+def surely_ok(scene: Scene) -> bool:
+    """Whether the numbers of the mechanism alone say that every sample is ok."""
+    return scene.drive == "crank" and scene.mechanism.closes_everywhere
+
+
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
     """What happened at each sample, int8; not computed where the lengths alone say that all is well."""
-    if scene.drive == "crank" and scene.mechanism.closes_everywhere:
+    if surely_ok(scene):
         request = plan(scene.table, ("status",), scene.inputs.forms)
         dims = request.dims(request.outputs["status"])
         shape = [len(grid.angles) if dim == grid.dim else scene.inputs.sizes[dim] for dim in dims]

@@ -22,7 +22,7 @@ ASIDE = 1e-7
 
 
 def with_one_sided_limits(
-    scene: Scene, found: dict[Reduction, tuple[Field, Field]], period: float, threads: int | None = None
+    scene: Scene, found: dict[Reduction, tuple[Field, Field]], grid: Grid, threads: int | None = None
 ) -> dict[Reduction, tuple[Field, Field]]:
     """The peaks found on a grid, raised where a one-sided limit at a jump is larger."""
     jumps = scene.jumps()
@@ -30,17 +30,22 @@ def with_one_sided_limits(
     if not jumps or not searched:
         return found
     index = scene.mechanism.index
-    angles = _beside(jumps, period, index)
+    angles = _beside(jumps, scene.period, grid)
     values = _signals_at(scene, angles, [reduction.name for reduction in searched], threads)
     return found | {r: _larger(found[r], values[r.name], angles, index) for r in searched}
 
 
-def _beside(jumps: tuple, period: float, index: str) -> xr.DataArray:
-    """Angles just before and after every jump, in every turn of the period, over (design dims…, index)."""
+def _beside(jumps: tuple, period: float, grid: Grid) -> xr.DataArray:
+    """Angles just before and after every jump, in every turn of the period, over (design dims…, index).
+
+    Of a grid that is no whole period only those inside count; its first angle, which adds nothing, stands for others.
+    """
     # a design whose crank does not turn fully may have none: any angle does for it
     every = [xr.DataArray(jump).fillna(0.0) + 360.0 * turn for jump in jumps for turn in range(round(period / 360.0))]
-    sides = [(angle + aside) % period for angle in every for aside in (-ASIDE, ASIDE)]
-    return xr.concat(xr.broadcast(*sides), index).transpose(..., index)
+    first = 0.0 if grid.period else float(grid.angles[0])
+    sides = [first + (angle + aside - first) % period for angle in every for aside in (-ASIDE, ASIDE)]
+    angles = xr.concat(xr.broadcast(*sides), grid.dim).transpose(..., grid.dim)
+    return angles if grid.period else angles.where(angles <= grid.angles[-1], first)
 
 
 def _signals_at(scene: Scene, angles: xr.DataArray, names: list[str], threads: int | None) -> dict[str, xr.DataArray]:

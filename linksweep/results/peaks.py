@@ -18,13 +18,14 @@ from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.mechanisms.validate import count_problems, name_problems, refuse
-from linksweep.results.compute import requested, require_scene
+from linksweep.results.compute import requested, require_scene, surely_ok
 from linksweep.results.jumps import with_one_sided_limits
 from linksweep.results.record import design_coordinates, flags, provenance, variable
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
-ASSEMBLY = Reduction("largest", "assembly")
+ASSEMBLY = Reduction("largest_sample", "assembly")
+WORST_STATUS = Reduction("largest_sample", "status")
 SUMMARIES = ("mean", "rms")
 
 
@@ -68,11 +69,12 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     grid = in_order(crank_grid(theta2, scene.period, scene.mechanism.index))
     sampled = scene.at(grid)
     wanted = _wanted(scene, names)
-    reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), ASSEMBLY]))
+    checked = [ASSEMBLY] if surely_ok(sampled) else [ASSEMBLY, WORST_STATUS]
+    reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), *checked]))
     signals = tuple(dict.fromkeys(reduction.name for reduction in reductions))
     request = plan(scene.table, signals, sampled.inputs.forms)
     found = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    found = with_one_sided_limits(scene, found, grid.period, threads)
+    found = with_one_sided_limits(scene, found, grid, threads)
     order = tuple(sampled.inputs.sizes)
     variables: dict[str, xr.Variable] = {}
     for quantity, summary, own in wanted:
@@ -80,12 +82,20 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
             name: variable(field, units, said, order)
             for name, field, units, said in _named(quantity, summary, [found[r] for r in own], scene.mechanism.spot)
         }
-    status = variable(found[ASSEMBLY][0], "1", "", order).astype(np.int8)
-    status.attrs = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
-    variables["status"] = status
+    variables["status"] = _status(found, order, flags(scene.mechanism.round_trip, scene.mechanism.round_meanings))
     command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}, theta2={np.size(grid.angles)})"
     coordinates = design_coordinates(sampled)
     return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
+
+
+def _status(found: dict[Reduction, tuple[Field, Field]], order: tuple[str, ...], attributes: dict) -> xr.Variable:
+    """0 where every sample is ok, 1 where some are, 2 where the mechanism cannot be assembled at all."""
+    status = variable(found[ASSEMBLY][0], "1", "", order)
+    if WORST_STATUS in found:
+        not_ok = variable(found[WORST_STATUS][0], "1", "", order) > 0.0
+        status = xr.where(not_ok & (status == 0.0), 1.0, status)
+    dims = tuple(dim for dim in order if dim in status.dims)
+    return xr.Variable(dims, status.transpose(*dims).values.astype(np.int8), attributes)
 
 
 def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:

@@ -58,7 +58,7 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
     blank(both, status)
     variables = {
-        "matrix": xr.Variable(*both["matrix"], {"long_name": "coefficients; arms in m", "units": "1"}),
+        "matrix": xr.Variable(*both["matrix"], {"long_name": "coefficients; in rows of moments, arms in m"}),
         "rhs": xr.Variable(*both["rhs"], {"long_name": "right side; forces in N, moments in N m"}),
         "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
     }

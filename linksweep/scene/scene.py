@@ -100,6 +100,8 @@ class Scene:
         known = " or ".join(kind.__name__ for kind in MECHANISMS)
         found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
         found += problems(self)
+        if isinstance(self.gravity, np.ndarray) and self.gravity.shape == (2,):
+            object.__setattr__(self, "gravity", tuple(self.gravity.tolist()))
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += self._take_motion() if sound else []
         found += self._take_loads()
@@ -308,12 +310,12 @@ def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
     """Every number of a scene with its path, as messages write it, and its kind ("" where that varies)."""
     for item in fields(owner):
         value, path = getattr(owner, item.name), prefix + item.name
-        if "rule" in item.metadata and not is_dataclass(value):
+        if "rule" in item.metadata and (isinstance(value, type) or not is_dataclass(value)):
             yield path, value, item.metadata["rule"].kind
         elif item.name == "loads":
             for k, load in enumerate(value, 1):
                 yield from _numbers(load, f"loads[{k}].")
-        elif is_dataclass(value):
+        elif is_dataclass(value) and not isinstance(value, type):
             yield from _numbers(value, "" if item.name == "mechanism" else path + ".")
         elif isinstance(value, tuple | list):
             kinds = PAIRS.get(item.name, ("",) * len(value))

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from linksweep.mechanisms import LoopTrack
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -133,8 +132,7 @@ def _figure(cycle: xr.Dataset) -> Figure:
     mpl.use("Agg")
     from linksweep.surface import plot
 
-    pages = {LoopTrack.index: plot.loop}
-    return next((page for index, page in pages.items() if index in cycle.dims), plot.cycle)(cycle)
+    return plot.cycle(cycle)
 
 
 def _write(figure: Figure, path: Path) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms import LoopTrack
 from linksweep.surface import signals
 from linksweep.surface.bearing_plot import bearing
 from linksweep.surface.drawings import Drawing, drawing_of_results
@@ -161,6 +162,8 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 def cycle(ds: xr.Dataset) -> Figure:
     """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, torque, that pin's bearing.
 
+    Of a car in a loop, what `loop` plots.
+
     Parameters
     ----------
     ds : Dataset
@@ -186,6 +189,8 @@ def cycle(ds: xr.Dataset) -> Figure:
     import matplotlib.pyplot as plt
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    if LoopTrack.index in ds.dims:
+        return loop(ds)
     signals.require_angles(ds)
     pin, angle = _most_loaded(ds)
     drawing = drawing_of_results(ds)

@@ -60,7 +60,7 @@ def _remarks(found: xr.Dataset) -> list[str]:
         somewhere = "does not stay on the track all the way round: peaks are those of where it is."
         nowhere = "not on the track at any position."
     else:
-        somewhere = "cannot be assembled at every angle: peaks are those of the angles at which it can."
+        somewhere = "cannot be assembled at every angle, or jams: peaks are those of the angles that are ok."
         nowhere = "cannot be assembled at any angle."
     said = [f"{who} {somewhere}"] * bool(partly)
     said += [f"{never} of {status.size} designs {nowhere}"] * bool(never)
@@ -86,7 +86,7 @@ def _summary(finding: xr.DataArray) -> str:
     values = finding.values[np.isfinite(finding.values)]
     unit = {"degree": "°", "1": ""}.get(_unit(finding), f" {_unit(finding)}")
     ends = [f"{value:.6g}{unit}" for value in np.unique(values)]
-    return " to ".join([ends[0], ends[-1]] if len(ends) > 4 else ends) if ends else "none"
+    return (f"{ends[0]} to {ends[-1]}" if len(ends) > 4 else ", ".join(ends)) if ends else "none"
 
 
 def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:
