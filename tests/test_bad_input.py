@@ -308,8 +308,8 @@ def test_a_number_without_unit():
         (lambda: scene(gravity=None), "gravity = None: must be a pair (gx, gy) in m/s^2"),
         (lambda: scene(gravity="0, -9.81"), "gravity = '0, -9.81': must be a pair (gx, gy) in m/s^2"),
         (
-            lambda: scene(gravity=np.array([0, -9.81])),
-            "gravity = array([ 0. , -9.81]): must be a pair (gx, gy) in m/s^2",
+            lambda: scene(gravity=np.array([0, -9.81, 0])),
+            "gravity = array([ 0. , -9.81, 0. ]): must be a pair (gx, gy) in m/s^2",
         ),
         (
             lambda: load(force=-80.0),

@@ -67,3 +67,26 @@ def test_each_design_has_its_own_jumps():
         if float(friction[i]):
             assert float(one.F12_peak) == float(alone.F12_peak)
             assert float(one.F12_peak_at) == float(alone.F12_peak_at)
+
+
+def test_jumps_count_at_given_angles_too():
+    scene = branch("crossed")
+    inside, outside = scene.mechanism.jumps()
+    angles = np.linspace(inside - 10.3, inside + 10.7, 22)
+    found = ls.peaks(scene, of=["friction_force"], theta2=angles)
+    beside = ls.sweep(scene, [inside - 1e-5, inside + 1e-5, *angles], outputs=["friction_force"]).friction_force
+    assert float(found.friction_force_max) == pytest.approx(float(beside.max()), rel=1e-6)
+    assert float(found.friction_force_min) == pytest.approx(float(beside.min()), rel=1e-6)
+    assert not angles[0] <= outside <= angles[-1]
+
+
+def test_a_design_that_jams_says_so():
+    short = replace(ENGINE, rod=replace(ROD, length=0.06), friction=xr.DataArray([0.0, 0.9], dims="mu"))
+    assert ls.peaks(replace(SCENE, mechanism=short)).status.values.tolist() == [0, 1]
+
+
+def test_check_knows_which_link_wedges():
+    scene = replace(SCENE, drive="coupler")
+    status = ls.sweep(scene, 36_000, outputs=["status"]).status
+    jammed = np.flatnonzero(np.diff((status.values >= 3).astype(int)))
+    np.testing.assert_allclose(np.sort(ls.check(scene).jam_angle.values), status.theta2.values[jammed], atol=0.011)

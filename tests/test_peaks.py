@@ -31,7 +31,10 @@ def vertex(x, y) -> tuple[float, float]:
 
 
 def reference(row: np.ndarray, angles: np.ndarray, period: float) -> tuple[float, float]:
-    """The first largest sample, improved by the parabola through its two neighbours where it has both."""
+    """The first largest sample, improved by the parabola through its two neighbours where it has both.
+
+    And where the curve bends down at both of them: nothing is read into a jump or a kink.
+    """
     if np.isnan(row).all():
         return math.nan, math.nan
     n, at = len(row), int(np.nanargmax(row))
@@ -41,6 +44,10 @@ def reference(row: np.ndarray, angles: np.ndarray, period: float) -> tuple[float
     near = [(at - 1) % n, at, (at + 1) % n]
     if np.isnan(row[near]).any():
         return row[at], angles[at]
+    for k in (near[0], near[2]) if n > 4 else ():
+        inside = period > 0.0 or 0 < k < n - 1
+        if inside and not row[(k - 1) % n] - 2 * row[k] + row[(k + 1) % n] <= 0:
+            return row[at], angles[at]
     value, angle = vertex(angles[near] + np.multiply(turns, period), row[near])
     return value, angle % period if period else angle
 
@@ -104,7 +111,15 @@ def test_of_equal_samples_the_first_is_taken():
     row[[7, 71, 135, 200]] = 2.0  # three of them in one lane
     assert reduced(reduce.largest, row, grid(300)) == (2.0, pytest.approx(grid(300)[7]))
     row[6] = 2.0
-    assert reduced(reduce.largest, row, grid(300))[1] == pytest.approx((grid(300)[6] + grid(300)[7]) / 2)
+    assert reduced(reduce.largest, row, grid(300)) == (2.0, pytest.approx(grid(300)[6]))
+
+
+def test_nothing_is_read_into_a_jump():
+    """A step is as high as its samples; so is the saw tooth of an angle that is folded at 180."""
+    step = np.where(grid(360) < 180.0, 5.0, 0.0)
+    assert reduced(reduce.largest, step, grid(360)) == (5.0, 0.0)
+    folded = np.mod(grid(360) + 90.5, 360.0) - 180.0
+    assert reduced(reduce.largest, folded, grid(360)) == (179.5, 269.0)
 
 
 @pytest.mark.parametrize("level", [3.0, 0.0, -3.0, -1e300])

@@ -278,9 +278,10 @@ def test_a_mechanism_that_nobody_has_drawn_is_named(cycles, monkeypatch):
 def test_a_car_in_a_loop_has_no_crank_to_plot_over():
     scene = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, thrust=10_000.0, gravity=GRAVITY)
     ds = ls.sweep(scene, 36)
-    for draw in (plot.forces, plot.torque, plot.bearing, plot.cycle, plot.mechanism):
+    for draw in (plot.forces, plot.torque, plot.bearing, plot.mechanism):
         with pytest.raises(ValueError, match="a LoopTrack cannot be drawn: there are plots of FourBar"):
             draw(ds)
+    assert [ax.get_ylabel() for ax in plot.cycle(ds).axes] == [ax.get_ylabel() for ax in plot.loop(ds).axes]
 
 
 def test_forces_of_a_dataset_that_has_lost_its_scene_are_still_drawn(cycles):

@@ -82,7 +82,7 @@ def parabola_peak(row, angles, period, at):
     bend = fall_before + fall_after
     if not (bend > 0.0 and bend < math.inf):
         return y, x
-    if not (bends_down(row, angles, period, left) and bends_down(row, angles, period, right)):
+    if n > 4 and not (bends_down(row, angles, period, left) and bends_down(row, angles, period, right)):
         return y, x
     slope = (fall_before * after - fall_after * before) / (before + after)
     shift = 0.5 * slope * (before + after) / bend
