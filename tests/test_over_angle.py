@@ -1,5 +1,6 @@
 """What changes over the revolution: constants, DataArrays over theta2 and functions of theta2 say the same."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -273,3 +274,21 @@ def test_messages_of_a_scene_name_the_parameter(parameter, path, job):
 def test_angles_that_are_held_need_no_spline():
     held = over_angles([1.0, 2.0], [30.0, 70.0])
     assert brought(held, [70.0, 30.0, 70.0]).tolist() == [2.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("function", "period"),
+    [
+        (lambda theta2: 5.0 * np.cos(np.radians(theta2) / 2.0), 720.0),
+        (lambda theta2: np.where(np.mod(theta2, 720.0) < 180.0, -900.0, 0.0), 720.0),
+        (lambda theta2: 5.0 * np.cos(np.radians(theta2)), 360.0),
+        (lambda theta2: 5.0, 360.0),
+        (lambda theta2: 0.1 * theta2, 360.0),
+    ],
+)
+def test_a_function_that_takes_two_turns_makes_the_cycle_four_stroke(function, period):
+    scene = replace(ls.example("press"), loads=[ls.Load("rocker", torque=function)])
+    assert scene.period == period
+    cycle = ls.sweep(scene, 8)
+    assert cycle.theta2.values[-1] == period * 7 / 8
+    np.testing.assert_array_equal(cycle["loads[1].torque"], np.broadcast_to(function(cycle.theta2.values), 8))

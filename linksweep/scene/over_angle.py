@@ -11,6 +11,18 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms.validate import Rule, number_problems, refuse
 
 
+def period_of_function(function: Any, turn: float) -> float:
+    """Two turns for a function of theta2 that repeats after two turns but not after one; else one."""
+    angles = turn * np.array([0.11, 0.32, 0.53, 0.74, 0.95])
+    try:
+        first, second, third = (np.asarray(function(angles + k * turn), dtype=float) for k in range(3))
+    except Exception:  # what is wrong with it is said when it is swept
+        return turn
+    near = 1e-9 * np.max(np.abs([first, second, third]), initial=0.0)
+    repeats = np.all(np.abs(third - first) <= near) and not np.all(np.abs(second - first) <= near)
+    return 2.0 * turn if repeats else turn
+
+
 def period_of(value: Any, shortest: float) -> float:
     """Period [degree] of a DataArray over theta2: two turns where its angles span more than one."""
     if "theta2" not in value.coords:

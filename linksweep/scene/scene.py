@@ -31,7 +31,7 @@ from linksweep.scene.actions import ACTIONS, Action
 from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.grid import NAMES as GRID_ROWS
-from linksweep.scene.over_angle import at_angles, period_of
+from linksweep.scene.over_angle import at_angles, period_of, period_of_function
 from linksweep.scene.springs import TorsionSpring
 
 ACCELERATION = Rule("acceleration")
@@ -67,7 +67,8 @@ class Scene:
     A crank takes omega2, alpha2, drive and loads; a loop takes speed, thrust and profile; both take gravity.
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
-    theta2, as a DataArray or a function of theta2 [degree].
+    theta2, as a DataArray or a function of theta2 [degree]. One that takes two turns of the crank to come round makes
+    the cycle a four-stroke one: theta2 then runs to 720.
 
     Raises
     ------
@@ -196,7 +197,8 @@ class Scene:
         """Of the whole cycle [degree]: two turns of the crank where a load, omega2 or alpha2 takes two."""
         turn = self.mechanism.period
         arrays = [array for array in self.arrays.values() if "theta2" in array.dims]
-        return max(turn, *(period_of(array, turn) for array in arrays), *(gas.period for gas in self.gas.values()), 0.0)
+        periods = [period_of(array, turn) for array in arrays] + [gas.period for gas in self.gas.values()]
+        return max([turn, *periods, *(period_of_function(function, turn) for function in self.functions.values())])
 
     def jumps(self) -> tuple[Number, ...]:
         """Crank angles [degree] at which forces jump: friction where a slider turns round, pressure at dead centres,
