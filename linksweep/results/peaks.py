@@ -1,8 +1,7 @@
 """peaks(scene): the worst of each quantity over the revolution, and where it is.
 
-Still the largest sample of a grid, improved by the parabola through it and its neighbours: with 720 angles usually
-good to 1e-3 or better, but a spike near a dead point that fits between two samples is missed. `engine.reduce` is where
-an exact search belongs.
+Still the largest sample of a grid, improved by the parabola through it and its neighbours: an estimate, which misses a
+spike near a dead point that fits between two samples. `engine.reduce` is where an exact search belongs.
 """
 
 from __future__ import annotations
