@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from . import latency, mechanisms, peaks, skipping, threads, unknowns
+from . import exact, latency, mechanisms, missed, peaks, skipping, threads, unknowns
 from .cases import FULL, QUICK, Size
 from .report import Groups, as_json, machine, markdown
 from .timing import Row, can_pin, one_core
@@ -31,6 +31,8 @@ class Group(NamedTuple):
 GROUPS = {
     "unknowns": Group("All nine unknowns, {angles:,} angles, one core", unknowns.rows),
     "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
+    "exact": Group("Exact peaks of many designs, one core", exact.rows),
+    "missed": Group("Peaks that the search misses, {machines:,} random designs of each kind", missed.rows),
     "skipping": Group("What is not asked for is not paid for, {angles:,} angles, one core", skipping.rows),
     "mechanisms": Group("Other mechanisms against the four-bar, {angles:,} angles, one core", mechanisms.rows),
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),

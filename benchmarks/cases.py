@@ -40,13 +40,14 @@ class Size:
     turn: int = 720
     designs: int = 1000
     batch: int = 100
+    machines: int = 250_000
     rounds: int = 15
     burst: float = 0.03
     processes: int = 5
 
 
 FULL = Size()
-QUICK = Size(angles=200, turn=72, designs=6, batch=3, rounds=1, burst=0.0, processes=1)
+QUICK = Size(angles=200, turn=72, designs=6, batch=3, machines=20, rounds=1, burst=0.0, processes=1)
 
 
 def batch(n_designs: int, *names: str) -> Design:

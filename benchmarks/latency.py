@@ -68,7 +68,7 @@ def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
         peers.difference(stacked(sweep), nine),
         peers.difference(stacked(press), stacked(dense_press)),
         peers.difference(stacked(anew), nine),
-        peaks.difference(peaks.columns(found)[None], peers.parabola_peaks(alone, n_angles)),
+        peaks.difference(peaks.columns(found)[None], peers.numpy_lapack_peaks(alone, n_angles)[0]),
     ]
 
 

@@ -148,22 +148,6 @@ def _grid_peaks(nine: Array) -> tuple[Array, Array]:
     return np.take_along_axis(signals, at[..., None], axis=-1)[..., 0], at
 
 
-def parabola_peaks(designs: Design, n_angles: int, chunk: int = 10) -> Array:
-    """The same peaks, each improved by the parabola through it and its neighbours; forces as squares meanwhile."""
-    theta2 = grid(n_angles)
-    chunks = (designs[i : i + chunk] for i in range(0, len(designs.a), chunk))
-    return np.concatenate([_vertices(numpy_lapack(part, theta2)) for part in chunks])
-
-
-def _vertices(nine: Array) -> Array:
-    squares = nine[0:8:2] ** 2 + nine[1:8:2] ** 2
-    signals = np.stack([*squares, nine[8], -nine[8]], axis=-2)
-    at = signals.argmax(axis=-1)[..., None]
-    left, top, right = (np.take_along_axis(np.roll(signals, k, axis=-1), at, axis=-1)[..., 0] for k in (1, 0, -1))
-    top = top + (right - left) ** 2 / (8 * (2 * top - left - right))
-    return np.concatenate([np.sqrt(top[..., :4]), top[..., 4:5], -top[..., 5:]], axis=-1)
-
-
 def difference(found: Array, expected: Array) -> float:
     """Largest difference of two arrays (..., angles), relative to the largest of its own row."""
     return float(np.max(np.abs(found - expected).max(axis=-1) / np.abs(expected).max(axis=-1)))

@@ -15,6 +15,12 @@ from .timing import SHARE, Row, race
 
 ALL_NINE = "nine unknowns stored"
 LOADED = "nine unknowns, two loads"
+EXTRA = {
+    "nine, shaking force and moment": ("Fsx", "Fsy", "Ms"),
+    "nine, reduced inertia and its slope": ("reduced_inertia", "reduced_inertia_slope"),
+    "nine, powers fed and regenerated": ("power_fed", "power_regenerated"),
+}
+"""What a designer asks besides, by the kernel that computes it too."""
 HALF = replace(GENERAL, s=GENERAL.a / 2, p=GENERAL.b / 2, u=GENERAL.c / 2, delta2=0.0, delta3=0.0, delta4=0.0)
 
 KERNELS = {
@@ -26,6 +32,7 @@ KERNELS = {
     "alpha2 = 0": (replace(GENERAL, alpha2=0.0), NINE, ()),
     "centres of gravity mid-link": (HALF, NINE, ()),
     LOADED: (GENERAL, NINE, LOADS),
+    **{name: (GENERAL, (*NINE, *extra), ()) for name, extra in EXTRA.items()},
 }
 """Kernels by what they compute: design, names, loads."""
 
@@ -37,6 +44,7 @@ ROWS = (
     ("alpha2 = 0", ALL_NINE, None),
     ("centres of gravity mid-link", ALL_NINE, None),
     (ALL_NINE, LOADED, None),
+    *((ALL_NINE, name, None) for name in EXTRA),
 )
 
 
@@ -61,8 +69,8 @@ def _kernels(size: Size) -> list[Row]:
 
 
 def _judge(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:
-    """The same by numpy; where loads act, by linksweep's own dense solver, LAPACK too."""
-    if machine.loads:
+    """The same by numpy; where loads act, or more than forces is asked, by linksweep's own dense solver, LAPACK too."""
+    if machine.loads or not {*names} <= {*NINE, "omega3", "omega4"}:
         return stacked(ls.sweep(machine, n_angles, names, solver="dense"), names)
     if names == ("omega3", "omega4"):
         return peers.numpy_rates(design, peers.grid(n_angles))

@@ -10,7 +10,7 @@ x + jy, from A.
     link 2:   F12 + F32 + P2 + m2 g = m2 aG2        and for each, moments about its G = I alpha
     link 3:  -F32 + F43 + P3 + m3 g = m3 aB,        T43 on the block
     link 4:  -F43 + F14 + P4 + m4 g = m4 aG4,       F43 at B, -T43 on the rocker
-    no friction: F43 . r = 0
+    no friction: F43 . r = 0, or what a cylinder between block and rocker gives, which is then the unknown of the drive
 """
 
 from dataclasses import dataclass, replace
@@ -38,14 +38,14 @@ from oracle import (
     random_gravity,
     random_link,
     random_load,
-    torque_name,
     turn,
 )
 from oracle import LINKS as FOUR_BAR_LINKS
 
 LINKS = ("crank", "block", "rocker")
 NUMBER = {"crank": 2, "block": 3, "rocker": 4}
-DRIVES = ("crank", "rocker")
+UNKNOWN = {"crank": "T12", "rocker": "T14", "cylinder": "cylinder_force"}
+DRIVES = tuple(UNKNOWN)
 ACTING = {
     "crank": (("F12", "A", 1), ("F32", "B", 1)),
     "block": (("F32", "B", -1), ("F43", "B", 1)),
@@ -159,16 +159,20 @@ def link_rows(data: InvertedSliderCrankData, move: Motion, name: str) -> tuple[l
 
 
 def system(data: InvertedSliderCrankData, move: Motion) -> tuple[list, list]:
-    """The 10x10; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, T."""
+    """The 10x10; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, and the drive's torque or force."""
     blocks = [link_rows(data, move, name) for name in LINKS]
     smooth, r, column = [mp.mpf(0)] * 10, move.line["rocker"], 2 * FORCES.index("F43")
     smooth[column : column + 2] = r.real, r.imag
+    smooth[DRIVE] = -mp.mpf(data.drive == "cylinder")
     return [row for rows, _ in blocks for row in rows] + [smooth], [b for _, rhs in blocks for b in rhs] + [mp.mpf(0)]
 
 
 def hold(data: InvertedSliderCrankData, move: Motion):
-    """Sine that vanishes where the driven rocker stands still: the crank square to its line."""
-    return abs((move.line["crank"] / move.line["rocker"]).real) if data.drive == "rocker" else mp.mpf(1)
+    """Sine that vanishes where what is driven stands still: a rocker with the crank square to its line, a cylinder with
+    the crank along the ground."""
+    standing = {"rocker": move.line["crank"] / move.line["rocker"] * 1j, "cylinder": move.line["crank"] / move.pin["D"]}
+    across = standing.get(data.drive, mp.mpc(1j))
+    return abs(across.imag / across)
 
 
 def solve(data: InvertedSliderCrankData, theta2) -> dict:
@@ -176,12 +180,12 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
 
     theta3 = theta4, transmission_angle [degree]; omega3 = omega4 [rad/s]; alpha3 = alpha4 [rad/s^2]; slide,
     slide_velocity, slide_acceleration; Bx .. Dy, G2x .. G4y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x ..
-    F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 and T12 or T14 [N m]; power [W]. Raises Unassemblable or
-    DeadPoint.
+    F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 [N m] and T12, T14 [N m] or cylinder_force [N]; power [W].
+    Raises Unassemblable or DeadPoint.
     """
     move, values = motion_and_slide(data, theta2)
     if hold(data, move) < FOLD:
-        raise DeadPoint(f"theta2 = {float(theta2)} degree: the rocker stands still and cannot drive")
+        raise DeadPoint(f"theta2 = {float(theta2)} degree: the {data.drive} stands still and cannot drive")
     solution = linear_solve(*system(data, move))
     forces = {name: mp.mpc(*solution[2 * i : 2 * i + 2]) for i, name in enumerate(FORCES)}
     vectors = {pin: move.pin[pin] for pin in "BD"}
@@ -193,7 +197,8 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
     values["transmission_angle"] = mp.degrees(mp.atan2(abs(values["slide"]), abs(mp.mpf(data.offset))))
     values |= components(vectors | forces) | {name: abs(F) for name, F in forces.items()}
     values |= {"F43n": (forces["F43"] / move.line["rocker"]).imag, "T43": solution[T43]}
-    return values | {torque_name(data): solution[DRIVE], "power": solution[DRIVE] * move.omega[data.drive]}
+    rate = move.omega.get(data.drive, values["slide_velocity"])
+    return values | {UNKNOWN[data.drive]: solution[DRIVE], "power": solution[DRIVE] * rate}
 
 
 def longest(data: InvertedSliderCrankData) -> float:
@@ -203,7 +208,7 @@ def longest(data: InvertedSliderCrankData) -> float:
 def largest_torque(result: dict, data: InvertedSliderCrankData):
     """Largest force times longest length, at least T43 and the drive's own [N m]: the scale of torque errors."""
     scale = largest_force(result) * mp.mpf(longest(data))
-    return max(scale, abs(result["T43"]), abs(result[torque_name(data)]))
+    return max(scale, *(abs(result.get(name, 0)) for name in ("T43", "T12", "T14")))
 
 
 def to_scene(data: InvertedSliderCrankData):

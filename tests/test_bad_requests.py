@@ -123,7 +123,6 @@ BAD_ANGLES = [
     ("720", f"theta2 = '720'{ANGLES}"),
     (True, f"theta2 = True{ANGLES}"),
     (np.True_, f"theta2 = np.True_{ANGLES}"),
-    (None, f"theta2 = None{ANGLES}"),
     ([], f"theta2 = []{ANGLES}"),
     ([[1, 2], [3, 4]], f"theta2 = [[1, 2], [3, 4]]{ANGLES}"),
     ([[1], [2, 3]], f"theta2 = [[1], [2, 3]]{ANGLES}"),

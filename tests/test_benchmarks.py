@@ -17,6 +17,8 @@ JUDGED = {"unknowns", "peaks", "skipping", "mechanisms", "warm", "threads"}
 GOALS = {
     "unknowns": {60, 250, 1.3},
     "peaks": {200, 1.4},
+    "exact": {0.35, 0.7, 1.0, 400},
+    "missed": set(),
     "skipping": {0.35, 0.75},
     "mechanisms": {1.0, 1.5},
     "warm": {1e-3},
@@ -53,7 +55,7 @@ def test_two_threads_give_the_same_bits(rows):
 
 def test_skipped_work_is_counted(rows):
     notes = [row.note.split() for row in rows("skipping") if "operations" in row.note]
-    assert len(notes) == 7
+    assert len(notes) == 10
     assert all(int(ours) < int(full) for ours, _, full, _ in notes)
 
 

@@ -154,9 +154,9 @@ def test_peaks_of_a_batch_are_those_of_the_worst_design(capsys):
     found, peaks = rows(out), ls.peaks(ls.load_scene(scene), of=["F32", "T12", "By", "T12_mean", "theta4"])
     assert found["quantity"] == ["value", "unit", "at theta2", "worst crank"]
     for name, worst in {
-        "F32_peak": peaks.F32_peak.argmax("crank"),
-        "T12_max": peaks.T12_max.argmax("crank"),
-        "T12_min": peaks.T12_min.argmin("crank"),
+        "F32_peak": peaks.F32_peak.where(np.isfinite).argmax("crank"),
+        "T12_max": peaks.T12_max.where(np.isfinite).argmax("crank"),
+        "T12_min": peaks.T12_min.where(np.isfinite).argmin("crank"),
         "By_min": peaks.By_min.argmin("crank"),
         "theta4_max": peaks.theta4_max.argmax("crank"),
     }.items():
@@ -165,9 +165,7 @@ def test_peaks_of_a_batch_are_those_of_the_worst_design(capsys):
         assert found[name][2] == f"{float(peaks[f'{name}_at'].isel(place)):.2f}°"
         assert found[name][3] == f"{float(peaks.crank.isel(place)):.6g}"
     assert found["T12_mean"][-1] == f"{float(peaks.crank[int(abs(peaks.T12_mean).argmax('crank'))]):.6g}"
-    assert (
-        "1 of 5 designs cannot be assembled at every angle, or jams: peaks are those of the angles that are ok." in out
-    )
+    assert "Some quantity of 1 of 5 designs grows without bound at a toggle" in out
     assert "1 of 5 designs cannot be assembled at any angle." in out
 
 

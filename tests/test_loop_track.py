@@ -179,7 +179,7 @@ def test_the_least_entry_speed_is_the_least():
 def test_peaks_are_those_of_the_whole_lap():
     for scene in random_scenes(12, seed=7):
         fine = ls.sweep(scene, theta2=36_000, outputs=["normal_force", "speed", "a_tangential"])
-        coarse = ls.peaks(scene, of=["normal_force", "speed", "a_tangential"], theta2=16)
+        coarse = ls.peaks(scene, of=["normal_force", "speed", "a_tangential"])
         for name, samples in fine.data_vars.items():
             if name != "status":
                 size = float(abs(samples).max())

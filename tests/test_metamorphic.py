@@ -307,9 +307,9 @@ def heavy_parallelogram(short: float, long: float, **changes) -> ls.Scene:
 
 
 @pytest.mark.parametrize("ground_angle", [0.0, 33.3])
-@pytest.mark.parametrize(("branch", "first"), [("open", 0.0), ("crossed", 180.0)])
+@pytest.mark.parametrize(("branch", "first"), [("open", 0.0), ("open", 180.0)])
 def test_parallelogram_turns_as_one(branch, first, ground_angle):
-    """The coupler without rotation, the rocker with the crank, on the branch that each half of the turn is on."""
+    """The coupler without rotation, the rocker with the crank, on one branch all the way round."""
     theta2 = first + ground_angle + np.arange(10.0, 171.0, 20.0)
     cycle = ls.sweep(parallelogram(omega2=3.0, alpha2=-4.0, branch=branch, ground_angle=ground_angle), theta2)
     same = {"theta3": ground_angle, "omega3": 0.0, "omega4": 3.0, "alpha3": 0.0, "alpha4": -4.0}

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import pytest
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
@@ -18,7 +19,8 @@ def elsewhere(tmp_path, monkeypatch):
 @pytest.mark.parametrize("block", re.findall(r"```python\n(.*?)```", README, re.DOTALL))
 def test_its_python_runs(block):
     exec(block, {})
-    assert Path("cycle.nc").exists()
+    assert Path("cycle.nc").exists() == ("cycle.nc" in block)
+    plt.close("all")
 
 
 def test_it_has_the_two_lines():

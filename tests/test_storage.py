@@ -235,7 +235,7 @@ def test_what_is_written_is_flushed_to_the_disk_before_it_is_renamed(old, monkey
         function = getattr(os, name)
         monkeypatch.setattr(os, name, lambda *given, name=name, do=function: done.append(name) or do(*given))
     ls.save(ls.sweep(plain(), 12), path)
-    assert done[:2] == ["fsync", "replace"]
+    assert done[:3] == ["fsync", "fsync", "replace"]  # with its seal, and as a whole
 
 
 def test_a_new_file_has_the_rights_that_any_new_file_has(tmp_path):
@@ -346,7 +346,7 @@ def test_files_that_hold_no_scene_say_so(name, content, message, tmp_path):
 def test_a_file_that_was_cut_says_so(old, part):
     path, content = old
     path.write_bytes(content[: int(len(content) * part)])
-    with pytest.raises(ValueError, match=r"cycle.nc: cannot be read as NetCDF \(NetCDF: .*\); a scene file ends in"):
+    with pytest.raises(ValueError, match=r"cycle.nc: cannot be read as NetCDF \(cut off: .*\); a scene file ends in"):
         ls.load_scene(path)
 
 

@@ -12,9 +12,10 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 SETTINGS = 'error_model="numpy", nogil=True'
 """IEEE division, threads allowed, and no fast-math at all: a contracted or reordered sum would give other bits."""
@@ -24,27 +25,59 @@ SIGNATURE = (
     "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8, f8[::1])"
 )
 
-HEADER = "import math\nfrom math import atan2, sqrt\n\nimport numba\n\n\n"
+SEARCH_SIGNATURE = (
+    "void(i8, i8, i8[::1], f8[::1], i8[::1], f8[::1], i8[::1], "
+    "f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1])"
+)
+
+IMPORTS = "import math\nfrom math import atan2, sqrt\n\nimport numba\n\n\n"
 
 
 @cache
-def compiled(kernel_source: str, reductions_source: str) -> Callable:
-    """The kernel of this source as machine code: from this process, from the user's cache, or compiled now."""
+def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
+    """The kernel of this source as machine code: from this process, from the user's cache, or compiled now.
+
+    The helpers' digest in its text makes it another module when they change.
+    """
+    given = compiled_functions(helpers_source)
+    decorator = f'@numba.njit("{signature}", {SETTINGS}, cache=__spec__ is not None)'
+    text = f"# helpers {_digest(_helpers(helpers_source))}\n{IMPORTS}{decorator}\n{kernel_source}"
+    return _namespace(text, given)["kernel"]
+
+
+def compiled_functions(source: str) -> Mapping[str, Callable]:
+    """A module of plain functions as functions that numba compiles when they are first called, by name."""
+    return _compiled_functions(source, cache_folder())
+
+
+@cache
+def _compiled_functions(source: str, folder: Path | None) -> Mapping[str, Callable]:
+    """The same, once for each folder: a kernel from a folder looks for its helpers under their name there."""
+    made = _namespace(_helpers(source), {}) if source else {}
+    return {name: value for name, value in made.items() if hasattr(value, "py_func")}
+
+
+def _helpers(source: str) -> str:
+    """The module that a module of plain functions becomes."""
+    decorator = f"@numba.njit({SETTINGS}, cache=__spec__ is not None)\ndef "
+    return IMPORTS + source.replace("import math\n", "").replace("\ndef ", "\n" + decorator)
+
+
+def _namespace(text: str, given: Mapping[str, Callable]) -> Mapping[str, Any]:
+    """What a module of this text defines: kept in the user's cache folder if that can be, else made afresh."""
     folder = cache_folder()
-    if folder is not None:
-        path = _stored(folder, _module(kernel_source, reductions_source, cached=True))
-        if path is not None:
-            return _imported(path).kernel
-    namespace: dict = {}
-    exec(_module(kernel_source, reductions_source, cached=False), namespace)
-    return namespace["kernel"]
+    path = folder and _stored(folder, text)
+    if path:
+        return vars(_imported(path, given))
+    namespace = {"__spec__": None, **given}
+    exec(text, namespace)
+    return namespace
 
 
-def _module(kernel_source: str, reductions_source: str, cached: bool) -> str:
-    helper = f"@numba.njit({SETTINGS})\ndef "
-    reductions = reductions_source.replace("import math\n", "").replace("\ndef ", "\n" + helper)
-    option = ", cache=True" if cached else ""
-    return f'{HEADER}{reductions}\n\n@numba.njit("{SIGNATURE}", {SETTINGS}{option})\n{kernel_source}'
+def _digest(text: str) -> str:
+    import numba
+
+    return hashlib.sha256(f"{numba.__version__} {sys.version} {text}".encode()).hexdigest()[:24]
 
 
 def cache_folder() -> Path | None:
@@ -61,10 +94,7 @@ def cache_folder() -> Path | None:
 
 def _stored(folder: Path, text: str) -> Path | None:
     """The module's file, written whole unless it is there as it should be; None if it can't be."""
-    import numba
-
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version} {text}".encode()).hexdigest()
-    path = folder / f"kernel_{digest[:24]}.py"
+    path = folder / f"kernel_{_digest(text)}.py"
     try:
         if not path.exists() or path.read_text() != text:
             handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
@@ -76,11 +106,12 @@ def _stored(folder: Path, text: str) -> Path | None:
     return path
 
 
-def _imported(path: Path):
+def _imported(path: Path, given: Mapping[str, Callable]):
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
         raise ImportError(f"{path}: not a module")
     module = importlib.util.module_from_spec(spec)
+    vars(module).update(given)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)
     return module

@@ -52,23 +52,31 @@ class Fused:
     scratch_rows: int
 
 
-class _Writer:
+class Writer:
     """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what is around all."""
+
+    PLACED: tuple[str, ...] = ()
+    """Inputs per sample that the kernel itself puts into rows of scratch."""
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
         self.plan, self.reductions = plan, reductions
-        late = set(plan.late)
+        late = set(self._late(plan))
         self.nodes = [node for node in plan.nodes if node not in late]
         stored = () if reductions else plan.stored
         self.rows = tuple(node for node in stored if self.per_sample(node))
         self.singles = tuple(node for node in stored if not self.per_sample(node))
         inputs = [node for node in self.nodes if node.operator == "input"]
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
-        self.profiles = tuple(node for node in inputs if self.per_sample(node))
+        self.placed = frozenset(node for node in inputs if node.value in self.PLACED)
+        self.profiles = tuple(node for node in inputs if self.per_sample(node) and node not in self.placed)
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
         self.named = {*self.rows, *self.singles, *self.scratch}
         self.uses = Counter(x for node in self.nodes for x in node.operands)
         self.lines: list[str] = []
+
+    def _late(self, plan: Plan) -> tuple[Node, ...]:
+        """What is left to numpy, after the kernel."""
+        return plan.late
 
     def per_sample(self, node: Node) -> bool:
         return self.plan.index in node.dims
@@ -78,8 +86,8 @@ class _Writer:
         return max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
 
     def _kept_in_scratch(self) -> list[Node]:
-        """Rows that deeper loops read back, and the signals to be reduced."""
-        kept = {self.plan.outputs[reduction.name] for reduction in self.reductions}
+        """Rows that deeper loops read back, the signals to be reduced, and what is placed."""
+        kept = {self.plan.outputs[reduction.name] for reduction in self.reductions} | self.placed
         for node in self.nodes:
             for x in node.operands:
                 if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node):
@@ -126,24 +134,31 @@ class _Writer:
         depth = level + 1
         work = self._work(level, per_sample=True)
         written = [node for node in (*self.rows, *self.scratch) if self.level(node) == level]
+        written = [node for node in written if node not in self.placed]
         if not written:
             return
         met = {*written, *(x for node in work for x in node.operands)}
         read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
+        cells = self._cells(depth, read, written)
+        self.write(depth, "for j in range(samples):")
+        for node in read:
+            self.write(depth + 1, f"{name(node)} = {cells[node, 'read']}")
+        self._assign(work, depth + 1)
+        for node in written:
+            self.write(depth + 1, f"{cells[node, 'written']} = {name(node)}")
+
+    def _cells(self, depth: int, read: list[Node], written: list[Node]) -> dict[tuple[Node, str], str]:
+        """Where sample j of each row is read and written: in views of the rows, taken before the loop."""
         for node in read:
             self.write(depth, f"in{node.position} = {self._source(node)}")
         for node in written:
             self.write(depth, f"out{node.position} = {self._target(node)}")
-        self.write(depth, "for j in range(samples):")
-        for node in read:
-            self.write(depth + 1, f"{name(node)} = in{node.position}[j]")
-        self._assign(work, depth + 1)
-        for node in written:
-            self.write(depth + 1, f"out{node.position}[j] = {name(node)}")
+        cells = {(node, "read"): f"in{node.position}[j]" for node in read}
+        return cells | {(node, "written"): f"out{node.position}[j]" for node in written}
 
     def _source(self, node: Node) -> str:
         """The row that a node's samples are read from; without design loops, the part of it that this call is to do."""
-        if node.operator != "input":
+        if node.operator != "input" or node in self.placed:
             return self._target(node)
         return f"profiles[{self._at('profile', self.profiles.index(node), node)}]" + self._part
 
@@ -203,7 +218,7 @@ def expression(node: Node, inlined: set[Node]) -> str:
 
 def fuse(plan: Plan, reductions: tuple[Reduction, ...] = ()) -> Fused:
     """Write the kernel that stores the plan's outputs, or that reduces them row by row."""
-    writer = _Writer(plan, reductions)
+    writer = Writer(plan, reductions)
     body = writer.kernel()
     return Fused(
         source=body,

@@ -55,11 +55,20 @@ class Total:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """All that a mechanism can compute: rows, the quantities people may ask for, and the sweep's own dimension."""
+    """All that a mechanism can compute: rows, the quantities people may ask for, and the sweep's own dimension.
+
+    The rows `between` take the place of others between samples, where no grid has tabulated anything.
+    """
 
     index: str
     rows: tuple[Row | Total, ...]
     quantities: tuple[Quantity, ...] = field(default=())
+    between: tuple[Row, ...] = field(default=())
+
+    @cached_property
+    def between_samples(self) -> Table:
+        """The same table for samples that are known by half-angle tangents."""
+        return Table(self.index, (*self.rows, *self.between), self.quantities)
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:

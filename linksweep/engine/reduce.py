@@ -7,18 +7,18 @@ WORK = 80
 """Numbers of working memory that a reduction may use: 64 lanes and 16 to fold them into."""
 
 
-def largest(row, angles, period, work):
-    """Largest sample of a row and its angle, improved by the parabola through it and its two neighbours.
-
-    NaN samples are passed over; all NaN gives NaN. `period` joins the row's ends [as `angles`]; 0 leaves them apart.
-    """
-    at = place_of_largest(row, work)
-    return parabola_peak(row, angles, period, at) if at >= 0 else (math.nan, math.nan)
-
-
 def largest_sample(row, angles, period, work):
-    """Largest sample of a row and its angle as they stand: for rows that may jump, where no parabola holds."""
+    """Largest sample of a row and its angle. NaN samples are passed over; all NaN gives NaN."""
     at = place_of_largest(row, work)
+    return (row[at], angles[at]) if at >= 0 else (math.nan, math.nan)
+
+
+def least_sample(row, angles, period, work):
+    """Least sample of a row and its angle, NaN passed over as well."""
+    at = -1
+    for j in range(len(row)):
+        if row[j] == row[j] and (at < 0 or row[j] < row[at]):
+            at = j
     return (row[at], angles[at]) if at >= 0 else (math.nan, math.nan)
 
 
@@ -62,47 +62,6 @@ def largest_lane(work):
     for k in range(64, 80):
         peak = work[k] if work[k] > peak else peak
     return peak
-
-
-def parabola_peak(row, angles, period, at):
-    """Vertex of the parabola through a largest sample and its neighbours; the sample itself where there is none.
-
-    Nor is there one beside a jump or a kink: the curve must bend the same way at both neighbours.
-    """
-    n = len(row)
-    x, y = angles[at], row[at]
-    if n < 3 or (period == 0.0 and (at == 0 or at == n - 1)):
-        return y, x
-    left = at - 1 if at > 0 else n - 1
-    right = at + 1 if at < n - 1 else 0
-    before = (x - angles[left]) + (period if at == 0 else 0.0)
-    after = (angles[right] - x) + (period if at == n - 1 else 0.0)
-    fall_before = (y - row[left]) / before
-    fall_after = (y - row[right]) / after
-    bend = fall_before + fall_after
-    if not (bend > 0.0 and bend < math.inf):
-        return y, x
-    if n > 4 and not (bends_down(row, angles, period, left) and bends_down(row, angles, period, right)):
-        return y, x
-    slope = (fall_before * after - fall_after * before) / (before + after)
-    shift = 0.5 * slope * (before + after) / bend
-    angle = x + shift
-    if period > 0.0:
-        angle = angle + period if angle < 0.0 else angle
-        angle = angle - period if angle >= period else angle
-    return y + 0.5 * slope * shift, angle
-
-
-def bends_down(row, angles, period, at):
-    """Whether a sample lies on or above the line through its neighbours; true at an end that has only one."""
-    n = len(row)
-    if period == 0.0 and (at == 0 or at == n - 1):
-        return True
-    left = at - 1 if at > 0 else n - 1
-    right = at + 1 if at < n - 1 else 0
-    before = (angles[at] - angles[left]) + (period if at == 0 else 0.0)
-    after = (angles[right] - angles[at]) + (period if at == n - 1 else 0.0)
-    return (row[at] - row[left]) * after >= (row[right] - row[at]) * before
 
 
 def mean(row, angles, period, work):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -104,17 +104,19 @@ class Runner:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
             singles = [*self.fused.singles, *(self.plan.outputs[r.name] for r in self.fused.reductions for _ in "12")]
-            rows, alone = self._slots(list(self.fused.rows), sizes), self._slots(singles, sizes)
+            rows, alone = slots(self.plan, list(self.fused.rows), sizes), slots(self.plan, singles, sizes)
             self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), rows, alone)
         return self.layouts[key]
 
-    def _slots(self, nodes: list[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
-        slots, start = [], 0
-        for node in nodes:
-            dims = tuple(dim for dim in self.plan.dims(node) if dim != self.plan.index)
-            slots.append(Slot(node, dims, start, math.prod(sizes[dim] for dim in dims)))
-            start += slots[-1].size
-        return tuple(slots)
+
+def slots(plan: Plan, nodes: list[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
+    """Places for the results of nodes, one after the other."""
+    found, start = [], 0
+    for node in nodes:
+        dims = tuple(dim for dim in plan.dims(node) if dim != plan.index)
+        found.append(Slot(node, dims, start, math.prod(sizes[dim] for dim in dims)))
+        start += found[-1].size
+    return tuple(found)
 
 
 @lru_cache(maxsize=256)
@@ -134,7 +136,7 @@ def evaluate(
     layout = ready.layout(sizes)
     block, single = _execute(ready, layout, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, sizes, grid) for slot in layout.rows}
-    stored |= {slot.node: _single_of(slot, single, sizes) for slot in layout.singles}
+    stored |= {slot.node: single_of(slot, single, sizes) for slot in layout.singles}
     if plan.late:
         values = {node: _align(plan, node.dims, field) for node, field in stored.items()}
         values |= {node: np.asarray(node.value) for node in plan.nodes if node.operator == "constant"}
@@ -163,7 +165,7 @@ def reduce_rows(
     layout = ready.layout(sizes)
     _, single = _execute(ready, layout, inputs, grid, sizes, threads)
     pairs = zip(reductions, layout.singles[::2], layout.singles[1::2], strict=True)
-    return {r: (_single_of(value, single, sizes), _single_of(at, single, sizes)) for r, value, at in pairs}
+    return {r: (single_of(value, single, sizes), single_of(at, single, sizes)) for r, value, at in pairs}
 
 
 # ------------------------------------------------------------------------------------------ interpreted
@@ -195,7 +197,7 @@ def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, n
 
 
 def _align(plan: Plan, dims: frozenset[str], field: Field) -> np.ndarray:
-    shape = iter((values := _ordered(plan, field)).shape)
+    shape = iter((values := ordered(plan, field)).shape)
     return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)]) if dims else values
 
 
@@ -230,7 +232,7 @@ def _execute(
     plan, fused = ready.plan, ready.fused
     kernel = compiled(fused.source, reductions_source() if fused.reductions else "")
     samples = len(grid.angles)
-    parameters, parameter_at = _flat([_ordered(plan, inputs[node.value]) for node in fused.parameters])
+    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
@@ -243,21 +245,27 @@ def _execute(
         )  # fmt: skip
 
     length = int(layout.sizes[0]) if plan.loops else samples
-    workers = min(threads or os.cpu_count() or 1, 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD, length)
-    if workers <= 1 or (fused.reductions and not plan.loops):
-        work(0, length)
-    else:
-        bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(work, bounds[:-1], bounds[1:]))
+    workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD
+    over_threads(work, length, 1 if fused.reductions and not plan.loops else workers, threads)
     return block, single
+
+
+def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:
+    """work(first, last) over 0 … length, by so many workers at most, cores and `threads` allowing."""
+    workers = min(threads or os.cpu_count() or 1, workers, length)
+    if workers <= 1:
+        work(0, length)
+        return
+    bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(work, bounds[:-1], bounds[1:]))
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Mapping[str, int]) -> int:
     return len(grid.angles) * math.prod(sizes[dim] for dim in plan.loops)
 
 
-def _ordered(plan: Plan, field: Field) -> np.ndarray:
+def ordered(plan: Plan, field: Field) -> np.ndarray:
     """A field's values with its loops outermost first and the index last, contiguous."""
     if len(field.dims) < 2:
         return np.ascontiguousarray(field.values, dtype=np.float64)
@@ -266,7 +274,7 @@ def _ordered(plan: Plan, field: Field) -> np.ndarray:
     return np.ascontiguousarray(np.transpose(field.values, order), dtype=np.float64)
 
 
-def _flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     at = np.cumsum([0, *(array.size for array in arrays)], dtype=np.int64)
     return (np.concatenate([array.reshape(-1) for array in arrays]) if arrays else np.empty(0)), at
 
@@ -278,7 +286,7 @@ def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Mapping[str, Field], 
         if node.value in grid.names:
             at.append(grid.names.index(node.value))
         else:
-            blocks.append(_ordered(plan, inputs[node.value]).reshape(-1, len(grid.angles)))
+            blocks.append(ordered(plan, inputs[node.value]).reshape(-1, len(grid.angles)))
             at.append(rows)
             rows += len(blocks[-1])
     table = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
@@ -290,5 +298,5 @@ def _rows_of(slot: Slot, block: np.ndarray, sizes: Mapping[str, int], grid: Grid
     return Field((*slot.dims, grid.dim), block[slot.start : slot.start + slot.size].reshape(shape))
 
 
-def _single_of(slot: Slot, single: np.ndarray, sizes: Mapping[str, int]) -> Field:
+def single_of(slot: Slot, single: np.ndarray, sizes: Mapping[str, int]) -> Field:
     return Field(slot.dims, single[slot.start : slot.start + slot.size].reshape([sizes[dim] for dim in slot.dims]))

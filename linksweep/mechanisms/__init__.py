@@ -7,3 +7,5 @@ from linksweep.mechanisms.slider_crank import SliderCrank
 
 Mechanism = FourBar | SliderCrank | InvertedSliderCrank | LoopTrack
 MECHANISMS = (FourBar, SliderCrank, InvertedSliderCrank, LoopTrack)
+INDICES = tuple(dict.fromkeys(kind.index for kind in MECHANISMS))
+"""What a sweep's own dimension may be called."""

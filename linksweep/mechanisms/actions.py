@@ -26,6 +26,11 @@ class Acting(NamedTuple):
 class Form(Protocol):
     """The form of an action."""
 
+    @property
+    def full_turns(self) -> bool:
+        """Whether it takes a crank that turns fully: elsewhere it has no value, and the status says so."""
+        ...
+
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         """Rows that make its forces, moments and powers."""
         ...
@@ -51,6 +56,7 @@ class LoadForm:
     force: bool
     torque: bool
     link_axes: bool
+    full_turns: bool = False
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         body = bodies[self.link]

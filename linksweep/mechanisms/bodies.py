@@ -7,10 +7,12 @@ it stands).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.physics import inertia, planar
+from linksweep.mechanisms import rounding_error
+from linksweep.physics import crank_driven, inertia, planar, power, reduced_inertia, shaking
 
 Source = str | float
 
@@ -20,6 +22,8 @@ class Body:
     """A moving link of a mechanism: its number and role, and the motion of its first pin.
 
     `steady` marks the link whose rates are given, on a pin that stands: its inertia is then one turning vector.
+    `ratio` is its angular velocity per rate of the crank, `pin_ratio` the velocity of its first pin; their slopes are
+    the derivatives of these to the crank's angle.
     """
 
     number: int
@@ -28,6 +32,10 @@ class Body:
     pin_acceleration: tuple[Source, Source] = (0.0, 0.0)
     steady: bool = False
     pin_position: tuple[Source, Source] = (0.0, 0.0)
+    ratio: Source = 0.0
+    slope: Source = 0.0
+    pin_ratio: tuple[Source, Source] = (0.0, 0.0)
+    pin_slope: tuple[Source, Source] = (0.0, 0.0)
 
     @property
     def axes(self) -> tuple[str, str, str]:
@@ -35,7 +43,7 @@ class Body:
         return f"{self.role}_length", f"r{self.number}x", f"r{self.number}y"
 
     def rows(self) -> list[Row | Total]:
-        return [*self._inertia(), *self._centre()]
+        return [*self._inertia(), *self._centre(), *self._shaking(), *self._reduced()]
 
     def powers(self) -> tuple[str, str]:
         """Names of the powers of its inertia and weight."""
@@ -86,6 +94,91 @@ class Body:
                 ),
             ),
         ]
+
+    def _shaking(self) -> list[Row | Total]:
+        k, role, force = self.number, self.role, (f"S{self.number}x", f"S{self.number}y")
+        centre = (f"G{k}x", f"G{k}y")
+        return [
+            Row(planar.vector_sum, centre, (*self.pin_position, f"rG{k}x", f"rG{k}y")),
+            Row(shaking.inertia_force, force, (f"{role}_mass", f"aG{k}x", f"aG{k}y")),
+            Row(shaking.inertia_moment, (f"S{k}m",), (f"{role}_inertia", f"alpha{k}", *centre, *force)),
+        ]
+
+    def _reduced(self) -> list[Row | Total]:
+        k, centre = self.number, (f"rG{self.number}x", f"rG{self.number}y")
+        u, u_slope = (f"u{k}x", f"u{k}y"), (f"u{k}x_slope", f"u{k}y_slope")
+        moving = (f"{self.role}_mass", f"{self.role}_inertia", *u, self.ratio)
+        return [
+            Row(planar.point_velocity, u, (*self.pin_ratio, self.ratio, *centre)),
+            Row(planar.point_acceleration, u_slope, (*self.pin_slope, self.ratio, self.slope, *centre)),
+            Row(reduced_inertia.reduced_inertia, (f"reduced_inertia{k}",), moving),
+            Row(
+                reduced_inertia.reduced_inertia_slope,
+                (f"reduced_inertia_slope{k}",),
+                (*moving, *u_slope, self.slope),
+            ),
+        ]
+
+
+def crank_pin_slope_rows() -> list[Row | Total]:
+    """How the crank's pin B moves per rate of the crank, and the derivative of that: the motion at ω2 = 1, α2 = 0."""
+    return [
+        Row(planar.point_velocity, ("uBx", "uBy"), (0.0, 0.0, 1.0, "r2x", "r2y")),
+        Row(crank_driven.crank_pin_acceleration, ("uBx_slope", "uBy_slope"), (1.0, 0.0, "r2x", "r2y")),
+    ]
+
+
+def whole_machine_rows(bodies: Iterable[Body], load_powers: Iterable[str]) -> list[Row | Total]:
+    """Of all moving links together: shaking, reduced inertia, powers, and what the drive gives."""
+    bodies = tuple(bodies)
+    sums = {"Fsx": "S{}x", "Fsy": "S{}y", "Ms": "S{}m", "inertia_power": "inertia_power{}"}
+    sums |= {"gravity_power": "gravity_power{}", "reduced_inertia": "reduced_inertia{}"}
+    sums |= {"reduced_inertia_slope": "reduced_inertia_slope{}"}
+    return [
+        *(Total(name, tuple(part.format(body.number) for body in bodies)) for name, part in sums.items()),
+        Total("load_power", tuple(load_powers)),
+        Row(planar.square, ("Fs_squared",), ("Fsx", "Fsy")),
+        Row(planar.root, ("Fs",), ("Fs_squared",)),
+        Row(reduced_inertia.kinetic_energy, ("kinetic_energy",)),
+        Row(planar.opposite, ("reduced_torque",), ("work",)),
+        Row(power.power_fed, ("power_fed",)),
+        Row(power.power_regenerated, ("power_regenerated",)),
+    ]
+
+
+def whole_machine_quantities() -> list[Quantity]:
+    said = "force of the moving links' inertia on the ground (weights and loads not in it)"
+    return [
+        Quantity("Fsx", "N", f"shaking force: {said}, component along x"),
+        Quantity("Fsy", "N", f"shaking force: {said}, component along y"),
+        Quantity("Fs", "N", f"magnitude of the shaking force: {said}", squared="Fs_squared"),
+        Quantity("Ms", "N m", "shaking moment of the moving links' inertia on the ground about A, counter-clockwise"),
+        rounding_error.QUANTITY,
+        Quantity("reduced_inertia", "kg m2", "inertia of all moving links reduced to the crank"),
+        Quantity("reduced_inertia_slope", "kg m2 rad-1", "derivative of the reduced inertia to the crank angle"),
+        Quantity("kinetic_energy", "J", "kinetic energy of all moving links"),
+        Quantity("reduced_torque", "N m", "drive reduced to the crank: its work per radian of the crank"),
+        Quantity("power_fed", "W", "power of the drive where it feeds the mechanism, else 0"),
+        Quantity("power_regenerated", "W", "power that the drive takes back where the mechanism drives it, else 0"),
+        Quantity("inertia_power", "W", "power of all inertia forces, positive when they feed the mechanism"),
+        Quantity("gravity_power", "W", "power of all weights, positive when they feed the mechanism"),
+        Quantity("load_power", "W", "power of all loads, springs and dampers, positive when they feed the mechanism"),
+    ]
+
+
+def on_crank_pin(number: int, role: str, ratio: Source, slope: Source) -> Body:
+    """A link whose first pin is the crank's pin B."""
+    return Body(
+        number,
+        role,
+        ("vBx", "vBy"),
+        ("aBx", "aBy"),
+        pin_position=("r2x", "r2y"),
+        ratio=ratio,
+        slope=slope,
+        pin_ratio=("uBx", "uBy"),
+        pin_slope=("uBx_slope", "uBy_slope"),
+    )
 
 
 @dataclass(frozen=True)
@@ -168,11 +261,15 @@ def position_quantities(*pins: str) -> list[Quantity]:
     ]
 
 
-def drive_quantities(torque: str, link: str, powers: str = "drive, loads, gravity and inertia") -> list[Quantity]:
-    """The drive's torque and power, and what checks them."""
+def drive_torque(name: str, link: str) -> Quantity:
+    return Quantity(name, "N m", f"torque of the drive on link {name[2]} ({link}), positive counter-clockwise")
+
+
+def drive_quantities(unknown: Quantity, powers: str = "drive, loads, gravity and inertia") -> list[Quantity]:
+    """The drive's unknown torque or force, its power, and what checks them."""
     return [
-        Quantity(torque, "N m", f"torque of the drive on link {torque[2]} ({link}), positive counter-clockwise"),
+        unknown,
         Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
         Quantity("power_residual", "1", f"sum of the powers of {powers}, relative to the largest of them"),
-        Quantity("cond", "1", "1-norm condition number of the 9x9 Newton-Euler matrix as printed (arms in m)"),
+        Quantity("cond", "1", "1-norm condition number of the 9x9, rows and columns scaled by powers of two"),
     ]

@@ -10,38 +10,48 @@ import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
+from linksweep.mechanisms import rounding_error
 from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
     arm_rows,
+    crank_pin_slope_rows,
     drive_quantities,
+    drive_torque,
     motion_quantities,
     newton_euler_equations,
+    on_crank_pin,
     pin_force_quantities,
     pin_force_rows,
     position_quantities,
+    whole_machine_quantities,
+    whole_machine_rows,
 )
-from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.four_bar_limits import angles, classes
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import crank_driven, dyad_rrr, four_bar, inertia, planar
+from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
+from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.physics import advantage, crank_driven, dyad_rrr, four_bar, inertia, planar
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
-    Body(2, "crank", steady=True),
-    Body(3, "coupler", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
-    Body(4, "rocker", pin_position=("Dx", "Dy")),
+    Body(2, "crank", steady=True, ratio=1.0),
+    on_crank_pin(3, "coupler", "ratio3", "slope3"),
+    Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
 )
 
 
-@dataclass(frozen=True)
+CHANGE_POINTS = ("folded_miss", "folded_noise", "stretched_miss", "stretched_noise", "parallel")
+
+
+@dataclass(frozen=True, eq=False)
 class FourBar(CrankDriven):
     """A four-bar linkage.
 
@@ -77,6 +87,8 @@ class FourBar(CrankDriven):
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
     links: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
+    pins: ClassVar[Pins] = rotating(PINS)
+    bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
@@ -84,7 +96,7 @@ class FourBar(CrankDriven):
         for role in self.links:
             link = getattr(self, role)
             sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
         found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
         refuse(found)
         refuse(self._never_closes())
@@ -115,19 +127,23 @@ class FourBar(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        ground_cos, ground_sin = cos_sin(self.ground_angle)
-        cos_half, sin_half = cos_sin(0.5 * self.ground_angle)
+        ground_cos, ground_sin, cos_rest, sin_rest = cos_sin_rests(self.ground_angle)
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
             "ground_cos": ground_cos,
             "ground_sin": ground_sin,
-            "ground_cos_half": cos_half,
-            "ground_sin_half": sin_half,
+            "ground_cos_rest": cos_rest,
+            "ground_sin_rest": sin_rest,
             "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
         }
         for role in self.links:
             numbers |= link_parameters(role, getattr(self, role))
         return numbers
+
+    @property
+    def pinch_angle(self) -> Number:
+        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
+        return self.ground_angle
 
     def coordinates(self) -> dict[str, list[str]]:
         """Labels of the dimensions that the mechanism itself brings."""
@@ -135,7 +151,7 @@ class FourBar(CrankDriven):
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
-        return _table(drive, loads)
+        return _table(drive, loads, turned(self.ground_angle))
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
@@ -172,32 +188,50 @@ class FourBar(CrankDriven):
         a, b, c, d = self.lengths().values()
         low = ((d - b) + (c - a)) * ((d - c) + (b - a))
         high = ((b - d) + (c - a)) * (b + c + d + a)
-        margin = 1e-9 * (a + b + c + d) ** 2
-        return bool(np.all(low > margin) and np.all(high > margin))
+        perimeter = a + b + c + d
+        margin = 1e-9 * perimeter * perimeter
+        return bool(in_range(perimeter) and np.all(low > margin) and np.all(high > margin))
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("F12", "F32", "F43", "F14", self.drives[drive])
 
 
 @lru_cache(maxsize=64)
-def _table(drive: str, loads: tuple[Form, ...]) -> Table:
-    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+    rows = [
+        *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *_position(),
+        *_rates(),
+        *_forces(drive),
+        *_power(drive, loads),
+    ]
     rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
     for i, j in PINS.values():
         rows += pin_force_rows(i, j)
+    rows += pin_rows(PINS, BODIES)
+    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("low", "high")]
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
-    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
+    quantities = (*_quantities(drive), *action_quantities(loads))
+    return Table("theta2", tuple(rows), quantities, between_rows("ground_cos", "ground_sin"))
 
 
 def _position() -> list[Row | Total]:
     return [
+        Row(four_bar.pinch_widths, ("pinch_near", "pinch_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
+        Row(four_bar.closure_unit, ("closure_unit",)),
+        Row(four_bar.toggle_cosines, ("folded_cos", "folded_cos_rest", "stretched_cos", "stretched_cos_rest")),
+        Row(four_bar.change_points, CHANGE_POINTS),
+        Row(four_bar.side_of_diagonal, ("side",)),
+        Row(four_bar.crank_on_diagonal, ("r2_dot_BD", "r2_cross_BD")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
         Row(four_bar.closure_noise, ("low_noise", "high_noise")),
         Row(four_bar.assembly, ("assembly",)),
-        Row(dyad_rrr.rrr_close, ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")),
+        Row(
+            dyad_rrr.rrr_close,
+            ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3", "along3", "along4", "across"),
+        ),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
@@ -218,6 +252,19 @@ def _rates() -> list[Row | Total]:
     ]
 
 
+def _transmission() -> list[Row | Total]:
+    """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
+    slopes = ("uBx_slope", "uBy_slope", "ratio3", "ratio4", "r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")
+    radii = ("crank_length", "rocker_length")
+    return [
+        *crank_pin_slope_rows(),
+        Row(dyad_rrr.rrr_accelerations, ("slope3", "slope4"), slopes),
+        Row(planar.same, ("velocity_ratio",), ("ratio4",)),
+        Row(advantage.torque_ratio, ("torque_ratio",)),
+        Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", *radii)),
+    ]
+
+
 def _forces(drive: str) -> list[Row | Total]:
     """F43 from the two moment equations free of the drive's torque; the rest follows by addition.
 
@@ -230,7 +277,7 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(crank_driven.rocker_balance, ("F14x", "F14y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(crank_driven.work_on_crank, ("work",)),
-        Row(crank_driven.balancing_torque, (FourBar.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.balancing_drive, (FourBar.drives[drive],), ("work", ratios[drive])),
     ]
 
 
@@ -269,10 +316,14 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
         *position_quantities("B", "C"),
-        *drive_quantities(FourBar.drives[drive], drive),
+        *drive_quantities(drive_torque(FourBar.drives[drive], drive)),
+        Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
+        Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
+        Quantity("mechanical_advantage", "1", "force of the rocker at C per force on the crank at B, square to them"),
+        *whole_machine_quantities(),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)
     for pin, (i, j) in PINS.items():
         found += pin_force_quantities(i, j, pin, LINKS)
-    return found
+    return found + pin_quantities(PINS, LINKS)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.mechanisms.finding import ASSEMBLY, Finding
-from linksweep.physics.four_bar import closure_factors
+from linksweep.physics.four_bar import extremes
 
 GRASHOF = (
     "crank_rocker",
@@ -69,9 +69,7 @@ class Limits(NamedTuple):
 @np.errstate(over="ignore", invalid="ignore")
 def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
     """Limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
-    low, high = closure_factors(a, b, c, d, 0.0, 0.0)
-    largest_low = ((d - b) + (c + a)) * ((d - c) + (b + a))  # low + 4ad
-    largest_high = ((b - d) + (c + a)) * ((c - a) + (b + d))  # high + 4ad
+    low, largest_low, high, largest_high = extremes(a, b, c, d)
     never = (largest_low < 0.0) | (largest_high < 0.0)
     folded = _where_zero(low, largest_low, never)
     stretched = _where_zero(largest_high, high, never)

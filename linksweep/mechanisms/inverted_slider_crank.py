@@ -2,48 +2,83 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
+from linksweep.mechanisms import rounding_error
 from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
+    Source,
     arm_rows,
+    crank_pin_slope_rows,
     drive_quantities,
+    drive_torque,
     motion_quantities,
     newton_euler_equations,
+    on_crank_pin,
     pin_force_quantities,
     pin_force_rows,
     position_quantities,
+    whole_machine_quantities,
+    whole_machine_rows,
 )
-from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes
+from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import crank_driven, dyad_rpr, inverted_slider_crank, planar
+from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
+from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.physics import advantage, crank_driven, dyad_rpr, inverted_slider_crank, planar
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
 BODIES = (
-    Body(2, "crank", steady=True),
-    Body(3, "block", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
-    Body(4, "rocker", pin_position=("Dx", "Dy")),
+    Body(2, "crank", steady=True, ratio=1.0),
+    on_crank_pin(3, "block", "ratio4", "slope4"),
+    Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
 )
 BLOCK = {"block_cg_x": 0.0, "block_cg_y": 0.0, "block_length": 1.0}
 """The block as a body with its centre of gravity on its pin, its axes along and across the rocker's line."""
+SLIDE_FORCES = {
+    "F43n": ((-1.0, "r3y"), (1.0, "r3x"), (1.0, "normal_arm")),
+    "cylinder_force": ((1.0, "r3x"), (1.0, "r3y"), (1.0, "cylinder_arm")),
+}
+"""Of forces on the block, along (r3x, r3y) or across: x, y, and the moment about the rocker's centre of gravity."""
 
 
-@dataclass(frozen=True)
+class Drive(NamedTuple):
+    """A way to drive: its unknown; the rate of what it drives, and that per rate of the crank; the leverage that
+    vanishes where this stands still, and the two lengths whose product it is at most."""
+
+    unknown: Quantity
+    rate: str
+    ratio: Source
+    leverage: tuple[Source, ...] = ()
+
+
+DRIVES = {
+    "crank": Drive(drive_torque("T12", "crank"), "omega2", 1.0),
+    "rocker": Drive(drive_torque("T14", "rocker"), "omega4", "ratio4", ("crank_along", "crank_length", 1.0)),
+    "cylinder": Drive(
+        Quantity("cylinder_force", "N", "force of the cylinder on the block along the line, positive as slide"),
+        "slide_velocity",
+        "ratio_slide",
+        ("slide_leverage", "crank_length", "ground_length"),
+    ),
+}
+
+
+@dataclass(frozen=True, eq=False)
 class InvertedSliderCrank(CrankDriven):
     """An inverted slider-crank: a shaper's quick-return, Whitworth's, a cylinder-driven rocker.
 
@@ -72,12 +107,27 @@ class InvertedSliderCrank(CrankDriven):
     The contact without friction of rocker and block is a normal force F43n through B and a moment T43. Of the pin
     forces it takes the place of F43x, F43y in the nine unknowns; those are given besides.
 
+    With drive="cylinder" the rocker is the barrel and the block the end of the rod: the unknown is the cylinder's force
+    `cylinder_force` on the block along the rocker's line, positive in the direction of slide (branch="open": positive
+    pushes B away from D), the opposite on the rocker. F43x, F43y are then all that the barrel does to the rod, the
+    cylinder's force and the side load F43n, T43 of its bushes; torques on crank and rocker are known loads. At the dead
+    centres, with the crank in line with A-D, the cylinder cannot drive.
+
     Examples
     --------
     >>> import linksweep as ls
     >>> crank, rocker = ls.Disk(0.12, 0.2, 0.03, 7800), ls.Link(0.7, 18.0, 0.8, cg_distance=0.35)
     >>> ls.InvertedSliderCrank(crank, rocker, ground=0.36, block_mass=1.5).branch
     'open'
+
+    A tipper: its body, 4 t about the hinge A, is raised by a cylinder between the frame at D and the body at B.
+
+    >>> body, barrel = ls.Link(1.8, 4000.0, 3000.0, cg_distance=2.2, cg_angle=10.0), ls.Link(1.5, 90.0, 15.0, 0.5)
+    >>> tipper = ls.InvertedSliderCrank(body, barrel, ground=1.6, ground_angle=-25.0, block_mass=40.0)
+    >>> scene = ls.Scene(tipper, omega2=0.05, gravity=(0.0, -9.81), drive="cylinder")
+    >>> lift = ls.sweep(scene, theta2=range(51))
+    >>> lift.cylinder_force.units, round(float(lift.cylinder_force[0]), -3)
+    ('N', 54000.0)
     """
 
     crank: Link | Bar | Disk
@@ -89,8 +139,10 @@ class InvertedSliderCrank(CrankDriven):
     branch: str = "open"
     ground_angle: Number = parameter("angle", 0.0)
 
-    drives: ClassVar[dict[str, str]] = {"crank": "T12", "rocker": "T14"}
+    drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
     links: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
+    pins: ClassVar[Pins] = rotating(PINS)
+    bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
@@ -98,7 +150,7 @@ class InvertedSliderCrank(CrankDriven):
         for role in ("crank", "rocker"):
             link = getattr(self, role)
             sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
         found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
         refuse(found)
         refuse(self._never_closes())
@@ -118,14 +170,13 @@ class InvertedSliderCrank(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        ground_cos, ground_sin = cos_sin(self.ground_angle)
-        cos_half, sin_half = cos_sin(0.5 * self.ground_angle)
+        ground_cos, ground_sin, cos_rest, sin_rest = cos_sin_rests(self.ground_angle)
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
             "ground_cos": ground_cos,
             "ground_sin": ground_sin,
-            "ground_cos_half": cos_half,
-            "ground_sin_half": sin_half,
+            "ground_cos_rest": cos_rest,
+            "ground_sin_rest": sin_rest,
             "offset": self.offset,
             "block_mass": self.block_mass,
             "block_inertia": self.block_inertia,
@@ -133,13 +184,18 @@ class InvertedSliderCrank(CrankDriven):
         }
         return numbers | BLOCK | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
 
+    @property
+    def pinch_angle(self) -> Number:
+        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
+        return self.ground_angle
+
     def coordinates(self) -> dict[str, list[str]]:
         """Labels of the dimensions that the mechanism itself brings."""
         return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
-        return _table(drive, loads)
+        return _table(drive, loads, turned(self.ground_angle))
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta4", "omega4", "alpha4", "slide", "slide_velocity", "slide_acceleration")
@@ -153,19 +209,26 @@ class InvertedSliderCrank(CrankDriven):
         return (*self.unknowns(drive), "F43x", "F43y")
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        """The 9×9: the rows of document 2 (ME 470), with n = (−r3y, r3x) across the line of sliding."""
+        """The 9×9: the rows of document 2 (ME 470), the slide's forces along and across its line (r3x, r3y)."""
         torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
-        x3, y3, m3 = newton_euler_equations(3, {"F32": (-1.0, "R23")}, "T43")
-        x4, y4, m4 = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque["rocker"])
-        x3.coefficients["F43n"], y3.coefficients["F43n"] = (-1.0, "r3y"), (1.0, "r3x")
-        x4.coefficients["F43n"], y4.coefficients["F43n"] = (1.0, "r3y"), (-1.0, "r3x")
-        m4.coefficients.update(F43n=(-1.0, "contact_arm"), T43=-1.0)
         crank = newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"])
-        return (*crank, x3, y3, m3, x4, y4, m4)
+        block = newton_euler_equations(3, {"F32": (-1.0, "R23")}, "T43")
+        rocker = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque["rocker"])
+        rocker[2].coefficients["T43"] = -1.0
+        for force in (name for name in self.unknowns(drive) if name in SLIDE_FORCES):
+            x, y, moment = SLIDE_FORCES[force]
+            block[0].coefficients[force], block[1].coefficients[force] = x, y  # through B, its centre of gravity
+            for row, (factor, name) in zip(rocker, (x, y, moment), strict=True):
+                row.coefficients[force] = (-factor, name)
+        return (*crank, *block, *rocker)
 
     def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
         """What can be checked in closed form, and the numbers that each takes."""
         return (classes, self.lengths()), (angles, (*self.lengths(), self.ground_angle))
+
+    def driven_findings(self, motion: Mapping[str, Any]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+        """The dead centres of a cylinder; a driven rocker's are where it turns round."""
+        return ((dead_centres, (*self.lengths(), self.ground_angle)),) if motion["drive"] == "cylinder" else ()
 
     def jumps(self) -> tuple[Number, ...]:
         """Crank angles at which a force may jump [degree]: none."""
@@ -175,20 +238,29 @@ class InvertedSliderCrank(CrankDriven):
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""
         a, d, e = self.lengths()
-        return bool(np.all(abs(d - a) - abs(e) > 1e-9 * (a + d)))
+        return bool(in_range(a) and in_range(d) and np.all(abs(d - a) - abs(e) > 1e-9 * (a + d)))
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("F12", "F32", "F43", "F14", "T43", self.drives[drive])
 
 
 @lru_cache(maxsize=64)
-def _table(drive: str, loads: tuple[Form, ...]) -> Table:
-    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+    rows = [
+        *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *_position(),
+        *_rates(),
+        *_forces(drive),
+        *_power(drive, loads),
+    ]
     rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
     for i, j in PINS.values():
         rows += pin_force_rows(i, j)
+    rows += pin_rows(PINS, BODIES)
+    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("slide_squared")]
     rows += [*arm_rows(2, "R12", "R32"), *_arms()]
-    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
+    quantities = (*_quantities(drive), *action_quantities(loads))
+    return Table("theta2", tuple(rows), quantities, between_rows("ground_cos", "ground_sin"))
 
 
 def _arms() -> list[Row | Total]:
@@ -196,16 +268,19 @@ def _arms() -> list[Row | Total]:
     return [
         Row(planar.difference, ("R23x", "R23y"), (0.0, 0.0, "rG3x", "rG3y")),
         Row(planar.difference, ("R14x", "R14y"), (0.0, 0.0, "rG4x", "rG4y")),
-        Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
+        Row(inverted_slider_crank.arms_about_rocker_centre, ("normal_arm", "cylinder_arm")),
     ]
 
 
 def _position() -> list[Row | Total]:
     return [
+        Row(inverted_slider_crank.pinch_width, ("pinch_near",)),
+        Row(planar.same, ("pinch_far",), (1.0,)),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
+        Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_rest")),
         Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
         Row(inverted_slider_crank.slide_squared, ("slide_squared",)),
+        Row(inverted_slider_crank.slide_leverage, ("slide_leverage",)),
         Row(inverted_slider_crank.closure_noise, ("noise",)),
         Row(inverted_slider_crank.assembly, ("assembly",)),
         Row(dyad_rpr.rpr_close, ("slide", "inverse_slide", "r3x", "r3y")),
@@ -232,45 +307,60 @@ def _rates() -> list[Row | Total]:
     ]
 
 
-def _forces(drive: str) -> list[Row | Total]:
-    """The contact's normal force from the moment equations free of the drive; the rest follows by addition.
+def _transmission() -> list[Row | Total]:
+    """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
+    line = ("ratio4", "slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
+    return [
+        *crank_pin_slope_rows(),
+        Row(dyad_rpr.rpr_accelerations, ("slope4", "slope_slide"), ("uBx_slope", "uBy_slope", *line)),
+        Row(planar.same, ("velocity_ratio",), ("ratio4",)),
+        Row(advantage.torque_ratio, ("torque_ratio",)),
+    ]
 
-    The torque comes from virtual work, in which block and rocker turn together.
+
+def _forces(drive: str) -> list[Row | Total]:
+    """The contact's normal force from the moment equations free of the drive's torque; the rest follows by addition.
+
+    Torque or force of the drive come from virtual work, in which block and rocker turn together.
     """
-    normal: dict[str, Callable] = {
-        "crank": inverted_slider_crank.normal_force_on_block,
-        "rocker": inverted_slider_crank.normal_force_from_crank,
-    }
-    ratios: dict[str, str | float] = {"crank": 1.0, "rocker": "ratio4"}
+    unknown, _, ratio, _ = DRIVES[drive]
     work = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
+    along_line = unknown.name if drive == "cylinder" else 0.0
     return [
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
-        Row(normal[drive], ("F43n",)),
+        _normal_force(drive, along_line),
         Row(planar.opposite, ("T43",), ("N3",)),
-        Row(inverted_slider_crank.normal_vector, ("F43x", "F43y"), ("F43n", "r3x", "r3y")),
+        Row(planar.turned, ("F43x", "F43y"), (along_line, "F43n", 1.0, "r3x", "r3y")),
         Row(crank_driven.coupler_balance, ("F32x", "F32y")),
         Row(crank_driven.rocker_balance, ("F14x", "F14y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(crank_driven.work_on_crank, ("work",), work),
-        Row(crank_driven.balancing_torque, (InvertedSliderCrank.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.balancing_drive, (unknown.name,), ("work", ratio)),
         *_status(drive),
     ]
 
 
+def _normal_force(drive: str, along_line: Source) -> Row:
+    if drive == "rocker":
+        return Row(inverted_slider_crank.normal_force_from_crank, ("F43n",))
+    moments = ("N3", "N4", "inverse_slide", "offset", along_line)
+    return Row(inverted_slider_crank.normal_force_on_block, ("F43n",), moments)
+
+
 def _status(drive: str) -> list[Row | Total]:
-    if drive == "crank":
+    leverage = DRIVES[drive].leverage
+    if not leverage:
         return [Row(dyad_rpr.rpr_status, ("status",))]
     return [
         Row(dyad_rpr.rpr_status, ("closure",)),
-        Row(crank_driven.drive_status, ("status",), ("closure", "crank_along", "crank_length", 1.0)),
+        Row(crank_driven.drive_status, ("status",), ("closure", *leverage)),
     ]
 
 
 def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
-    driven = {"crank": "omega2", "rocker": "omega4"}[drive]
     terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
     return [
-        Row(planar.product, ("power",), (InvertedSliderCrank.drives[drive], driven)),
+        Row(planar.product, ("power",), (DRIVES[drive].unknown.name, DRIVES[drive].rate)),
         Row(planar.relative_sum, ("power_residual",), ("power", *terms)),
     ]
 
@@ -286,10 +376,13 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
         Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
         *position_quantities("B"),
-        *drive_quantities(InvertedSliderCrank.drives[drive], drive),
+        *drive_quantities(DRIVES[drive].unknown),
+        Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
+        Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
+        *whole_machine_quantities(),
     ]
     for body in BODIES:
         found += motion_quantities(body.number, body.role)
     for pin, (i, j) in PINS.items():
         found += pin_force_quantities(i, j, pin, LINKS)
-    return found
+    return found + pin_quantities(PINS, LINKS)

@@ -7,6 +7,8 @@ For a < d the rocker swings. It turns round where its line touches the crank's c
 angle from the frame line, the crank square to it. Between those the crank turns through 180° ± the swing, asin((a +
 e)/d) + asin((a − e)/d). For a > d the rocker turns fully (Whitworth); square to the frame line, it divides the crank's
 turn into 180° ± (asin((d + e)/a) + asin((d − e)/a)).
+
+A cylinder along the line drives by s, which stands still where B is nearest to D and farthest from it, φ = 0 and 180°.
 """
 
 from __future__ import annotations
@@ -21,6 +23,9 @@ MOTIONS = ("swings", "turns_fully", "limited")
 
 REVERSALS = ("open_greatest", "open_least", "crossed_greatest", "crossed_least")
 """By branch, where theta4 is greatest and least."""
+
+DEAD_CENTRES = ("nearest", "farthest")
+"""By the distance of B from D."""
 
 TOGGLES = ("toggle", "toggle_mirrored")
 
@@ -65,6 +70,21 @@ def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray
         "reversal_angle": Finding(
             reversals, "crank angle at which the rocker turns round", along=("reversal", REVERSALS)
         ),
+    }
+
+
+def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Where a cylinder along the rocker's line cannot drive, and how far out it is there."""
+    along = ("dead_centre", DEAD_CENTRES)
+    way = np.stack([np.abs(d - a), d + a], axis=-1)
+    with np.errstate(invalid="ignore"):  # out of reach
+        slide = np.sqrt((way - e[..., None]) * (way + e[..., None]))
+    angle = np.mod(np.stack([ground_angle, ground_angle + 180.0], axis=-1), 360.0)
+    return {
+        "dead_centre_angle": Finding(
+            np.where(np.isnan(slide), np.nan, angle), "crank angle at which the block stands still", along=along
+        ),
+        "slide_at_dead_centre": Finding(slide, "size of slide there", "m", along=along),
     }
 
 

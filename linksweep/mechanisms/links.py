@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import Number, parameter
 
@@ -28,8 +29,8 @@ class Body(Protocol):
     def cg_angle(self) -> Number: ...
 
 
-@dataclass(frozen=True)
-class Link:
+@dataclass(frozen=True, eq=False)
+class Link(ByContent):
     """A link of any shape.
 
     Parameters
@@ -57,8 +58,8 @@ class Link:
     cg_angle: Number = parameter("angle", 0.0)
 
 
-@dataclass(frozen=True)
-class Bar:
+@dataclass(frozen=True, eq=False)
+class Bar(ByContent):
     """A uniform rectangular bar from pin to pin: m = ρ·L·w·t, I = m(L² + w²)/12, centre of gravity midway.
 
     Parameters
@@ -97,8 +98,8 @@ class Bar:
         return 0.0
 
 
-@dataclass(frozen=True)
-class Disk:
+@dataclass(frozen=True, eq=False)
+class Disk(ByContent):
     """A uniform disk centred on the link's first pin, the second pin `length` from it: m = ρ·πr²·t, I = m r²/2.
 
     Parameters

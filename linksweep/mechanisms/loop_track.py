@@ -10,17 +10,18 @@ from typing import Any, ClassVar
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.bodies import Equation
+from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.loop_track_limits import events, lap, peak_positions
-from linksweep.mechanisms.motion import OverDesigns
+from linksweep.mechanisms.loop_track_limits import events, lap
+from linksweep.mechanisms.motion import OverDesigns, between_rows, straight_rows
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.physics import loop_track, planar
 
 UNKNOWNS = ("normal_force", "a_tangential")
 
 
-@dataclass(frozen=True)
-class LoopTrack:
+@dataclass(frozen=True, eq=False)
+class LoopTrack(ByContent):
     """A car, small against the loop, on the inside of a vertical loop; its drive pushes along the track.
 
     Parameters
@@ -68,13 +69,19 @@ class LoopTrack:
     profiles: ClassVar[Mapping[str, float]] = {"constant": 0.0, "energy": 1.0}
     drives: ClassVar[dict[str, str]] = {}
     links: ClassVar[tuple[str, ...]] = ()
+    pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
+    bodies: ClassVar[tuple[Any, ...]] = ()
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
-    closes_everywhere: ClassVar[bool] = False
+    pinch_angle: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
         refuse(problems(self))
+
+    def always_ok(self, drive: str) -> bool:
+        """Whether the numbers alone say that every sample is ok: not without its speed."""
+        return False
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name."""
@@ -119,10 +126,6 @@ class LoopTrack:
         """What becomes of the car in one lap."""
         return ((lap, self._numbers(motion)),)
 
-    def driven_peaks(self, motion: Mapping[str, Number]) -> OverDesigns:
-        """Where force, speed and acceleration are extreme, in closed form [degree]."""
-        return ((peak_positions, self._numbers(motion)),)
-
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("normal_force",)
 
@@ -135,6 +138,9 @@ class LoopTrack:
 def _table() -> Table:
     gated = ("squared_speed", "normal_force", "a_tangential")
     rows: list[Row | Total] = [
+        *straight_rows("cos2", "sin2"),
+        Row(planar.same, ("pinch_near",), (1.0,)),
+        Row(planar.same, ("pinch_far",), (1.0,)),
         Row(loop_track.gravity_on_track, ("gravity_forward", "gravity_inward")),
         Row(loop_track.squared_speed, ("raw_squared_speed",)),
         Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),
@@ -153,7 +159,7 @@ def _table() -> Table:
         Row(planar.direction, ("a_total_angle",), ("a_total_x", "a_total_y")),
         Row(loop_track.round_trip, ("assembly",)),
     ]
-    return Table("theta", tuple(rows), tuple(_quantities()))
+    return Table("theta", tuple(rows), tuple(_quantities()), between_rows(1.0, 0.0))
 
 
 def _quantities() -> list[Quantity]:

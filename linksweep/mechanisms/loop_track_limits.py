@@ -102,15 +102,5 @@ def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, Finding]:
     }
 
 
-def peak_positions(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, np.ndarray]:
-    """Where force, speed and acceleration can be extreme [degree]: their own extremes, and where the car starts,
-    leaves or stalls."""
-    numbers = (radius, mass, speed, thrust, gx, gy, work_counts)
-    direction = np.arctan2(gy, gx)
-    found = [*_extremes(curves(*numbers)[0]), *_extremes(curves(*numbers)[1]), *events(*numbers).values()]
-    places = [np.zeros_like(direction), direction, direction + np.pi, *found]
-    return {f"place{k}": np.mod(np.degrees(np.where(np.isfinite(p), p, 0.0)), 360.0) for k, p in enumerate(places)}
-
-
 def _degrees(angle: np.ndarray) -> np.ndarray:
     return np.degrees(np.where(np.isfinite(angle), angle, np.nan))

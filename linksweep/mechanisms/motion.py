@@ -5,19 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
+import numpy as np
+
+from linksweep.engine.quantity import Row
+from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.validate import Number
+from linksweep.physics import crank_angle, planar
 
 OverDesigns = tuple[tuple[Callable[..., Mapping[str, Any]], tuple[Number, ...]], ...]
 """Functions of arrays of numbers, broadcast over the designs, that return arrays by name; and what each takes."""
 
 
-class CrankDriven:
+CRANK = ("cos2", "cos2_rest", "sin2", "sin2_rest")
+"""The crank's angle from x, as a grid tabulates it."""
+PINCH = ("pinch_cos", "pinch_cos_rest", "pinch_sin")
+"""Its angle from the pinch; the rest says by what the cosine is rounded."""
+
+
+class CrankDriven(ByContent):
     """A mechanism whose crank turns as the scene says.
 
     `motion` are the words of a scene that it takes besides gravity; the first must be given, `defaults` stand for the
     others. `position` says what the index is, `spot` names a value of it in a sentence. `round_trip` says what the
-    status of peaks tells, with `round_meanings` for 0, 1 and 2.
+    status of peaks tells, with `round_meanings` for 0, 1, 2 and 3.
     """
 
     index: ClassVar[str] = "theta2"
@@ -28,7 +39,17 @@ class CrankDriven:
     defaults: ClassVar[Mapping[str, Number]] = {"alpha2": 0.0, "drive": "crank"}
     profiles: ClassVar[Mapping[str, float]] = {}
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
-    round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble")
+    round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
+
+    @property
+    def closes_everywhere(self) -> bool:
+        """Whether every design closes at every angle with a margin that rounding cannot touch."""
+        raise NotImplementedError
+
+    def always_ok(self, drive: str) -> bool:
+        """Whether the numbers alone say that every sample is ok; with another drive than the crank there are dead
+        centres."""
+        return drive == "crank" and self.closes_everywhere
 
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
         """More numbers that the physics wires by, which depend on how it is driven."""
@@ -38,6 +59,35 @@ class CrankDriven:
         """What can be checked in closed form of how it is driven."""
         return ()
 
-    def driven_peaks(self, motion: Mapping[str, Number]) -> OverDesigns:
-        """Where quantities may have their peaks, by how it is driven [degree]."""
-        return ()
+
+def pinch_rows(middle: str) -> list[Row]:
+    """The crank's angle from the pinch that lies at the angle of this name."""
+    pinch = tuple(f"{middle}_{part}" for part in ("cos", "cos_rest", "sin", "sin_rest"))
+    return [Row(crank_angle.angle_from_pinch, PINCH, (*CRANK, *pinch))]
+
+
+def straight_rows(cos: str, sin: str, minus_sin: bool = False) -> list[Row]:
+    """The same bits where cosine and sine from the pinch are tabulated numbers themselves."""
+    made = (cos, f"{cos}_rest", sin)
+    turns = (planar.same, planar.same, planar.opposite if minus_sin else planar.same)
+    return [Row(turn, (name,), (number,)) for turn, name, number in zip(turns, PINCH, made, strict=True)]
+
+
+def between_rows(middle_cos: str | float, middle_sin: str | float) -> tuple[Row, ...]:
+    """Rows that make all this from half-angle tangents, and what a grid has in its table."""
+    middle = (middle_cos, middle_sin)
+    return (
+        Row(crank_angle.angle_from_tangent, PINCH),
+        Row(crank_angle.angle_from_x, ("cos2", "sin2"), ("pinch_cos", "pinch_sin", *middle)),
+        Row(crank_angle.one_turn, ("radians2",)),
+    )
+
+
+def in_range(length: Number) -> bool:
+    """Whether the square of such a length in every design is far from the least and the largest number."""
+    return bool(np.all((length > 1e-140) & (length < 1e140)))
+
+
+def turned(frame_angle: Number) -> bool:
+    """Whether a frame may lie at an angle to x."""
+    return hasattr(frame_angle, "dims") or frame_angle != 0.0

@@ -11,33 +11,48 @@ import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.engine.run import Field
+from linksweep.mechanisms import rounding_error
 from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
     arm_rows,
+    crank_pin_slope_rows,
     drive_quantities,
+    drive_torque,
     motion_quantities,
     newton_euler_equations,
+    on_crank_pin,
     pin_force_quantities,
     pin_force_rows,
     position_quantities,
+    whole_machine_quantities,
+    whole_machine_rows,
 )
-from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven
+from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
+from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
 from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging, wedging_by_crank
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse
-from linksweep.physics import crank_driven, dyad_rrp, planar, slider_crank
+from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_crank
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3)}
 BODIES = (
-    Body(2, "crank", steady=True),
-    Body(3, "rod", ("vBx", "vBy"), ("aBx", "aBy"), pin_position=("r2x", "r2y")),
-    Body(4, "slider", ("vCx", "vCy"), ("aCx", "aCy"), pin_position=("Cx", "Cy")),
+    Body(2, "crank", steady=True, ratio=1.0),
+    on_crank_pin(3, "rod", "ratio3", "slope3"),
+    Body(
+        4,
+        "slider",
+        ("vCx", "vCy"),
+        ("aCx", "aCy"),
+        pin_position=("Cx", "Cy"),
+        pin_ratio=("uCx", "uCy"),
+        pin_slope=("uCx_slope", "uCy_slope"),
+    ),
 )
 SLIDER = {
     "slider_inertia": 0.0,
@@ -50,7 +65,7 @@ SLIDER = {
 """The slider as a body that does not turn, its centre of gravity on its pin, its axes along and across the guide."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SliderCrank(CrankDriven):
     """A slider-crank: engine, pump, compressor.
 
@@ -75,7 +90,8 @@ class SliderCrank(CrankDriven):
     Notes
     -----
     Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
-    guide: status `jammed`.
+    guide: status `jammed`. A load that is a cycle of full turns of the crank (see `GasPressure`) is none in a design
+    whose crank does not turn fully: status `no_cycle`.
 
     Examples
     --------
@@ -95,14 +111,23 @@ class SliderCrank(CrankDriven):
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13"}
     links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
-    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre", "jammed")
+    pins: ClassVar[Pins] = rotating(PINS)
+    bodies: ClassVar[tuple[Body, ...]] = BODIES
+    status_meanings: ClassVar[tuple[str, ...]] = (
+        "ok",
+        "cannot_assemble",
+        "toggle",
+        "dead_centre",
+        "jammed",
+        "no_cycle",
+    )
 
     def __post_init__(self) -> None:
         found = []
         for role in ("crank", "rod"):
             link = getattr(self, role)
             sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {link!r}: must be a Link, Bar or Disk"]
+            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
         found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
         refuse(found)
         refuse(self._never_closes())
@@ -118,21 +143,27 @@ class SliderCrank(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        guide_cos, guide_sin = cos_sin(self.slide_angle)
-        cos_half, sin_half = cos_sin(0.5 * self.slide_angle)
+        guide_cos, guide_sin, cos_rest, sin_rest = cos_sin_rests(self.slide_angle)
         numbers: dict[str, Any] = {
             "offset": self.offset,
             "friction": self.friction,
             "slider_mass": self.slider_mass,
             "guide_cos": guide_cos,
             "guide_sin": guide_sin,
-            "ground_cos_half": cos_half,
-            "ground_sin_half": sin_half,
+            "upright_cos": -guide_sin,
+            "upright_cos_rest": -sin_rest,
+            "upright_sin": guide_cos,
+            "upright_sin_rest": cos_rest,
             "r4x": guide_cos,
             "r4y": guide_sin,
             "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
         }
         return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
+
+    @property
+    def pinch_angle(self) -> Number:
+        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
+        return 90.0 + self.slide_angle
 
     def coordinates(self) -> dict[str, list[str]]:
         """Labels of the dimensions that the mechanism itself brings."""
@@ -140,7 +171,7 @@ class SliderCrank(CrankDriven):
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
-        return _table(drive, loads)
+        return _table(drive, loads, turned(self.slide_angle))
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider")
@@ -180,47 +211,73 @@ class SliderCrank(CrankDriven):
         return ((wedging, (*lengths, self.slide_angle, self.friction)),)
 
     def jumps(self) -> tuple[Number, ...]:
-        """Dead centres: crank angles [degree] with the rod in line with it; the slider turns round, friction jumps."""
-        if not np.any(self.friction):
-            return ()
+        """Crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
+        return self.dead_centres() if np.any(self.friction) else ()
+
+    def dead_centres(self) -> tuple[Number, ...]:
+        """Crank angles [degree] with the rod in line with the crank: for each branch stretched, then folded.
+
+        NaN in designs that have none. Stretched, C is farthest from A; folded, nearest.
+        """
         a, b, e = self.crank.length, self.rod.length, self.offset
-        with np.errstate(divide="ignore", invalid="ignore"):  # the folded ones may be out of reach
-            stretched, folded = np.degrees(np.arcsin(e / (a + b))), np.degrees(np.arcsin(np.divide(e, b - a)))
-        dead_centres = {
-            "open": (self.slide_angle + stretched, self.slide_angle + 180.0 + folded),
-            "crossed": (self.slide_angle + 180.0 - stretched, self.slide_angle - folded),
-        }
-        return dead_centres.get(self.branch, dead_centres["open"] + dead_centres["crossed"])
+        with np.errstate(all="ignore"):  # out of reach: NaN
+            stretched, folded = (np.degrees(np.arcsin(np.divide(e, reach))) for reach in (a + b, b - a))
+        found: list[Number] = []
+        for sign in [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values():
+            ahead = np.mod(self.slide_angle + (0.0 if sign > 0.0 else 180.0), 360.0)
+            found += [ahead + sign * stretched, ahead + 180.0 + sign * folded]
+        return tuple(found)
+
+    @property
+    def turns_fully(self) -> Number:
+        """Whether the crank of each design does, to the bit as `linksweep.physics.slider_crank.assembly` decides it."""
+        return abs(self.offset) - self.rod.length + self.crank.length < 0.0
 
     @cached_property
     def closes_everywhere(self) -> bool:
-        """Whether every design closes at every angle with a margin that rounding cannot touch, and cannot wedge."""
-        a, b, e = self.crank.length, self.rod.length, abs(self.offset)
-        height = a + e
+        """Whether every design closes at every angle with a margin that rounding cannot touch."""
+        b, height = self.rod.length, self.crank.length + abs(self.offset)
+        return bool(in_range(b) and in_range(self.crank.length) and np.all(b - height > 1e-9 * (b + height)))
+
+    def always_ok(self, drive: str) -> bool:
+        """Whether the numbers alone say that every sample is ok: friction must not wedge the slider either."""
+        b, height = self.rod.length, self.crank.length + abs(self.offset)
         wedges = (self.friction * height) ** 2 >= (b - height) * (b + height) * (1.0 - 1e-9)
-        return bool(np.all(b - height > 1e-9 * (b + height)) and not np.any(wedges))
+        return super().always_ok(drive) and not np.any(wedges)
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("F12", "F32", "F43", "F14", self.drives[drive])
 
 
 @lru_cache(maxsize=64)
-def _table(drive: str, loads: tuple[Form, ...]) -> Table:
-    rows = [*_position(), *_rates(), *_forces(drive), *_power(drive, loads)]
+def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+    rows = [
+        *(pinch_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
+        *_position(),
+        *_rates(),
+        *_forces(drive),
+        *_status(drive, loads),
+        *_power(drive, loads),
+    ]
     rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
     for i, j in (*PINS.values(), (1, 4)):
         rows += pin_force_rows(i, j)
+    rows += pin_rows(PINS, BODIES)
+    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("low", "high")]
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43")]
-    return Table("theta2", tuple(rows), (*_quantities(drive), *action_quantities(loads)))
+    quantities = (*_quantities(drive), *action_quantities(loads))
+    return Table("theta2", tuple(rows), quantities, between_rows("upright_cos", "upright_sin"))
 
 
 def _position() -> list[Row | Total]:
     return [
+        Row(slider_crank.pinch_widths, ("pinch_near", "pinch_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(crank_driven.frame_half_angle, ("sin_half", "cos_half")),
+        Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_rest", "high_cos", "high_cos_rest")),
         Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
         Row(slider_crank.closure_factors, ("low", "high")),
-        Row(slider_crank.closure_noise, ("noise",)),
+        Row(slider_crank.closure_noise, ("low_noise", "high_noise")),
+        Row(slider_crank.length_noise, ("noise",)),
         Row(slider_crank.assembly, ("assembly",)),
         Row(dyad_rrp.rrp_close, ("r3x", "r3y", "rod_along", "inverse_rod_along")),
         Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
@@ -241,6 +298,19 @@ def _rates() -> list[Row | Total]:
         Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
         Row(planar.along, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
         Row(planar.along, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
+    ]
+
+
+def _transmission() -> list[Row | Total]:
+    """What the slider has of the crank's velocity and force, and how the ratios change with the crank's angle."""
+    rod, guide = ("ratio3", "rod_along", "rod_across", "inverse_rod_along"), ("guide_cos", "guide_sin")
+    return [
+        *crank_pin_slope_rows(),
+        Row(dyad_rrp.rrp_accelerations, ("slope3", "slope_slider"), ("uBx_slope", "uBy_slope", *rod, *guide)),
+        Row(planar.along, ("uCx", "uCy"), ("ratio_slider", *guide)),
+        Row(planar.along, ("uCx_slope", "uCy_slope"), ("slope_slider", *guide)),
+        Row(planar.same, ("velocity_ratio",), ("ratio_slider",)),
+        Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
     ]
 
 
@@ -267,21 +337,25 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(planar.opposite, ("T14",), ("N4",)),
         Row(slider_crank.work_on_crank, ("work",)),
-        Row(crank_driven.balancing_torque, (SliderCrank.drives[drive],), ("work", ratios[drive])),
+        Row(crank_driven.balancing_drive, (SliderCrank.drives[drive],), ("work", ratios[drive])),
         Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
         Total("friction_rhs", ()),
-        *_status(drive),
     ]
 
 
-def _status(drive: str) -> list[Row | Total]:
+def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
+    """Step by step: does it close, can the drive move it, does friction wedge it, have its loads their whole turns."""
     closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
     leverage: list[Row | Total] = [Row(planar.same, ("leverage_status",), ("closure",))]
     if drive == "coupler":
         leverage = [
             Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))
         ]
-    return [*closure, *leverage, Row(slider_crank.jammed_status, ("status",), ("leverage_status", "wedging"))]
+    cycle: list[Row | Total] = [Row(planar.same, ("status",), ("jam_status",))]
+    if any(form.full_turns for form in loads):
+        cycle = [Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))]
+    jam = Row(slider_crank.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
+    return [*closure, *leverage, jam, *cycle]
 
 
 def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
@@ -306,11 +380,16 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("friction_force", "N", "force of the guide on the slider along it"),
         Quantity("friction_power", "W", "power of friction on the slider, never positive"),
         *position_quantities("B", "C"),
-        *drive_quantities(SliderCrank.drives[drive], drive, "drive, friction, loads, gravity and inertia"),
+        *drive_quantities(
+            drive_torque(SliderCrank.drives[drive], drive), "drive, friction, loads, gravity and inertia"
+        ),
+        Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
+        Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
+        *whole_machine_quantities(),
     ]
     for body in BODIES[:2]:
         found += motion_quantities(body.number, body.role)
     found += motion_quantities(4, "slider")[2:]
     for pin, (i, j) in PINS.items():
         found += pin_force_quantities(i, j, pin, LINKS)
-    return found + pin_force_quantities(1, 4, "guide", LINKS)
+    return found + pin_force_quantities(1, 4, "guide", LINKS) + pin_quantities(PINS, LINKS)

@@ -55,8 +55,7 @@ def wedging(
 
 def wedging_by_crank(slide_angle: np.ndarray, friction: np.ndarray) -> dict[str, Finding]:
     """Rod driven: friction wedges where the crank's own slope to the guide is too steep, with any μ at 90°."""
-    with np.errstate(divide="ignore"):
-        steep = np.degrees(np.arctan(1.0 / friction))
+    steep = np.degrees(np.arctan2(1.0, friction))
     begin = np.stack([steep, 180.0 - steep, 180.0 + steep, 360.0 - steep], axis=-1)
     return _jams(begin, slide_angle, friction, np.zeros(friction.shape))
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.actions import Acting
@@ -24,6 +25,7 @@ class Between:
 
     from_: str
     to: str
+    full_turns: ClassVar[bool] = False
 
     def ends(self, name: str) -> Iterator[tuple[str, str]]:
         """The ends on moving links, by name, and the link of each."""

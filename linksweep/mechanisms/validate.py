@@ -90,6 +90,11 @@ def problems(owner: Any, prefix: str = "") -> list[str]:
     ]
 
 
+def as_pair(value: Any) -> Any:
+    """A bare array of two numbers as the pair that it can only be; anything else as it is."""
+    return tuple(value.tolist()) if isinstance(value, np.ndarray) and value.shape == (2,) else value
+
+
 def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) -> list[str]:
     if not (isinstance(pair, tuple | list) and len(pair) == 2):
         return [f"{path} = {said(pair)}: must be a pair {meaning}"]
@@ -121,6 +126,11 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
 def is_array(value: Any) -> bool:
     """Whether a value is a DataArray: known by what it can do, since xarray starts at the scene."""
     return all(hasattr(value, name) for name in ("dims", "coords", "dtype"))
+
+
+def is_lazy(value: Any) -> bool:
+    """Whether it is an array whose numbers dask is yet to compute: they are checked when it has, not at the door."""
+    return getattr(value, "chunks", None) is not None
 
 
 def _as_float(value: Any) -> float | None:
@@ -160,6 +170,8 @@ def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
         found.append(f'{path} has a dimension "branch": that name is kept for branch="both"; rename it')
     if len(set(value.dims)) < len(value.dims):
         return [*found, f"{path} has dimensions {value.dims}: each name may appear once; rename one"]
+    if is_lazy(value):
+        return found
     broken = rule.broken_by(np.asarray(value.values, dtype=float))
     if broken.any():
         first = np.unravel_index(int(np.argmax(broken)), broken.shape)

@@ -1,4 +1,4 @@
-"""What machines with a crank A-B share: the motion of its pin B, its balance, and the torque of the drive.
+"""What machines with a crank A-B share: the motion of its pin B, its balance, and what its drive gives.
 
 Q and N are the effective force and moment of a link (see `linksweep.physics.inertia`); r2 is A→B.
 """
@@ -12,16 +12,6 @@ from linksweep.physics.planar import cross
 def crank_pin(crank_length: Number, cos2: Number, sin2: Number) -> tuple[Number, Number]:
     """r2 = A→B."""
     return crank_length * cos2, crank_length * sin2
-
-
-def frame_half_angle(
-    sin2_half: Number, cos2_half: Number, ground_sin_half: Number, ground_cos_half: Number
-) -> tuple[Number, Number]:
-    """sin and cos of φ/2 = (θ2 − ground angle)/2."""
-    return (
-        sin2_half * ground_cos_half - cos2_half * ground_sin_half,
-        cos2_half * ground_cos_half + sin2_half * ground_sin_half,
-    )
 
 
 def crank_pin_acceleration(omega2: Number, alpha2: Number, r2x: Number, r2y: Number) -> tuple[Number, Number]:
@@ -65,13 +55,14 @@ def work_on_crank(
     return N2 + cross(r2x, r2y, Q3x, Q3y) + ratio3 * N3 + ratio4 * N4
 
 
-def balancing_torque(work: Number, ratio: Number) -> Number:
-    """Torque on a link turning `ratio` times as fast as the crank that does the opposite virtual work."""
+def balancing_drive(work: Number, ratio: Number) -> Number:
+    """Torque on what turns `ratio` times as fast as the crank, or force on what slides by `ratio` per radian of it,
+    that does the opposite virtual work."""
     return where(abs(ratio) > 0.0, -work / ratio, math.nan)
 
 
 def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:
-    """The closure's status, or 3 (dead centre) where the driven link stands still and no torque on it can drive.
+    """The closure's status, or 3 (dead centre) where what is driven stands still and nothing on it can drive.
 
     The leverage is the cross product of the two other links, of lengths p and q.
     """

@@ -22,15 +22,13 @@ def rpr_close(
 
 
 def rpr_status(slide_squared: Number, noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: D→B square to the line, as far as the lengths can tell."""
+    """0 ok, 1 cannot assemble, 2 toggle: D→B square to the line, as far as lengths and angle can tell."""
     return where(abs(slide_squared) > noise, where(slide_squared > 0.0, 0.0, 1.0), 2.0)
 
 
-def rpr_velocity_ratios(
-    r2x: Number, r2y: Number, DBx: Number, DBy: Number, crank_along: Number, inverse_slide: Number
-) -> tuple[Number, Number]:
-    """ω4/ω2 and s'/ω2, from ω2 × r2 = s' u + ω4 × w: across the line, and along w."""
-    return crank_along * inverse_slide, cross(r2x, r2y, DBx, DBy) * inverse_slide
+def rpr_velocity_ratios(crank_along: Number, slide_leverage: Number, inverse_slide: Number) -> tuple[Number, Number]:
+    """ω4/ω2 and s'/ω2, from ω2 × r2 = s' u + ω4 × w: across the line, r2·u = s ω4/ω2; along w, r2 × w = s s'/ω2."""
+    return crank_along * inverse_slide, slide_leverage * inverse_slide
 
 
 def rpr_accelerations(

@@ -28,10 +28,10 @@ def rrp_close(
     )
 
 
-def rrp_status(low: Number, high: Number, noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: the rod square to the guide, as far as the lengths can tell."""
+def rrp_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
+    """0 ok, 1 cannot assemble, 2 toggle: the rod square to the guide, as far as lengths and angle can tell."""
     closes = where(low * high > 0.0, 0.0, 1.0)
-    return where(abs(low) > noise, where(abs(high) > noise, closes, 2.0), 2.0)
+    return where(abs(low) > low_noise, where(abs(high) > high_noise, closes, 2.0), 2.0)
 
 
 def rrp_velocity_ratios(

@@ -1,8 +1,8 @@
 """The dyad of three pins (RRR): coupler r3 = B→C of length b and rocker r4 = D→C of length c, closed between B and D.
 
 With f = |BD|, the triangle B, C, D has 16·area² = ((b+c)² − f²)·(f² − (b−c)²) = high·low. Both factors come
-from the mechanism in a form that does not cancel; the plain triangle formulas lose all digits near a toggle.
-Everything else follows without another subtraction of nearly equal numbers:
+from the mechanism in a form that does not cancel, in units of a square that it chooses; the plain triangle formulas
+lose all digits near a toggle. Everything else follows without another subtraction of nearly equal numbers:
 
     r3 = (low + 2b(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥          open branch: +, C left of B→D
     r4 = −(low − 2c(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥
@@ -20,42 +20,43 @@ def rrr_close(
     high: Number,
     coupler_length: Number,
     rocker_length: Number,
-    branch_sign: Number,
+    side: Number,
+    closure_unit: Number,
 ) -> tuple[Number, ...]:
-    """Link vectors r3, r4 and 1/(r4 × r3), by one square root and one division."""
+    """Link vectors r3, r4 and 1/(r4 × r3), by one square root and one division; then their shares along BD, in units
+    of it, and the one across that both have. `side` is 1 with C left of B→D."""
     difference = coupler_length - rocker_length
-    ff = low + difference * difference
-    root = sqrt(low * high)
+    ff = low + difference * difference / closure_unit
+    root = side * sqrt(low * high)
     half_inverse = 0.5 / (ff * root)
     inverse_2ff = half_inverse * root
-    along3 = (low + 2.0 * coupler_length * difference) * inverse_2ff
-    along4 = (2.0 * rocker_length * difference - low) * inverse_2ff
-    across = branch_sign * root * inverse_2ff
+    along3 = (low + 2.0 * coupler_length * difference / closure_unit) * inverse_2ff
+    along4 = (2.0 * rocker_length * difference / closure_unit - low) * inverse_2ff
+    across = root * inverse_2ff
     side_x, side_y = across * BDy, across * BDx
     r3x, r3y = along3 * BDx - side_x, along3 * BDy + side_y
     r4x, r4y = along4 * BDx - side_x, along4 * BDy + side_y
-    return r3x, r3y, r4x, r4y, (-4.0 * branch_sign) * (half_inverse * ff)
+    return r3x, r3y, r4x, r4y, -4.0 / closure_unit * (half_inverse * ff), along3, along4, across
 
 
 def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: r3 and r4 in one line, as far as the lengths can tell."""
+    """0 ok, 1 cannot assemble, 2 toggle: r3 and r4 in one line, as far as lengths and angle can tell."""
     closes = where(low * high > 0.0, 0.0, 1.0)
     return where(abs(low) > low_noise, where(abs(high) > high_noise, closes, 2.0), 2.0)
 
 
 def rrr_velocity_ratios(
-    r2x: Number,
-    r2y: Number,
-    r3x: Number,
-    r3y: Number,
-    r4x: Number,
-    r4y: Number,
+    r2_dot_BD: Number,
+    r2_cross_BD: Number,
+    along3: Number,
+    along4: Number,
+    across: Number,
     inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
-    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity)."""
+    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity): r2 × r4 and r2 × r3."""
     return (
-        cross(r2x, r2y, r4x, r4y) * inverse_r4_cross_r3,
-        cross(r2x, r2y, r3x, r3y) * inverse_r4_cross_r3,
+        (along4 * r2_cross_BD + across * r2_dot_BD) * inverse_r4_cross_r3,
+        (along3 * r2_cross_BD + across * r2_dot_BD) * inverse_r4_cross_r3,
     )
 
 

@@ -1,44 +1,83 @@
 """The inverted slider-crank A-B-D: crank r2 = A→B of length a, its block on the line of a rocker that turns about D.
 
-With φ the angle from the frame line A→D, of length d, to the crank, w = D→B has −(d−a) − 2a·sin²(φ/2) along the
-frame line and 2a·sin(φ/2)·cos(φ/2) across it, and its part s along the rocker's line, at the offset e from D,
+With ψ the angle from the frame line A→D, of length d, to the crank, w = D→B has −(d−a) − a(1 − cos ψ) along the
+frame line and a·sin ψ across it, and its part s along the rocker's line, at the offset e from D,
 
-    s² = |w|² − e² = (d−a−e)(d−a+e) + 4ad·sin²(φ/2)
+    s² = |w|² − e² = 2ad·(cos ψ_t − cos ψ),    cos ψ_t = 1 + (d−a−e)(d−a+e)/(2ad)
 
-It closes while s² > 0. Half angles keep every digit where cos φ would drop them, also where B passes close to D.
+It closes while s² > 0. The cosines are sums of two numbers each: no digit is lost near a toggle, nor where B passes
+close to D. The block stands still on the line where the crank lies along the frame line: r2 × w = ad·sin ψ = 0,
+whatever the offset.
 """
 
 import math
 
-from linksweep.physics.arithmetic import NOISE, Number, where
-from linksweep.physics.planar import dot
+from linksweep.physics.arithmetic import Number, sqrt, where
+from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
+from linksweep.physics.double_double import Pair, add, difference, divide, multiply, two_product, two_sum
+from linksweep.physics.planar import cross, dot
 
 
 def block_from_rocker_pivot(
     crank_length: Number,
     ground_length: Number,
-    sin_half: Number,
-    cos_half: Number,
+    pinch_cos: Number,
+    pinch_cos_rest: Number,
+    pinch_sin: Number,
     ground_cos: Number,
     ground_sin: Number,
 ) -> tuple[Number, Number]:
     """w = D→B in ground axes."""
-    twice = 2.0 * crank_length * sin_half
-    along, across = (crank_length - ground_length) - twice * sin_half, twice * cos_half
+    versine = difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
+    along, across = (crank_length - ground_length) - crank_length * versine, crank_length * pinch_sin
     return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
 
-def slide_squared(crank_length: Number, ground_length: Number, offset: Number, sin_half: Number) -> Number:
-    """s², as the module's equation writes it."""
+def toggle_cosine(crank_length: Number, ground_length: Number, offset: Number) -> Pair:
+    """cos ψ_t with its rest."""
     a, d, e = crank_length, ground_length, offset
-    return ((d - a) - e) * ((d - a) + e) + 4.0 * a * d * (sin_half * sin_half)
+    d_a = two_sum(d, -a)
+    least = multiply(add(d_a, (-e, 0.0)), add(d_a, (e, 0.0)))
+    return add((1.0, 0.0), divide(least, two_product(2.0 * a, d)))
 
 
-def closure_noise(crank_length: Number, ground_length: Number, offset: Number) -> Number:
-    """What s² cannot tell from zero: each sum of lengths is known to a few last digits of the largest."""
+def slide_squared(
+    crank_length: Number,
+    ground_length: Number,
+    pinch_cos: Number,
+    pinch_cos_rest: Number,
+    toggle_cos: Number,
+    toggle_cos_rest: Number,
+) -> Number:
+    """s², as the module's equation writes it."""
+    return 2.0 * crank_length * ground_length * difference((toggle_cos, toggle_cos_rest), (pinch_cos, pinch_cos_rest))
+
+
+def slide_leverage(crank_length: Number, ground_length: Number, pinch_sin: Number) -> Number:
+    """r2 × w, as the module's equation writes it."""
+    return crank_length * ground_length * pinch_sin
+
+
+def pinch_width(crank_length: Number, ground_length: Number, offset: Number) -> Number:
+    """How narrow forces may peak about ψ = 0: s² is x + y·tan²(ψ/2) there, zero at tan = ±i·√(x/y)."""
+    a, d, e = crank_length, ground_length, offset
+    return sqrt((((d - a) - e) * ((d - a) + e)) / (((d + a) - e) * ((d + a) + e)))
+
+
+def closure_noise(
+    crank_length: Number,
+    ground_length: Number,
+    offset: Number,
+    toggle_cos: Number,
+    toggle_cos_rest: Number,
+    pinch_sin: Number,
+) -> Number:
+    """What s² cannot tell from zero."""
     a, d, e = crank_length, ground_length, abs(offset)
-    noise = 0.25 * NOISE * (a + d + e)
-    return noise * (abs(d - a) + e + noise)
+    length, twice_ad = 2.0**-52 * (a + d + e), 2.0 * a * d
+    miss = difference((toggle_cos, toggle_cos_rest), (1.0, 0.0))
+    noise = length * (abs(d - a) + e + length) / twice_ad
+    return twice_ad * (unknown_of_cosine(miss, noise, pinch_sin) + beyond_range(twice_ad))
 
 
 def assembly(crank_length: Number, ground_length: Number, offset: Number) -> Number:
@@ -47,21 +86,22 @@ def assembly(crank_length: Number, ground_length: Number, offset: Number) -> Num
     return where(e < abs(d - a), 0.0, where(e < d + a, 1.0, 2.0))
 
 
-def normal_force_on_block(N3: Number, N4: Number, inverse_slide: Number) -> Number:
-    """F43n from the moments of block and rocker about B and D: the contact's moment T43 drops out, s·F43n = N3 + N4."""
-    return (N3 + N4) * inverse_slide
+def normal_force_on_block(
+    N3: Number, N4: Number, inverse_slide: Number, offset: Number, cylinder_force: Number
+) -> Number:
+    """F43n from the moments of block and rocker about B and D: the contact's moment T43 drops out, and a cylinder has
+    the arm e, s·F43n − e·F = N3 + N4."""
+    return (N3 + N4 + offset * cylinder_force) * inverse_slide
 
 
 def normal_force_from_crank(moment_r2: Number, crank_along: Number) -> Number:
-    """F43n where the crank's torques are all known: r2 × F43 = (r2·u)·F43n."""
+    """F43n where the crank's torques are all known and no cylinder drives: r2 × F43 = (r2·u)·F43n."""
     return where(abs(crank_along) > 0.0, moment_r2 / crank_along, math.nan)
 
 
-def normal_vector(normal: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:
-    """A vector across the rocker's line, in ground axes."""
-    return -(normal * r3y), normal * r3x
-
-
-def contact_arm(DBx: Number, DBy: Number, rG4x: Number, rG4y: Number, r3x: Number, r3y: Number) -> Number:
-    """Arm of the normal force about the rocker's centre of gravity: the way from G4 to B along the line."""
-    return dot(DBx - rG4x, DBy - rG4y, r3x, r3y)
+def arms_about_rocker_centre(
+    DBx: Number, DBy: Number, rG4x: Number, rG4y: Number, r3x: Number, r3y: Number
+) -> tuple[Number, Number]:
+    """Moments about the rocker's centre of gravity, per unit, of a force at B across the line and of one along it."""
+    x, y = DBx - rG4x, DBy - rG4y
+    return dot(x, y, r3x, r3y), cross(x, y, r3x, r3y)

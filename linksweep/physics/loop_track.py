@@ -12,6 +12,7 @@ the number is right, it points inwards.
 import math
 
 from linksweep.physics.arithmetic import Number, sqrt, where
+from linksweep.physics.double_double import difference
 from linksweep.physics.planar import cross, dot, square
 
 
@@ -28,12 +29,13 @@ def squared_speed(
     gravity_x: Number,
     gravity_y: Number,
     sin2: Number,
-    sin2_half: Number,
+    pinch_cos: Number,
+    pinch_cos_rest: Number,
     radians2: Number,
     work_counts: Number,
 ) -> Number:
     """v²; `work_counts` is 1 where work and energy decide and 0 where the speed is the same everywhere."""
-    rise = 2.0 * (sin2_half * sin2_half)
+    rise = difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
     work = thrust / mass * radians2 + (gravity_x * sin2 + gravity_y * rise)
     return entry_speed * entry_speed + work_counts * (2.0 * radius * work)
 

@@ -1,38 +1,80 @@
 """The slider-crank A-B-C: crank r2 = A→B of length a, rod r3 = B→C of length b, slider on a guide offset by e.
 
-With φ the angle from the guide to the crank, the rod's share across the guide is h = e − a·sin φ, so that
+With ψ the angle of the crank from the guide's left normal, the rod's share across the guide is h = e − a·cos ψ, so that
 
-    low  = b − h = (b − e − a) + a(1 + sin φ),    1 + sin φ = (cos φ/2 + sin φ/2)²
-    high = b + h = (b + e − a) + a(1 − sin φ),    1 − sin φ = (cos φ/2 − sin φ/2)²
+    low  = b − h = a(cos ψ − cos ψ_l),    cos ψ_l = (e − b)/a
+    high = b + h = a(cos ψ_h − cos ψ),    cos ψ_h = (e + b)/a
 
-It closes while both are positive: at every angle if a + |e| < b.
+It closes while both are positive: at every angle if a + |e| < b. The differences of cosines are all that cancels, and
+are therefore sums of two numbers each.
 """
 
 import math
 
-from linksweep.physics.arithmetic import NOISE, Number, where
+from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
+from linksweep.physics.double_double import difference, divide, two_sum
 from linksweep.physics.planar import cross, dot
 
 
 def guide_shares(
-    r2x: Number, r2y: Number, offset: Number, guide_cos: Number, guide_sin: Number
+    r2x: Number,
+    r2y: Number,
+    crank_length: Number,
+    offset: Number,
+    guide_cos: Number,
+    guide_sin: Number,
+    pinch_cos: Number,
 ) -> tuple[Number, Number, Number]:
     """The crank's shares along and across the guide, and the rod's share across."""
-    crank_across = guide_cos * r2y - guide_sin * r2x
+    crank_across = crank_length * pinch_cos
     return dot(r2x, r2y, guide_cos, guide_sin), crank_across, offset - crank_across
 
 
+def toggle_cosines(crank_length: Number, rod_length: Number, offset: Number) -> tuple[Number, Number, Number, Number]:
+    """cos ψ_l and cos ψ_h, each with its rest."""
+    low, high = two_sum(offset, -rod_length), two_sum(offset, rod_length)
+    return *divide(low, (crank_length, 0.0)), *divide(high, (crank_length, 0.0))
+
+
 def closure_factors(
-    crank_length: Number, rod_length: Number, offset: Number, sin_half: Number, cos_half: Number
+    crank_length: Number,
+    pinch_cos: Number,
+    pinch_cos_rest: Number,
+    low_cos: Number,
+    low_cos_rest: Number,
+    high_cos: Number,
+    high_cos_rest: Number,
 ) -> tuple[Number, Number]:
     """low and high, as the module's equations write them."""
-    a, b, e = crank_length, rod_length, offset
-    plus, minus = cos_half + sin_half, cos_half - sin_half
-    return (b - e - a) + a * (plus * plus), (b + e - a) + a * (minus * minus)
+    cosine = pinch_cos, pinch_cos_rest
+    low = crank_length * difference(cosine, (low_cos, low_cos_rest))
+    return low, crank_length * difference((high_cos, high_cos_rest), cosine)
 
 
-def closure_noise(crank_length: Number, rod_length: Number, offset: Number) -> Number:
-    """What low and high cannot tell from zero: sums of lengths are known to a few last digits of the largest."""
+def closure_noise(
+    crank_length: Number,
+    rod_length: Number,
+    offset: Number,
+    low_cos: Number,
+    low_cos_rest: Number,
+    high_cos: Number,
+    high_cos_rest: Number,
+    pinch_sin: Number,
+) -> tuple[Number, Number]:
+    """What low and high cannot tell from zero."""
+    low_miss = difference((low_cos, low_cos_rest), (-1.0, 0.0))
+    high_miss = difference((high_cos, high_cos_rest), (1.0, 0.0))
+    noise = 2.0**-52 * (crank_length + rod_length + abs(offset)) / crank_length
+    beyond = beyond_range(crank_length * crank_length)
+    return (
+        crank_length * (unknown_of_cosine(low_miss, noise, pinch_sin) + beyond),
+        crank_length * (unknown_of_cosine(high_miss, noise, pinch_sin) + beyond),
+    )
+
+
+def length_noise(crank_length: Number, rod_length: Number, offset: Number) -> Number:
+    """A slider that moves by less per radian of the crank stands: sums of lengths are known to a few last digits."""
     return 0.25 * NOISE * (crank_length + rod_length + abs(offset))
 
 
@@ -40,6 +82,15 @@ def assembly(crank_length: Number, rod_length: Number, offset: Number) -> Number
     """0 where it closes at every angle, 1 where at some, 2 where at none."""
     reach = abs(offset) - rod_length
     return where(reach + crank_length < 0.0, 0.0, where(reach - crank_length < 0.0, 1.0, 2.0))
+
+
+def pinch_widths(crank_length: Number, rod_length: Number, offset: Number, friction: Number) -> tuple[Number, Number]:
+    """How narrow forces may peak about φ = 90 and −90°: high and low are there x + y·tan², zero at tan = ±i·√(x/y).
+
+    Friction wedges where μ·tan ψ = 1, that is where the rod's share across the guide is b/√(1 + μ²).
+    """
+    a, b, e = crank_length, rod_length / sqrt(1.0 + friction * friction), offset
+    return sqrt((b + e - a) / (b + e + a)), sqrt((b - e - a) / (b - e + a))
 
 
 def slider_position(crank_along: Number, rod_along: Number) -> Number:
@@ -92,6 +143,11 @@ def guide_force_in_ground_axes(
 def jammed_status(status: Number, wedging: Number) -> Number:
     """The status so far, or 4 (jammed) where friction wedges the slider."""
     return where(wedging < 1.0, status, where(status > 0.0, status, 4.0))
+
+
+def no_cycle_status(status: Number, assembly: Number) -> Number:
+    """The status so far, or 5 (no_cycle) where the crank does not turn fully, but a cycle takes whole turns of it."""
+    return where(assembly > 0.0, where(status > 0.0, status, 5.0), status)
 
 
 def inverse_or_nan(x: Number) -> Number:

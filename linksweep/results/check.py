@@ -7,6 +7,7 @@ import xarray as xr
 from linksweep.mechanisms.finding import Finding
 from linksweep.results.compute import require_scene
 from linksweep.results.record import design_coordinates, flags, origin_attributes
+from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 
@@ -34,7 +35,8 @@ def check(scene: Scene) -> xr.Dataset:
     - `friction_to_jam`: the least coefficient of friction that wedges at all
 
     Of an InvertedSliderCrank also `rocker_motion` (swings, turns_fully, limited), `swing` and `reversal_angle` [degree]
-    and `time_ratio` of a rocker that swings.
+    and `time_ratio` of a rocker that swings; with drive="cylinder" `dead_centre_angle` [degree], where the block stands
+    still, and `slide_at_dead_centre` [m], its least and greatest size.
 
     Of a LoopTrack, over the design dims of the scene:
 
@@ -53,6 +55,7 @@ def check(scene: Scene) -> xr.Dataset:
     33.03
     """
     require_scene(scene)
+    scene = in_memory(scene)
     variables: dict[str, xr.Variable] = {}
     labels: dict[str, xr.Variable] = {}
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})

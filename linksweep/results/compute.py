@@ -43,7 +43,7 @@ def compute(
 
 def surely_ok(scene: Scene) -> bool:
     """Whether the numbers of the mechanism alone say that every sample is ok."""
-    return scene.drive == "crank" and scene.mechanism.closes_everywhere
+    return scene.mechanism.always_ok(scene.drive)
 
 
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
@@ -59,12 +59,22 @@ def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field
 
 def blank(fields: dict[str, Field], status: Field) -> None:
     """NaN where the status is not 0: where it is so for every design that shares the sample."""
-    bad = status.values != 0
-    if not bad.any():
+    ok = Field(status.dims, status.values == 0)
+    if ok.values.all():
         return
-    for name, (dims, values) in fields.items():
-        beyond = tuple(k for k, dim in enumerate(status.dims) if dim not in dims)
-        shared = [dim for dim in status.dims if dim in dims]
-        there = bad.all(axis=beyond).transpose([shared.index(dim) for dim in dims if dim in shared])
-        shape = [n if dim in shared else 1 for dim, n in zip(dims, values.shape, strict=True)]
-        fields[name] = Field(dims, np.where(there.reshape(shape), np.nan, values))
+    for name, field in fields.items():
+        fields[name] = only_where(ok, field)
+
+
+def only_where(good: Field, field: Field) -> Field:
+    """A field, NaN where no design that shares the number is good."""
+    return Field(field.dims, np.where(_for_any(good, field.dims), field.values, np.nan))
+
+
+def _for_any(good: Field, dims: tuple[str, ...]) -> np.ndarray:
+    """Whether it is good for any design that shares what has these dims: broadcasts against that."""
+    beyond = tuple(k for k, dim in enumerate(good.dims) if dim not in dims)
+    shared = [dim for dim in good.dims if dim in dims]
+    there = np.any(good.values, axis=beyond).transpose([shared.index(dim) for dim in dims if dim in shared])
+    sizes = iter(there.shape)
+    return there.reshape([next(sizes) if dim in shared else 1 for dim in dims])

@@ -1,13 +1,9 @@
-"""peaks(scene): the worst of each quantity over the revolution, and where it is.
-
-Still the largest sample of a grid, improved by the parabola through it and its neighbours: an estimate, which misses a
-spike near a dead point that fits between two samples. `engine.reduce` is where an exact search belongs.
-"""
+"""peaks(scene): the worst of each quantity over the continuous revolution, and where it is."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,44 +11,61 @@ import xarray as xr
 from linksweep.engine.fuse import Reduction
 from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
-from linksweep.engine.run import Field, reduce_rows
+from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.mechanisms.validate import count_problems, name_problems, refuse
-from linksweep.results.compute import requested, require_scene, surely_ok
-from linksweep.results.jumps import with_one_sided_limits
+from linksweep.results.compute import compute, only_where, requested, require_scene, surely_ok
+from linksweep.results.exact import Found, exact_peaks, peaks_where
+from linksweep.results.lazy import by_blocks
+from linksweep.results.quadrature import Power, means
 from linksweep.results.record import design_coordinates, flags, provenance, variable
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
-ASSEMBLY = Reduction("largest_sample", "assembly")
-WORST_STATUS = Reduction("largest_sample", "status")
-SUMMARIES = ("mean", "rms")
+SUMMARIES = ("mean", "rms", "bound", "samples")
+STATUS_ANGLES = 720
+"""Angles at which a scene is looked at for jams, dead centres and the like, where its numbers alone do not tell."""
+PARTIAL, UNBOUNDED = 1, 3
 
 
-def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
-    """Worst case of each quantity over the revolution.
+class Wanted(NamedTuple):
+    """What is asked of a quantity, and the signals whose largest values, or the powers whose means, that takes."""
 
-    The largest sample of the grid, improved by a local parabola: an estimate, whose error falls with the number of
-    angles. A narrow spike between two samples can be missed; compare two grids where transmission angles get small.
-    Where friction jumps, no parabola holds: there it is the largest sample, or the larger one-sided limit at a jump.
+    quantity: Quantity
+    summary: str
+    signals: tuple[str, ...] = ()
+    powers: tuple[Power, ...] = ()
+
+
+def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, threads: int | None = None) -> xr.Dataset:
+    """Worst case of each quantity over the continuous revolution.
+
+    Exact: samples that are dense where a mechanism comes near a toggle find every rise, and between them the plan is
+    evaluated until nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the
+    limits at the ends of a revolution that toggles cut short; what grows there without bound has the peak inf.
 
     Parameters
     ----------
     scene : Scene
-    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square instead. Default: all pins and the
-        torque
-    theta2 : a count of angles, or any array of angles [degree] (then its ends are not joined)
+    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over the revolution, "F32_bound" how
+        much larger the peak could be than what was found, "F32_samples" how many crank angles were looked at. Default:
+        all pins and the torque
+    theta2 : None; or a count of angles, or any array of angles [degree], for the largest of these samples instead
     threads : at most so many (default: all cores); the numbers do not depend on it
 
     Returns
     -------
     Dataset over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity
     `T12_max`, `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution
-    (peaks are those of the angles that can be assembled) or cannot_assemble (NaN).
+    (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak is inf).
 
     Raises
     ------
     ValueError
         For an unknown name or angles that are no angles.
+
+    Notes
+    -----
+    Relative error at most 1e-10 of a peak, 1e-5 degree of its angle, besides the rounding of the forces themselves.
 
     Examples
     --------
@@ -65,42 +78,37 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = 720, thre
     require_scene(scene)
     refuse(count_problems("threads", threads))
     names = None if of is None else requested("of", of)
-    grid = in_order(crank_grid(theta2, scene.period, scene.mechanism.index))
-    sampled = scene.at(grid)
+    return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads)
+
+
+def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | None) -> xr.Dataset:
+    """The same of a scene whose numbers are in memory."""
     wanted = _wanted(scene, names)
-    checked = [ASSEMBLY] if surely_ok(sampled) else [ASSEMBLY, WORST_STATUS]
-    reductions = tuple(dict.fromkeys([*(reduction for _, _, own in wanted for reduction in own), *checked]))
-    signals = tuple(dict.fromkeys(reduction.name for reduction in reductions))
-    request = plan(scene.table, signals, sampled.inputs.forms)
-    found = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    found = with_one_sided_limits(scene, found, grid, threads)
+    index = scene.mechanism.index
+    if theta2 is None:
+        refuse(_angles_missing(scene))
+        grid, sampled = crank_grid(STATUS_ANGLES, scene.period, index), scene.at_one_angle
+        found, averages = _exact(scene, wanted, threads)
+    else:
+        grid = in_order(crank_grid(theta2, scene.period, index))
+        sampled = scene.at(grid)
+        found, averages = _of_samples(sampled, grid, wanted, threads)
     order = tuple(sampled.inputs.sizes)
+    status = _status(scene, sampled, grid, found, averages, threads)
     variables: dict[str, xr.Variable] = {}
-    for quantity, summary, own in wanted:
-        variables |= {
-            name: variable(field, units, said, order)
-            for name, field, units, said in _named(quantity, summary, [found[r] for r in own], scene.mechanism.spot)
-        }
-    variables["status"] = _status(found, order, flags(scene.mechanism.round_trip, scene.mechanism.round_meanings))
-    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}, theta2={np.size(grid.angles)})"
+    for item in wanted:
+        for name, field, units, said in _named(item, found, averages, scene.mechanism.spot):
+            variables[name] = variable(field, units, said, order)
+    attributes = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
+    variables["status"] = xr.Variable(status.dims, status.values, attributes)
+    angles = "" if theta2 is None else f", theta2={np.size(grid.angles)}"
+    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles})"
     coordinates = design_coordinates(sampled)
     return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
-def _status(found: dict[Reduction, tuple[Field, Field]], order: tuple[str, ...], attributes: dict) -> xr.Variable:
-    """0 where every sample is ok, 1 where some are, 2 where the mechanism cannot be assembled at all."""
-    status = variable(found[ASSEMBLY][0], "1", "", order)
-    if WORST_STATUS in found:
-        not_ok = variable(found[WORST_STATUS][0], "1", "", order) > 0.0
-        status = xr.where(not_ok & (status == 0.0), 1.0, status)
-    dims = tuple(dim for dim in order if dim in status.dims)
-    return xr.Variable(dims, status.transpose(*dims).values.astype(np.int8), attributes)
-
-
-def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, list[Reduction]]]:
-    """Each name's quantity, the summary asked for, and the reductions that it takes."""
+def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:
     quantities = scene.table.quantity
-    search = "largest_sample" if scene.jumps() else "largest"
     found, problems = [], []
     for name in scene.mechanism.peak_quantities(scene.drive) if names is None else names:
         stem, _, ending = name.rpartition("_")
@@ -108,41 +116,148 @@ def _wanted(scene: Scene, names: list[str] | None) -> list[tuple[Quantity, str, 
         if stem not in quantities or stem == "cond":
             problems += name_problems("of", name, [known for known in quantities if known != "cond"])
         else:
-            found.append((quantities[stem], ending, _reductions(quantities[stem], ending, search)))
+            found.append(_takes(quantities[stem], ending))
     refuse(problems)
     return found
 
 
-def _reductions(quantity: Quantity, summary: str, search: str) -> list[Reduction]:
+def _takes(quantity: Quantity, summary: str) -> Wanted:
+    """A peak of a magnitude is sought on its square, a least value as the largest of the opposite."""
+    name, squared = quantity.name, quantity.squared
     if summary == "mean":
-        return [Reduction("mean", quantity.name)]
+        return Wanted(quantity, summary, powers=((name, 1),))
     if summary == "rms":
-        return [Reduction("mean", quantity.squared) if quantity.squared else Reduction("mean_square", quantity.name)]
-    if quantity.squared:
-        return [Reduction(search, quantity.squared)]
-    return [Reduction(search, quantity.name), Reduction(search, opposite_of(quantity.name))]
+        return Wanted(quantity, summary, powers=((squared, 1) if squared else (name, 2),))
+    return Wanted(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
 
 
-def _named(quantity: Quantity, summary: str, found: list[tuple[Field, Field]], spot: str):
-    """Names, fields, units and words of what a quantity's reductions give."""
+Averages = dict[Power, Field]
+
+
+def _exact(scene: Scene, wanted: list[Wanted], threads: int | None) -> tuple[dict[str, Found], Averages]:
+    signals = tuple(dict.fromkeys(signal for item in wanted for signal in item.signals))
+    powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
+    found = exact_peaks(scene, signals, threads) if signals else {}
+    return found, means(scene, powers, threads) if powers else {}
+
+
+def _of_samples(
+    sampled: Scene, grid: Grid, wanted: list[Wanted], threads: int | None
+) -> tuple[dict[str, Found], Averages]:
+    """The largest of a grid's samples, as they stand."""
+    exact = [f"{item.quantity.name}_{item.summary}" for item in wanted if item.summary in ("bound", "samples")]
+    refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
+    largest = {s: Reduction("largest_sample", s) for item in wanted for s in item.signals}
+    averages = {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for item in wanted for p in item.powers}
+    reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
+    request = plan(sampled.table, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms)
+    reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    found = {}
+    for signal, reduction in largest.items():
+        value, angle = reduced[reduction]
+        found[signal] = Found(value, angle, value, value)
+    return found, {power: reduced[reduction][0] for power, reduction in averages.items()}
+
+
+def _angles_missing(scene: Scene) -> list[str]:
+    """Arrays over the angle that do not say of which angles they are."""
+    index = scene.mechanism.index
+    return [
+        f"{path} has {array.sizes[index]} values over {index} but no {index} coordinate: give it its angles with "
+        f'coords={{"{index}": degrees}}, or ask for the largest of samples with {index}={array.sizes[index]}'
+        for path, array in scene.arrays.items()
+        if index in array.dims and index not in array.coords
+    ]
+
+
+def _status(
+    scene: Scene, sampled: Scene, grid: Grid, found: dict[str, Found], averages: Averages, threads: int | None
+) -> xr.Variable:
+    """The assembly's 0, 1 or 2; 1 also where some sample is not ok, and 3 where a peak is without bound.
+
+    Where no sample is ok, there are no peaks either: they are made NaN.
+    """
+    order, at_one = tuple(sampled.inputs.sizes), crank_grid([0.0], scene.period, scene.mechanism.index)
+    assembly = compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
+    status = variable(assembly, "1", "", order)
+    if not surely_ok(scene):
+        least, worst = _extremes_of_status(scene, sampled, grid, threads)
+        status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
+        # on an arc a sample more or less decides nothing: it has been looked at more closely
+        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), found, averages)
+    for peak in found.values():
+        infinite = np.isinf(peak.value.values)
+        if infinite.any():
+            there = variable(Field(peak.value.dims, infinite), "1", "", order)
+            status = xr.where(there, float(UNBOUNDED), status)
+    dims = tuple(dim for dim in order if dim in status.dims)
+    return status.transpose(*dims).astype(np.int8)
+
+
+def _extremes_of_status(
+    scene: Scene, sampled: Scene, grid: Grid, threads: int | None
+) -> tuple[xr.Variable, xr.Variable]:
+    """The best and the worst status of each design's samples."""
+    reductions = tuple(Reduction(kind, "status") for kind in ("least_sample", "largest_sample"))
+    request = plan(scene.table, ("status",), sampled.inputs.forms)
+    if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
+        sampled = scene.at(grid)
+    reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    least, worst = (variable(reduced[r][0], "1", "", tuple(sampled.inputs.sizes)) for r in reductions)
+    return least, worst
+
+
+def _blank(ok: xr.Variable, found: dict[str, Found], averages: Averages) -> None:
+    """NaN where no design that shares a number is ok."""
+    good = Field(tuple(map(str, ok.dims)), ok.values)
+    if not good.values.all():
+        found |= peaks_where(good, found)
+        averages |= {power: only_where(good, field) for power, field in averages.items()}
+
+
+def _named(
+    item: Wanted, found: dict[str, Found], averages: Averages, spot: str
+) -> Iterator[tuple[str, Field, str, str]]:
+    """Names, fields, units and words of what is asked of a quantity."""
+    quantity, summary = item.quantity, item.summary
     name, units, said = quantity.name, quantity.units, quantity.long_name
-    value, angle = found[0]
+    largest = [found[signal] for signal in item.signals]
     if summary == "mean":
-        yield f"{name}_mean", value, units, f"mean over the revolution of: {said}"
+        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over the revolution of: {said}"
     elif summary == "rms":
-        yield f"{name}_rms", _map(np.sqrt, value), units, f"root mean square over the revolution of: {said}"
+        mean_square = averages[item.powers[0]]
+        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over the revolution of: {said}"
+    elif summary == "bound":
+        bound = _map(_largest, *(_bound(peak, quantity) for peak in largest))
+        yield f"{name}_bound", bound, units, f"how much larger the peak could be of: {said}"
+    elif summary == "samples":
+        samples = _map(_largest, *(peak.samples for peak in largest))
+        yield f"{name}_samples", samples, "1", f"{spot}s looked at for the peak of: {said}"
     elif quantity.squared:
-        yield f"{name}_peak", _map(np.sqrt, value), units, f"largest {said}"
-        yield f"{name}_peak_at", angle, "degree", f"{spot} of the largest {said}"
+        yield f"{name}_peak", _map(np.sqrt, largest[0].value), units, f"largest {said}"
+        yield f"{name}_peak_at", largest[0].angle, "degree", f"{spot} of the largest {said}"
     else:
-        least, least_at = _map(lambda value: 0.0 - value, found[1][0]), found[1][1]
-        yield f"{name}_max", value, units, f"largest {said}"
-        yield f"{name}_max_at", angle, "degree", f"{spot} of the largest {said}"
+        least = _map(lambda value: 0.0 - value, largest[1].value)
+        yield f"{name}_max", largest[0].value, units, f"largest {said}"
+        yield f"{name}_max_at", largest[0].angle, "degree", f"{spot} of the largest {said}"
         yield f"{name}_min", least, units, f"least {said}"
-        yield f"{name}_min_at", least_at, "degree", f"{spot} of the least {said}"
-        magnitude = Field(value.dims, np.maximum(np.abs(value.values), np.abs(least.values)))
+        yield f"{name}_min_at", largest[1].angle, "degree", f"{spot} of the least {said}"
+        magnitude = _map(lambda x, y: np.maximum(np.abs(x), np.abs(y)), largest[0].value, least)
         yield f"{name}_peak", magnitude, units, f"largest magnitude of the {said}"
 
 
-def _map(function, field: Field) -> Field:
-    return Field(field.dims, function(field.values))
+def _bound(peak: Found, quantity: Quantity) -> Field:
+    """How much larger a peak could be; of a square's, with √(v + δ) − √v = δ/(√(v + δ) + √v)."""
+    if not quantity.squared:
+        return peak.beyond
+    value, beyond = peak.value.values, peak.beyond.values
+    with np.errstate(invalid="ignore"):
+        return Field(peak.value.dims, beyond / (np.sqrt(value + beyond) + np.sqrt(value)))
+
+
+def _largest(*values: np.ndarray) -> np.ndarray:
+    return np.max(values, axis=0)
+
+
+def _map(function: Callable, *fields: Field) -> Field:
+    return Field(fields[0].dims, function(*(field.values for field in fields)))

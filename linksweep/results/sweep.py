@@ -10,6 +10,7 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import choice_problems, count_problems, name_problems, refuse
 from linksweep.results.compute import blank, compute, requested, require_scene, sample_status
+from linksweep.results.lazy import by_blocks
 from linksweep.results.record import described
 from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
@@ -62,6 +63,12 @@ def sweep(
     """
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
+    wanted = None if outputs is None else requested("outputs", outputs)
+    return by_blocks(_sweep, scene, of_samples=True, theta2=theta2, outputs=wanted, solver=solver, threads=threads)
+
+
+def _sweep(scene: Scene, theta2: Any, outputs: list[str] | None, solver: str, threads: int | None) -> xr.Dataset:
+    """The same of a scene whose numbers are in memory."""
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     names = _names(scene, outputs)
     sampled = scene.at(grid)
@@ -76,10 +83,9 @@ def sweep(
     return described(scene, sampled, grid, fields, status, command)
 
 
-def _names(scene: Scene, outputs: Iterable[str] | None) -> tuple[str, ...]:
-    if outputs is None:
+def _names(scene: Scene, names: list[str] | None) -> tuple[str, ...]:
+    if names is None:
         return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
-    names = requested("outputs", outputs)
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in name_problems("outputs", name, known)])
     return tuple(name for name in names if name != "status")

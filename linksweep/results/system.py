@@ -12,6 +12,7 @@ from linksweep.engine.run import Field, Grid
 from linksweep.results.compute import blank, compute, require_scene, sample_status
 from linksweep.results.record import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 
@@ -37,8 +38,9 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     - Slider-crank: document 1's rows, nine columns instead of the ten printed, row 6 with F34 = −F43, the friction row
       with the sign that its abs() stands for, moments of the crank about its centre of gravity. With drive="coupler"
       T13 stands on the rod, T12 is known (document 3; its row T14 = 0 is trivial and left out: `T14` comes from sweep).
-    - Inverted slider-crank: the same equations with the slide's normal force F43n and moment T43. The loop: document
-      3's 2×2, example 17-4.
+    - Inverted slider-crank: the same equations with the slide's normal force F43n and moment T43; with
+      drive="cylinder" cylinder_force stands on block and rocker in place of a torque. The loop: document 3's 2×2,
+      example 17-4.
 
     Examples
     --------
@@ -49,6 +51,7 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     (9, 9)
     """
     require_scene(scene)
+    scene = in_memory(scene)
     angles = [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
     grid = crank_grid(angles, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
@@ -99,10 +102,35 @@ def _spread(field: Field, dims: tuple[str, ...]) -> np.ndarray:
 
 
 def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None = None) -> dict[str, Field]:
-    """The unknowns by LAPACK with partial pivoting, and the matrix's exact 1-norm condition number `cond`."""
+    """The unknowns by LAPACK with partial pivoting, and the exact 1-norm condition number `cond`, of the matrix with
+    rows and columns brought to the same size: units and scales then have no say in which pivots are taken."""
     dims, matrix, rhs = assembled(scene, grid, threads)
     bad = np.broadcast_to(_spread(Field(status.dims, status.values != 0), dims), matrix.shape[:-2])
     matrix[bad] = np.eye(matrix.shape[-1])
-    solution = np.linalg.solve(matrix, rhs[..., None])[..., 0]
-    found = {name: Field(dims, solution[..., k]) for k, name in enumerate(scene.mechanism.unknowns(scene.drive))}
-    return found | {"cond": Field(dims, np.linalg.cond(matrix, 1))}
+    unknowns = scene.mechanism.unknowns(scene.drive)
+    balanced, rows, columns = equilibrated(matrix, unknowns)
+    with np.errstate(over="ignore", under="ignore"):  # what no float can hold is inf, or 0
+        solution = np.ldexp(np.linalg.solve(balanced, np.ldexp(rhs, -rows)[..., None])[..., 0], -columns)
+    found = {name: Field(dims, solution[..., k]) for k, name in enumerate(unknowns)}
+    return found | {"cond": Field(dims, np.linalg.cond(balanced, 1))}
+
+
+def equilibrated(matrix: np.ndarray, unknowns: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rows, then columns divided by powers of two until their largest entries lie in [1/2, 1): no digit changes.
+
+    Torques are first divided by the largest arm of a force beside them, so that the unit of length has no say either.
+    Returns the matrix with the exponents of its rows and of its columns.
+    """
+    torques = np.array([name.startswith("T") for name in unknowns])
+    beside = (matrix[..., torques] != 0.0).any(axis=-1)[..., None] & ~torques
+    arm = _exponent(np.where(beside, matrix, 0.0), axis=(-2, -1))
+    units = np.where(torques, arm[..., None], 0)
+    balanced = np.ldexp(matrix, units[..., None, :])
+    rows = _exponent(balanced, axis=-1)
+    balanced = np.ldexp(balanced, -rows[..., :, None])
+    columns = _exponent(balanced, axis=-2)
+    return np.ldexp(balanced, -columns[..., None, :]), rows, columns - units
+
+
+def _exponent(matrix: np.ndarray, axis: int | tuple[int, ...]) -> np.ndarray:
+    return np.frexp(np.abs(matrix).max(axis=axis))[1]

@@ -1,12 +1,11 @@
-"""What may act on a mechanism: the classes that a scene takes as loads.
+"""What may act on a mechanism: the classes that a scene takes as loads, and that its file can name.
 
-Each has `problems(path, links)`, a `form` (which rows it brings), `sampled(path, sample)` (itself over a sweep's
-angles) and `parameters(name, machine)` (its numbers, given the machine's). A new kind of load is one more here.
+Each is an `Action`: a new kind of load is one more of them, one more here, and its form in `mechanisms`.
 """
 
+from linksweep.scene.action import Action
 from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.loads import Load
 from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
 
-Action = Load | GasPressure | Spring | Damper | TorsionSpring | TorsionDamper
-ACTIONS = (Load, GasPressure, Spring, Damper, TorsionSpring, TorsionDamper)
+ACTIONS: tuple[type[Action], ...] = (Load, GasPressure, Spring, Damper, TorsionSpring, TorsionDamper)

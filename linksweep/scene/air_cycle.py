@@ -20,9 +20,10 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import SliderCrank
+from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.slider_crank import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, parameter, problems, said
+from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, said
 
 ATMOSPHERE = 101325.0
 
@@ -35,8 +36,8 @@ class Phase(NamedTuple):
     opened: Number
 
 
-@dataclass(frozen=True)
-class OttoCycle:
+@dataclass(frozen=True, eq=False)
+class OttoCycle(ByContent):
     """Ideal Otto cycle: isentropic compression and expansion, all the heat at top dead centre.
 
     Parameters
@@ -81,8 +82,8 @@ class OttoCycle:
         return _pressure(self, self.peak_pressure, 1.0, phase(engine, theta2, turning, self.period))
 
 
-@dataclass(frozen=True)
-class DieselCycle:
+@dataclass(frozen=True, eq=False)
+class DieselCycle(ByContent):
     """Ideal Diesel cycle: isentropic compression and expansion, heat at constant pressure until the cutoff.
 
     Parameters
@@ -115,7 +116,8 @@ class DieselCycle:
 
     def problems(self, path: str) -> list[str]:
         found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
-        if not found and np.any(self.cutoff_ratio > self.compression_ratio):
+        over = False if found else self.cutoff_ratio > self.compression_ratio
+        if not is_lazy(over) and np.any(over):
             largest = float(np.max(self.cutoff_ratio))
             found.append(f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it")
         end = "" if found or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
@@ -130,32 +132,18 @@ class DieselCycle:
 Cycle = OttoCycle | DieselCycle
 
 
-def dead_centres(engine: SliderCrank) -> tuple[Number, Number]:
-    """Crank angles [degree] of top dead centre (rod and crank stretched) and bottom dead centre (folded)."""
-    a, b, e = engine.crank.length, engine.rod.length, engine.offset
-    sign = BRANCH_SIGN[engine.branch]
-    ahead = np.mod(engine.slide_angle + (0.0 if sign > 0.0 else 180.0), 360.0)
-    with np.errstate(all="ignore"):  # a design that does not turn fully may have none: NaN
-        stretched, folded = (np.degrees(np.arcsin(np.divide(e, reach))) for reach in (a + b, b - a))
-    return ahead + sign * stretched, ahead + 180.0 + sign * folded
-
-
-def turns_fully(engine: SliderCrank) -> Number:
-    return engine.rod.length > engine.crank.length + abs(engine.offset)
-
-
 def phase(engine: SliderCrank, theta2, turning: Number, period: float) -> Phase:
     """Where a cylinder is in its cycle; NaN for designs whose crank does not turn fully."""
     angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
     theta2 = xr.DataArray(angles, {"theta2": angles}, "theta2")
     a, b, e = engine.crank.length, engine.rod.length, engine.offset
-    sign, (top, bottom) = BRANCH_SIGN[engine.branch], dead_centres(engine)
+    sign, (top, bottom) = BRANCH_SIGN[engine.branch], engine.dead_centres()
     cos, sin = cos_sin(theta2 - engine.slide_angle)
     with np.errstate(all="ignore"):
         reach, least = np.sqrt((a + b) ** 2 - e**2), np.sqrt((b - a) ** 2 - e**2)
         opened = (reach - sign * a * cos - np.sqrt(b**2 - (e - a * sin) ** 2)) / (reach - least)
     turned, bottom = np.mod(turning * (theta2 - top), period), np.mod(turning * (bottom - top), 360.0)
-    return Phase(turned, bottom, xr.where(turns_fully(engine), opened.clip(0.0, 1.0), np.nan))
+    return Phase(turned, bottom, xr.where(engine.turns_fully, opened.clip(0.0, 1.0), np.nan))
 
 
 def _pressure(cycle: Cycle, peak: Number, cutoff: Number, at: Phase) -> xr.DataArray:
@@ -177,8 +165,7 @@ def _compressed(cycle: Cycle) -> Number:
 def _below(peak: Number, compressed: Number) -> str:
     """What is wrong with a peak pressure that compression alone exceeds."""
     peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
-    short = (peak < compressed).values
-    if not short.any():
+    if is_lazy(peak) or is_lazy(compressed) or not (short := (peak < compressed).values).any():
         return ""
     k = int(np.argmax(short))
     least = f"{compressed.values.reshape(-1)[k]:.6g} Pa"

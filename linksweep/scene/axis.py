@@ -12,6 +12,8 @@ import xarray as xr
 from linksweep.mechanisms.validate import did_you_mean
 from linksweep.scene.units import accepted_unit, quantity, shown
 
+MOST = 1_000_000
+"""Numbers of an axis that is given by its ends."""
 KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2")
 
 
@@ -81,6 +83,8 @@ def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
     start, stop = (_read_nested(table[key], key, kind, unit, problems) for key in ("start", "stop"))
     if not isinstance(num := table["num"], int) or isinstance(num, bool) or num < 1:
         problems.append(f"num = {shown(num)}: must be a count, 1 or more")
+    elif num > MOST:
+        problems.append(f"num = {shown(num)}: must be at most {MOST}; for more designs use sample or a DataArray")
     return None if problems else _evenly(start, stop, num)
 
 

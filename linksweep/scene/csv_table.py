@@ -67,7 +67,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     listed = f"; a CSV column has {', '.join(KEYS)}"
     refuse([f"{key}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
     unit = _unit(table, kind)
-    if not isinstance(table["csv"], str):
+    if not isinstance(table["csv"], str) or not table["csv"].isprintable():
         raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
     samples = _samples(name, rows, _column(table, rows[0].cells))

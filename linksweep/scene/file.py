@@ -213,6 +213,7 @@ SCHEMA: dict[type, dict[str, Field]] = {
     SliderCrank: _fields(SliderCrank, crank=_LINKS, rod=_LINKS),
     InvertedSliderCrank: _fields(InvertedSliderCrank, crank=_LINKS, rocker=_LINKS),
     LoopTrack: _fields(LoopTrack),
+    **{cls: _fields(cls) for cls in ACTIONS},
     Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR),
     GasPressure: _fields(GasPressure, pressure=NumberOr("pressure", _CYCLES)),
     **{cls: _fields(cls) for cls in _CYCLES.classes.values()},
@@ -285,9 +286,14 @@ def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
     ValueError
         When a number of the scene is a function of theta2: sample it first.
     """
+    return dumped(_written(scene, (), elsewhere))
+
+
+def dumped(raw: dict[str, Any]) -> str:
+    """Return the text of a document, with each list in one line."""
     import tomli_w  # here: only those who write files need it
 
-    text = tomli_w.dumps(_written(scene, (), elsewhere))
+    text = tomli_w.dumps(raw)
     # tomli_w gives each number of a list a line of its own; one line for all reads better.
     return re.sub(r"\[\n *([-+.\w,\s\"]*),\n *\]", lambda found: "[" + re.sub(r"\n *", " ", found[1]) + "]", text)
 
@@ -302,8 +308,11 @@ def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
         words[key] = log.missing((*where, key), schema[key].advice((*where, key)))
     try:
         return cls(**words)
-    except ValueError as error:
-        log.refused(error, where)
+    except (ValueError, TypeError, AttributeError) as error:
+        if isinstance(error, ValueError):
+            log.refused(error, where)
+        elif not log.problems:  # else it stumbled over a value that was not read
+            raise
         # Unchecked, so that the scene can still look at the rest of the file; it never gets out of here.
         refused = object.__new__(cls)
         refused.__dict__.update(words)

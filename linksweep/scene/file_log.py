@@ -25,7 +25,8 @@ UNREAD: Any = "(not read)"
 def path_of(where: Where) -> str:
     """Return the path as the constructors name it: without "mechanism", lists counted from one."""
     keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
-    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
+    path = "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
+    return path.replace("\n", "\\n")  # a quoted key may have any character, a message one line
 
 
 class Log:
@@ -104,7 +105,12 @@ class Log:
 def document(text: str, name: str) -> dict[str, Any]:
     """Parse the TOML; an error says file, line and, for the commonest slip, what to write."""
     try:
-        return tomllib.loads(text)
+        raw = tomllib.loads(text)
+        for _ in _places(raw):  # all that follows goes as deep
+            pass
+        return raw
+    except RecursionError:
+        raise ValueError(f"{name}:1: not TOML of a scene: tables or lists are nested too deep") from None
     except tomllib.TOMLDecodeError as error:
         lines = text.rstrip().split("\n")
         reason, at = str(error).partition(" (at ")[0], re.search(r"at line (\d+)", str(error))
@@ -114,6 +120,8 @@ def document(text: str, name: str) -> dict[str, Any]:
         if bare and "," in bare[2]:
             advice = "; a number has a decimal point, no comma; a list stands in brackets"
         raise ValueError(f"{name}:{number}: not TOML: {reason}{advice}") from None
+    except ValueError as error:  # Python's own limit
+        raise ValueError(f"{name}:1: not TOML of a scene: a number has too many digits ({error})") from None
 
 
 def _key_lines(text: str) -> dict[Where, int]:

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import copy
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from linksweep.mechanisms import SliderCrank
+from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.slider_crank import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, Rule, parameter, problems
-from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, dead_centres, turns_fully
+from linksweep.mechanisms.validate import Number, Rule, is_lazy, parameter, problems
+from linksweep.scene.action import Action, Revolution, with_values
+from linksweep.scene.air_cycle import ATMOSPHERE, Cycle
 
 PRESSURE = Rule("pressure", over_angle=True)
 
 
-@dataclass(frozen=True)
-class GasPressure:
+@dataclass(frozen=True, eq=False)
+class GasPressure(Action):
     """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
 
     Parameters
@@ -37,7 +37,8 @@ class GasPressure:
     A DataArray over theta2 is interpolated by a periodic cubic spline at angles that it does not hold. One that spans
     more than 360 degrees makes the scene's period 720, and so does a cycle of four strokes.
 
-    In a study, a design whose crank does not turn fully has no cycle: there an ideal cycle gives no force.
+    In a study, a design whose crank does not turn fully has no ideal cycle: none of its samples is ok (status
+    `no_cycle` where it can be assembled), and its forces are NaN.
 
     Raises
     ------
@@ -58,9 +59,11 @@ class GasPressure:
     pressure: Number | Cycle = parameter("pressure", over_angle=True)
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
 
-    force: ClassVar[Number] = 0.0  # along the guide [N]; each instance brought to crank angles has its own
-    link = "slider"
-    form = LoadForm("slider", force=True, torque=False, link_axes=True)
+    in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
+
+    @property
+    def form(self) -> LoadForm:
+        return LoadForm("slider", force=True, torque=False, link_axes=True, full_turns=self.cycle is not None)
 
     @property
     def cycle(self) -> Cycle | None:
@@ -68,21 +71,19 @@ class GasPressure:
 
     @property
     def period(self) -> float:
-        """Of the cycle [degree]; 0 where there is none."""
         return self.cycle.period if self.cycle else 0.0
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
         return problems(given, path + ".") + (self.cycle.problems(f"{path}.pressure") if self.cycle else [])
 
-    def misfits(self, path: str, mechanism: Any) -> list[str]:
-        """Why a mechanism does not take this load."""
+    def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if not isinstance(mechanism, SliderCrank):
             kind = type(mechanism).__name__
             return [f"{path} is a GasPressure on a {kind}: must be on a SliderCrank; give the {kind} a Load"]
         if mechanism.branch not in BRANCH_SIGN:
             return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
-        turns = turns_fully(mechanism)
+        turns = mechanism.turns_fully
         if self.cycle and not hasattr(turns, "dims") and not turns:
             return [
                 f"{path}.pressure is a cycle, which takes full turns of the crank: rod.length must be greater than "
@@ -90,33 +91,31 @@ class GasPressure:
             ]
         return []
 
-    def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> GasPressure:
-        """The load with its pressures brought to a sweep's angles by sample(path, value, rule)."""
-        pressure = self.pressure if self.cycle else sample(f"{path}.pressure", self.pressure, PRESSURE)
-        return replace(self, pressure=pressure, crankcase=sample(f"{path}.crankcase", self.crankcase, PRESSURE))
-
-    def in_cylinder(self, engine: Any, omega2: Number, theta2: np.ndarray) -> GasPressure:
-        """The load with its force along the guide at crank angles; `omega2` and pressures are at them already."""
-        pressure = self.cycle.pressure(engine, theta2, _turning(omega2)) if self.cycle else self.pressure
-        area = 0.25 * math.pi * (self.bore * self.bore)
-        force = BRANCH_SIGN[engine.branch] * (self.crankcase - pressure) * area
-        brought = copy.copy(self)
-        object.__setattr__(brought, "force", force.fillna(0.0) if hasattr(force, "dims") else force)
+    def sampled(self, path: str, revolution: Revolution) -> GasPressure:
+        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE)
+        if self.cycle is None:
+            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
+            return with_values(self, pressure=pressure, crankcase=crankcase)
+        brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
+        pressure = self.cycle.pressure(engine, revolution.grid.angles, _turning(revolution.omega2))
+        object.__setattr__(brought, "in_cylinder", pressure)
         return brought
 
-    def jumps(self, engine: Any) -> tuple[Number, ...]:
-        """Crank angles [degree] at which the pressure jumps."""
-        return dead_centres(engine) if self.cycle else ()
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Crank angles [degree] at which a cycle's pressure jumps: its dead centres."""
+        return cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
 
-    def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """The load's numbers under the names that the physics wires by."""
-        zero = {f"{load}_force_y": 0.0, f"{load}_at_x": 0.0, f"{load}_at_y": 0.0}
-        return {f"{load}_force_x": self.force} | zero
+    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""
+        pressure = self.in_cylinder if self.cycle else self.pressure
+        area = 0.25 * math.pi * (self.bore * self.bore)
+        force = machine["branch_sign"] * (self.crankcase - pressure) * area
+        return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}
 
 
 def _turning(omega2: Number) -> Number:
-    """1 for a crank that turns counter-clockwise, -1 for clockwise; one number where all do the same."""
+    """1 for a crank that turns counter-clockwise, -1 for clockwise; one number where all are known to do the same."""
     clockwise = omega2 < 0.0
-    if np.all(clockwise) or not np.any(clockwise):
+    if not is_lazy(clockwise) and (np.all(clockwise) or not np.any(clockwise)):
         return -1.0 if np.any(clockwise) else 1.0
     return 1.0 - 2.0 * clockwise

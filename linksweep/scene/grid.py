@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.run import Grid
-from linksweep.mechanisms.degrees import cos_sin
+from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.validate import said
 
-NAMES = ("cos2", "sin2", "cos2_half", "sin2_half", "cos2_half_squared", "sin2_half_squared", "radians2")
+NAMES = ("cos2", "sin2", "cos2_rest", "sin2_rest", "radians2")
 
 
 def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
@@ -51,7 +51,5 @@ def in_order(grid: Grid) -> Grid:
 
 
 def _grid(angles: np.ndarray, period: float, dim: str) -> Grid:
-    half = cos_sin(0.5 * angles)
-    one_turn = np.radians(np.mod(angles, 360.0))
-    table = np.array([*cos_sin(angles), *half, *(number * number for number in half), one_turn])
+    table = np.array([*cos_sin_rests(angles), np.radians(np.mod(angles, 360.0))])
     return Grid(dim, angles, period, NAMES, table)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_problems, parameter, problems
+from linksweep.mechanisms.validate import Number, Rule, as_pair, choice_problems, pair_problems, parameter, problems
+from linksweep.scene.action import Action, Revolution, with_values
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
@@ -16,8 +17,8 @@ FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
 AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
 
 
-@dataclass(frozen=True)
-class Load:
+@dataclass(frozen=True, eq=False)
+class Load(Action):
     """A force at a point of a link, a torque on it, or both, besides weight and inertia.
 
     Parameters
@@ -50,6 +51,8 @@ class Load:
     origin: str = "pin"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "force", as_pair(self.force))
+        object.__setattr__(self, "at", as_pair(self.at))
         if self.link == "slider" and self.force is not None and not isinstance(self.force, tuple | list | str):
             object.__setattr__(self, "force", (self.force, 0.0))
             object.__setattr__(self, "frame", "link")
@@ -72,10 +75,11 @@ class Load:
             + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
         )
 
-    def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> Load:
-        """The load with its force and torque brought to a sweep's angles by sample(path, value, rule)."""
-        force = self.force and tuple(sample(f"{path}.force[{k}]", f, FORCE) for k, f in enumerate(self.force, 1))
-        return replace(self, force=force, torque=sample(f"{path}.torque", self.torque, TORQUE))
+    def sampled(self, path: str, revolution: Revolution) -> Load:
+        force = self.force and tuple(
+            revolution.sample(f"{path}.force[{k}]", component, FORCE) for k, component in enumerate(self.force, 1)
+        )
+        return with_values(self, force=force, torque=revolution.sample(f"{path}.torque", self.torque, TORQUE))
 
     def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """The load's numbers under the names that the physics wires by; `machine` has its link's centre of gravity."""

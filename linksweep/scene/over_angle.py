@@ -10,6 +10,9 @@ import xarray as xr
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.validate import Rule, number_problems, refuse
 
+TWO_TURNS = np.arange(0.0, 720.0, 0.5)
+"""Angles [degree] at whose values a function of theta2 is known again."""
+
 
 def period_of_function(function: Any, turn: float) -> float:
     """Two turns for a function of theta2 that repeats after two turns but not after one; else one."""
@@ -30,8 +33,14 @@ def period_of(value: Any, shortest: float) -> float:
     return shortest if np.ptp(value["theta2"].values) <= shortest else 2.0 * shortest
 
 
-def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> xr.DataArray:
-    """A function or DataArray of theta2 as a DataArray over the grid's angles.
+def tabulated(function: Any) -> xr.DataArray:
+    """A function of theta2 as a DataArray of its values over two turns."""
+    values = np.broadcast_to(np.asarray(function(TWO_TURNS.copy()), dtype=float), TWO_TURNS.shape)
+    return xr.DataArray(values, {"theta2": TWO_TURNS}, "theta2")
+
+
+def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> Any:
+    """A function or DataArray of theta2 as a DataArray over the grid's angles; any other number as it is.
 
     At angles that a DataArray does not hold it is interpolated by a periodic cubic spline (scipy's CubicSpline,
     bc_type="periodic"), over `period` degrees (one turn) or, where its angles span more, two turns; at angles that it
@@ -44,6 +53,8 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> x
     """
     if callable(value) and not hasattr(value, "dims"):
         return _called(path, value, rule, grid)
+    if "theta2" not in getattr(value, "dims", ()):
+        return value
     if "theta2" not in value.coords:
         return _as_it_stands(path, value, grid)
     known = value["theta2"].values

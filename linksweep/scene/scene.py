@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -14,11 +14,13 @@ from linksweep.engine.plan import InputForms
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
+from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.motion import OverDesigns
 from linksweep.mechanisms.validate import (
     UNITS,
     Number,
     Rule,
+    as_pair,
     choice_problems,
     is_array,
     pair_problems,
@@ -27,12 +29,13 @@ from linksweep.mechanisms.validate import (
     refuse,
     said,
 )
-from linksweep.scene.actions import ACTIONS, Action
+from linksweep.scene.action import Action, Revolution, with_values
 from linksweep.scene.dimensions import dimension_problems
-from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.grid import NAMES as GRID_ROWS
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.over_angle import at_angles, period_of, period_of_function
-from linksweep.scene.springs import TorsionSpring
+from linksweep.scene.paths import numbers
+from linksweep.scene.units import unit_problems
 
 ACCELERATION = Rule("acceleration")
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
@@ -48,7 +51,7 @@ class Inputs(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(ByContent):
     """What happens to a mechanism: its drive, gravity and loads.
 
     Parameters
@@ -59,7 +62,7 @@ class Scene:
     gravity : (gx, gy) [m/s²]; none by default, (0, -9.81) for a mechanism that stands upright
     loads : any number of Load, GasPressure, Spring, Damper, TorsionSpring and TorsionDamper
     drive : the link whose ground torque is the unknown: "crank" (T12), "coupler" (T13) or "rocker" (T14);
-        "crank" by default
+        or the "cylinder" of an inverted slider-crank (cylinder_force); "crank" by default
     speed : of the car in a loop [m/s]: at every position, or with profile="energy" at the bottom
     thrust : of the car along the track [N]; none by default
     profile : "constant" (by default), or "energy", which follows work and energy round the loop
@@ -68,7 +71,9 @@ class Scene:
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
     theta2, as a DataArray or a function of theta2 [degree]. One that takes two turns of the crank to come round makes
-    the cycle a four-stroke one: theta2 then runs to 720.
+    the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the parameter's own unit; one
+    that says another in attrs["units"] is refused, not converted. Where one is dask's, results are lazy too, chunk by
+    chunk of the designs, and its values are judged when they are computed.
 
     Raises
     ------
@@ -101,15 +106,15 @@ class Scene:
         known = " or ".join(kind.__name__ for kind in MECHANISMS)
         found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
         found += problems(self)
-        if isinstance(self.gravity, np.ndarray) and self.gravity.shape == (2,):
-            object.__setattr__(self, "gravity", tuple(self.gravity.tolist()))
+        object.__setattr__(self, "gravity", as_pair(self.gravity))
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += self._take_motion() if sound else []
         found += self._take_loads()
         refuse(found)
-        refuse([problem for path, gas in self.gas.items() for problem in gas.misfits(path, self.mechanism)])
+        refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
         # omega2 may be asked for as it was given; the loop's speed over theta is not the speed that was given
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
+        refuse(self._unit_problems())
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
     def _take_motion(self) -> list[str]:
@@ -135,6 +140,11 @@ class Scene:
         over = [path for path, array in self.arrays.items() if index in array.dims and "omega2" not in self.motion]
         return [f"{path} depends on {index}: it must be the same at every {self.mechanism.spot}" for path in over]
 
+    def _unit_problems(self) -> list[str]:
+        """Arrays that say another unit than that of the parameter that each is."""
+        arrays = [(path, value, kind) for path, value, kind in numbers(self) if path in self.arrays and kind]
+        return [p for path, array, kind in arrays for p in unit_problems(path, array.attrs.get("units"), kind)]
+
     def _of_mechanism(self, words: str) -> tuple[str, ...]:
         """The mechanism's drives or links; of an unsound one, those of any."""
         kinds = (type(self.mechanism),) if isinstance(self.mechanism, MECHANISMS) else MECHANISMS
@@ -142,24 +152,19 @@ class Scene:
 
     def _take_loads(self) -> list[str]:
         """Any collection of loads as a tuple; a single load counts as one."""
-        loads = (self.loads,) if isinstance(self.loads, ACTIONS) else self.loads
+        loads = (self.loads,) if isinstance(self.loads, Action) else self.loads
         if isinstance(loads, str | Mapping | np.ndarray) or is_array(loads) or not isinstance(loads, Iterable):
             return [f"loads = {said(loads)}: must be a Load, or a list of them"]
         object.__setattr__(self, "loads", tuple(loads))
         found: list[str] = []
         links = self._of_mechanism("links")  # a mechanism without any takes no loads, as has been said
-        for k, load in enumerate(self.loads if links else (), 1):
-            sound = isinstance(load, ACTIONS)
-            problem = [f"loads[{k}] = {said(load)}: must be a Load"]
-            found += load.problems(f"loads[{k}]", links) if sound else problem
+        for path, load in self._loads() if links else ():
+            sound = isinstance(load, Action)
+            found += load.problems(path, links) if sound else [f"{path} = {said(load)}: must be a Load"]
         return found
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Scene):
-            return NotImplemented
-        return _content(self) == _content(other)
-
-    __hash__ = None  # type: ignore[assignment]
+    def _loads(self) -> list[tuple[str, Action]]:
+        return [(f"loads[{k}]", load) for k, load in enumerate(self.loads, 1)]
 
     @cached_property
     def table(self) -> Table:
@@ -169,15 +174,15 @@ class Scene:
     @cached_property
     def arrays(self) -> dict[str, xr.DataArray]:
         """The scene's DataArrays by the path of the parameter that each is."""
-        return {path: value for path, value, _ in _numbers(self) if isinstance(value, xr.DataArray)}
+        return {path: value for path, value, _ in numbers(self) if isinstance(value, xr.DataArray)}
 
     @cached_property
     def parameters(self) -> dict[str, xr.Variable]:
         """The same as variables that say their unit, without what the user's arrays carry besides."""
-        units = {path: UNITS.get(kind, "") for path, _, kind in _numbers(self)}
+        units = {path: UNITS.get(kind, "") for path, _, kind in numbers(self)}
         return {
             path: xr.Variable(
-                array.dims, array.values.astype(float), {"units": units[path], "long_name": f"parameter {path}"}
+                array.dims, array.data.astype(float), {"units": units[path], "long_name": f"parameter {path}"}
             )
             for path, array in self.arrays.items()
         }
@@ -185,51 +190,36 @@ class Scene:
     @cached_property
     def functions(self) -> dict[str, Any]:
         """The scene's functions of theta2 by path."""
-        return {path: value for path, value, _ in _numbers(self) if callable(value) and not hasattr(value, "dims")}
-
-    @cached_property
-    def gas(self) -> dict[str, GasPressure]:
-        """The scene's gas pressures by path."""
-        return {f"loads[{k}]": load for k, load in enumerate(self.loads, 1) if isinstance(load, GasPressure)}
+        return {path: value for path, value, _ in numbers(self) if callable(value) and not hasattr(value, "dims")}
 
     @cached_property
     def period(self) -> float:
         """Of the whole cycle [degree]: two turns of the crank where a load, omega2 or alpha2 takes two."""
         turn = self.mechanism.period
         arrays = [array for array in self.arrays.values() if "theta2" in array.dims]
-        periods = [period_of(array, turn) for array in arrays] + [gas.period for gas in self.gas.values()]
+        periods = [period_of(array, turn) for array in arrays] + [load.period for load in self.loads]
         return max([turn, *periods, *(period_of_function(function, turn) for function in self.functions.values())])
 
     def jumps(self) -> tuple[Number, ...]:
         """Crank angles [degree] at which forces jump: friction where a slider turns round, pressure at dead centres,
         a torsion spring at 180."""
         with np.errstate(invalid="ignore"):  # designs that do not turn fully may have none: NaN
-            own = (*self.mechanism.jumps(), *over_designs(self.mechanism.driven_peaks(self.motion)).values())
-            wound = (angle for load in self.loads if isinstance(load, TorsionSpring) for angle in load.jumps())
-            return (*own, *wound, *(angle for gas in self.gas.values() for angle in gas.jumps(self.mechanism)))
+            return (*self.mechanism.jumps(), *(angle for load in self.loads for angle in load.jumps(self.mechanism)))
+
+    @cached_property
+    def at_one_angle(self) -> Scene:
+        """The scene at one angle, for what does not depend on it; the scene itself where nothing changes with it."""
+        return self.at(crank_grid([0.0], self.period, self.mechanism.index))
 
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""
-        changing = self.functions or any("theta2" in array.dims for array in self.arrays.values())
-        if not changing and not self.gas:
-            return self
+        omega2 = self._sampled("omega2", grid)
+        revolution = Revolution(self.mechanism, grid, omega2)
+        loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
+        return with_values(self, omega2=omega2, alpha2=self._sampled("alpha2", grid), loads=loads)
 
-        def sample(path: str, value: Any, rule: Rule) -> Any:
-            changes = path in self.functions or "theta2" in getattr(value, "dims", ())
-            return at_angles(path, value, rule, grid, self.mechanism.period) if changes else value
-
-        omega2 = sample("omega2", self.omega2, Rule("angular_velocity", over_angle=True))
-
-        def brought(path: str, load: Action) -> Action:
-            load = load.sampled(path, sample)
-            return load.in_cylinder(self.mechanism, omega2, grid.angles) if isinstance(load, GasPressure) else load
-
-        return replace(
-            self,
-            omega2=omega2,
-            alpha2=sample("alpha2", self.alpha2, Rule("angular_acceleration", over_angle=True)),
-            loads=tuple(brought(f"loads[{k}]", load) for k, load in enumerate(self.loads, 1)),
-        )
+    def _sampled(self, word: str, grid: Grid) -> Number:
+        return at_angles(word, getattr(self, word), _rule(word), grid, self.mechanism.period)
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -270,8 +260,8 @@ class Scene:
 def over_designs(functions: OverDesigns) -> dict[str, Any]:
     """What functions of numbers return, with the dims of their numbers."""
     found: dict[str, Any] = {}
-    for function, numbers in functions:
-        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
+    for function, given in functions:
+        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in given))
         returned: Mapping[str, Any] = function(*(array.values for array in arrays))
         found |= {name: xr.DataArray(values, dims=arrays[0].dims) for name, values in returned.items()}
     return found
@@ -302,35 +292,3 @@ def _plain(variable: xr.Variable) -> xr.Variable:
     """A coordinate with those of its attributes that every file format takes, and no memory of a file it came from."""
     kept = {k: v for k, v in variable.attrs.items() if isinstance(v, str | int | float) and not isinstance(v, bool)}
     return xr.Variable(variable.dims, variable.values, kept)
-
-
-PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
-"""Kinds of the numbers that come in pairs."""
-
-
-def _numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
-    """Every number of a scene with its path, as messages write it, and its kind ("" where that varies)."""
-    for item in fields(owner):
-        value, path = getattr(owner, item.name), prefix + item.name
-        if "rule" in item.metadata and (isinstance(value, type) or not is_dataclass(value)):
-            yield path, value, item.metadata["rule"].kind
-        elif item.name == "loads":
-            for k, load in enumerate(value, 1):
-                yield from _numbers(load, f"loads[{k}].")
-        elif is_dataclass(value) and not isinstance(value, type):
-            yield from _numbers(value, "" if item.name == "mechanism" else path + ".")
-        elif isinstance(value, tuple | list):
-            kinds = PAIRS.get(item.name, ("",) * len(value))
-            yield from (
-                (f"{path}[{k}]", number, kind) for k, (number, kind) in enumerate(zip(value, kinds, strict=False), 1)
-            )
-
-
-def _content(value: Any) -> Any:
-    """What makes two scenes equal, as nested tuples."""
-    if is_dataclass(value):
-        return type(value).__name__, tuple(_content(getattr(value, item.name)) for item in fields(value))
-    if isinstance(value, xr.DataArray):
-        coordinates = [(dim, value[dim].values.tolist()) for dim in value.dims if dim in value.coords]
-        return value.dims, value.astype(float).values.tobytes(), repr(coordinates)
-    return tuple(map(_content, value)) if isinstance(value, tuple | list) else value

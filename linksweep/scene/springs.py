@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.spring_forms import GROUND, DamperForm, SpringForm, TorsionDamperForm, TorsionSpringForm
 from linksweep.mechanisms.validate import Number, Rule, choice_problems, number_problems, parameter, problems, said
+from linksweep.scene.action import Action
 from linksweep.scene.loads import AT
 
 POINT = (Rule("length"), Rule("length"))
 End = tuple[str, Number, Number]
 
 
-@dataclass(frozen=True)
-class _Line:
+@dataclass(frozen=True, eq=False)
+class _Line(Action):
     """What acts along the line between two points."""
 
     from_: End
@@ -28,16 +30,12 @@ class _Line:
         same = [] if found else _same_link(f"{path}.to[1]", self.from_[0], self.to[0])
         return found + same + problems(self, path + ".")
 
-    def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> Any:
-        """Itself: nothing of it changes over the revolution."""
-        return self
-
     def ends(self, name: str) -> dict[str, Number]:
         """Its ends' numbers: in ground axes from A, or in their links' axes from their first pins."""
         return _end(f"{name}_from", self.from_) | _end(f"{name}_to", self.to)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Spring(_Line):
     """A linear spring between two points: tension rate·(length − free_length).
 
@@ -67,11 +65,10 @@ class Spring(_Line):
         return SpringForm(self.from_[0], self.to[0])
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Its numbers under the names that the physics wires by."""
         return {f"{name}_rate": self.rate, f"{name}_free_length": self.free_length} | self.ends(name)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Damper(_Line):
     """A viscous damper between two points: tension coefficient · rate of its length.
 
@@ -97,12 +94,11 @@ class Damper(_Line):
         return DamperForm(self.from_[0], self.to[0])
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Its numbers under the names that the physics wires by."""
         return {f"{name}_coefficient": self.coefficient} | self.ends(name)
 
 
-@dataclass(frozen=True)
-class _Turning:
+@dataclass(frozen=True, eq=False)
+class _Turning(Action):
     """What acts between the lines of pins of two links; of the ground, the line is x."""
 
     from_: str
@@ -113,12 +109,8 @@ class _Turning:
         found += choice_problems(f"{path}.to", self.to, (GROUND, *links))
         return found + ([] if found else _same_link(f"{path}.to", self.from_, self.to)) + problems(self, path + ".")
 
-    def sampled(self, path: str, sample: Callable[[str, Any, Rule], Any]) -> Any:
-        """Itself: nothing of it changes over the revolution."""
-        return self
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TorsionSpring(_Turning):
     """A torsion spring between two links: it turns `to` back, and `from_` on, by rate·twist.
 
@@ -151,17 +143,16 @@ class TorsionSpring(_Turning):
         return TorsionSpringForm(self.from_, self.to)
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Its numbers under the names that the physics wires by."""
         cos, sin = cos_sin(self.free_angle)
         return {f"{name}_rate": self.rate, f"{name}_free_cos": cos, f"{name}_free_sin": sin}
 
-    def jumps(self) -> tuple[Number, ...]:
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Crank angle [degree] at which the twist of a spring between crank and ground passes 180."""
         turned = {(GROUND, "crank"): 1.0, ("crank", GROUND): -1.0}.get((self.from_, self.to))
         return () if turned is None else (180.0 + turned * self.free_angle,)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TorsionDamper(_Turning):
     """A viscous damper between two links that turn against each other: torque coefficient · rate of their angle.
 

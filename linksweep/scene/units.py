@@ -121,6 +121,14 @@ def accepted_unit(unit: str, kind: str) -> str:
     raise ValueError(_not_accepted(unit, kind))
 
 
+def unit_problems(path: str, said: Any, kind: str) -> list[str]:
+    """What is wrong with the unit that an array says: values are taken as they are, so it must be that of its kind."""
+    unit = KINDS[kind].unit
+    if not said or said == unit or _is_si(str(said), kind):
+        return []
+    return [f'{path} has attrs["units"] = "{said}": must be in {unit}; convert its values, and say units="{unit}"']
+
+
 def shown(value: object) -> str:
     """Return a value as it stands in a file, cut where it is long."""
     text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
@@ -228,6 +236,19 @@ def _scaled(number: str, unit: str, kind: str) -> float:
     # 0 and inf stay floats: 1e-999999999 is 0, and a billion digits as a fraction.
     exact = Fraction(number.replace("_", "")) * factor if rough and math.isfinite(rough) else rough
     return _finite(exact)
+
+
+@lru_cache(maxsize=1024)
+def _is_si(unit: str, kind: str) -> bool:
+    """Whether a unit is that of the kind's plain numbers, however it is spelled: "metre", "m s-2"."""
+    unit = re.sub(r"(?<=[A-Za-z])(?=-?[0-9])", "^", unit)  # UDUNITS writes powers without a sign
+    if _factors(unit) in map(_factors, (KINDS[kind].unit, *KINDS[kind].spellings)):
+        return _factors(unit) == _factors(KINDS[kind].unit) or _factor(accepted_unit(unit, kind), kind) == 1
+    try:
+        one = _pint().Quantity(Fraction(1), unit)
+        return "hertz" not in str(one.units) and one.to(KINDS[kind].unit).magnitude == 1  # to pint, Hz is rad/s
+    except Exception:  # nothing that pint knows, or of another kind
+        return False
 
 
 def _finite(number: Any) -> float:

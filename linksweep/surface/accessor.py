@@ -1,17 +1,19 @@
-"""The accessor `.linksweep` of Datasets: plots of a cycle, and the scene that it was computed from."""
+"""The accessor `.linksweep` of Datasets: plots, tables, and the scene that it was computed from."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import xarray as xr
 
 from linksweep.scene.scene import Scene
-from linksweep.surface import plot
+from linksweep.surface import plot, table
 from linksweep.surface.storage import scene_of
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -41,12 +43,16 @@ class Cycle:
         return plot.forces(self._ds, names, ax)
 
     def torque(self, ax: Axes | None = None) -> Axes:
-        """Plot the torque of the drive [N m] over the crank angle: see `linksweep.surface.plot.torque`."""
+        """Plot the drive's torque [N m] or force [N] over the crank angle: see `linksweep.surface.plot.torque`."""
         return plot.torque(self._ds, ax)
 
     def bearing(self, pin: str = "F32", frame: str = "ground", ax: Axes | None = None) -> Axes:
         """Plot the bearing load diagram of a pin [N]: see `linksweep.surface.plot.bearing`."""
         return plot.bearing(self._ds, pin, frame, ax)
+
+    def bearings(self, frame: str = "ground") -> Figure:
+        """Plot the bearing load diagrams of all pins in one figure: see `linksweep.surface.plot.bearings`."""
+        return plot.bearings(self._ds, frame)
 
     def mechanism(
         self,
@@ -65,3 +71,46 @@ class Cycle:
     def cycle(self) -> Figure:
         """Plot mechanism, forces, torque and a bearing on one page: see `linksweep.surface.plot.cycle`."""
         return plot.cycle(self._ds)
+
+    def heat_map(
+        self,
+        name: str,
+        x: str | None = None,
+        y: str | None = None,
+        maximize: bool = False,
+        contours: bool | str = False,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Plot a result over two design dims: see `linksweep.surface.heat_map.heat_map`."""
+        return plot.heat_map(self._ds, name, x, y, maximize, contours, ax)
+
+    def scatter(
+        self,
+        x: str,
+        y: str,
+        color: str | None = None,
+        maximize: Iterable[str] = (),
+        front: bool = True,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Plot two results of every design, with the Pareto front: see `linksweep.surface.study_plot.scatter`."""
+        return plot.scatter(self._ds, x, y, color, maximize, front, ax)
+
+    def parallel_coordinates(
+        self,
+        names: Iterable[str] | None = None,
+        color: str | None = None,
+        maximize: bool = False,
+        best: int = 5,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Plot designs from parameter to result: see `linksweep.surface.study_plot.parallel_coordinates`."""
+        return plot.parallel_coordinates(self._ds, names, color, maximize, best, ax)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The Dataset as a table, a row for each design (and angle): see `linksweep.surface.table.to_pandas`."""
+        return table.to_pandas(self._ds)
+
+    def to_csv(self, path: str | os.PathLike) -> None:
+        """Write that table as a CSV file, whole or not at all: see `linksweep.surface.table.to_csv`."""
+        table.to_csv(self._ds, path)

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import choice_problems, refuse
+from linksweep.results.bearings import FRAMES
 from linksweep.results.sweep import sweep
 from linksweep.surface import signals
 from linksweep.surface.drawings import Drawing, drawing_of_results
@@ -16,6 +17,7 @@ from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 TICK = 30.0  # degrees of the crank between marks on the locus
 LABELLED = 90.0  # degrees between marks with a number
@@ -31,9 +33,10 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
         From `linksweep.sweep`, with the components of the force (F32x, F32y), of one design.
     pin : str
         The force, as "Fij": of link i on link j.
-    frame : {"ground", "link"}
-        Axes of the components: "ground", or those of link j (x along its line of pins, of a slider along its guide),
-        which carries the bearing and turns with it. Of a force on the ground ("F21") both are the same.
+    frame : {"ground", "journal", "bearing"}
+        Axes of the components: "ground", or those of the "journal", link j, or of the "bearing", link i, that turn with
+        them (x along its line of pins, of a slider along its guide); "link" is the same as "journal". Of a force on the
+        ground ("F21") the ground and the journal are the same.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
 
@@ -53,11 +56,11 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     >>> ls.sweep(ls.example("press")).linksweep.bearing("F32", frame="link").get_xlabel()
     '$F_{32}$ along the crank, A→B [N]'
     """
-    refuse(choice_problems("frame", frame, ("ground", "link")))
+    refuse(choice_problems("frame", frame, (*FRAMES, "link")))
     signals.require_angles(ds)
     pair = signals.components(ds, pin)
     angles, x, y = signals.revolution(ds, *pair)
-    link = int(pin[2]) if frame == "link" else 1
+    link = {"ground": 1, "bearing": int(pin[1])}.get(frame, int(pin[2]))
     drawing = drawing_of_results(ds)
     if link != 1:
         x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
@@ -78,6 +81,50 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     ax.set_xlabel(f"{_axis(drawing, pin, link, 'x')} [{units}]")
     ax.set_ylabel(f"{_axis(drawing, pin, link, 'y')} [{units}]")
     return ax
+
+
+def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
+    """Plot the bearing load diagrams of all pins in one figure, each like `bearing` in a panel of its own.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the components of the pin forces, of one design.
+    frame : {"ground", "journal", "bearing"}
+        As `bearing` takes it.
+
+    Returns
+    -------
+    matplotlib Figure
+        7.1 inches wide, two panels in a row; scales differ from pin to pin.
+
+    Raises
+    ------
+    ValueError
+        For an unknown frame, more than one design, and without any pin's components in the Dataset.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> figure = ls.sweep(ls.example("press")).linksweep.bearings("journal")
+    >>> [ax.get_title(loc="left") for ax in figure.axes][0]
+    'Load of pin A: $F_{12}$'
+    """
+    import matplotlib.pyplot as plt
+
+    refuse(choice_problems("frame", frame, FRAMES))
+    drawing = drawing_of_results(ds)
+    forces = [force for force in drawing.forces if drawing.at_pin(force) and signals.has_pin(ds, force)]
+    refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
+    rows = (len(forces) + 1) // 2
+    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+        figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
+        for force, panel in zip(forces, panels.flat, strict=False):
+            bearing(ds, force, frame, panel)
+            panel.set_title(f"Load of {drawing.said(force)}: {signals.symbol(force)}", loc="left")
+        for panel in panels.flat[len(forces) :]:
+            panel.remove()
+    return figure
 
 
 def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The command line: demo, sweep, peaks, check."""
+"""The command line: demo, sweep, peaks, study, check."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
-from linksweep.surface.report import check_lines, peak_table
+from linksweep.surface.report import check_lines, peak_table, study_report
 from linksweep.surface.storage import load_scene, save, whole
+from linksweep.surface.study import CHUNK, study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,8 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         print(f"linksweep: {error}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("linksweep: stopped", file=sys.stderr)
+    except KeyboardInterrupt as stopped:
+        print(f"linksweep: {str(stopped) or 'stopped'}", file=sys.stderr)
         return 130
     return 0
 
@@ -50,27 +51,32 @@ def _parser() -> argparse.ArgumentParser:
     demo.set_defaults(run=_demo)
 
     cycle = commands.add_parser("sweep", help="one revolution to NetCDF, and to a figure")
-    _scene_arguments(cycle)
+    cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    cycle.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
     cycle.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
     cycle.add_argument("--plot", type=_picture, help="figure to write: .png, .pdf or .svg")
     cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
     cycle.set_defaults(run=_sweep)
 
     worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
-    _scene_arguments(worst)
+    worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    said = "the largest of so many samples, not the exact peaks"
+    worst.add_argument("--theta2", type=int, metavar="N", help=said)
     worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
     worst.add_argument("-o", "--output", type=Path, help="NetCDF file to write")
     worst.set_defaults(run=_peaks)
+
+    many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
+    many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
+    many.add_argument("--of", type=_names, nargs="+", help="names of the quantities wanted")
+    many.add_argument("--chunk", type=int, default=CHUNK, metavar="N", help=f"designs computed at a time ({CHUNK})")
+    many.set_defaults(run=_study)
 
     sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
     sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     sound.set_defaults(run=_check)
     return parser
-
-
-def _scene_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    parser.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
 
 
 def _demo(options: argparse.Namespace) -> None:
@@ -104,6 +110,15 @@ def _peaks(options: argparse.Namespace) -> None:
     if options.output:
         save(found, options.output)
         print(f"\nwritten: {options.output}")
+
+
+def _study(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    there = options.output.exists()
+    of = None if options.of is None else [name for names in options.of for name in names]
+    with study(scene, options.output, of, options.chunk) as found:
+        print(study_report(found, scene.mechanism.index))
+    print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
 
 def _check(options: argparse.Namespace) -> None:

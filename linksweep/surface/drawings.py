@@ -74,7 +74,8 @@ class Drawing:
 
     `joints` are the pairs of links (i, j) whose force Fij is shown, by the joint's name: a pin, or a word where links
     touch otherwise; `acts_at` is the pin where the arrow of such a force starts. `fixed` gives the pins on the ground
-    [m], `guide` the guide. `ideal` are parameters to be set aside when only positions are asked for.
+    [m], `guide` the guide. `drives` names each drive's torque or force. `ideal` are parameters to be set aside when
+    only positions are asked for.
     """
 
     joints: Mapping[str, tuple[int, int]]
@@ -169,7 +170,10 @@ DRAWINGS: dict[type, Drawing] = {
     InvertedSliderCrank: INVERTED_SLIDER_CRANK,
 }
 
-LOST = Drawing(joints={"A": (1, 2), "B": (3, 2), "C": (4, 3), "ground": (1, 4)}, drives={})
+LOST = Drawing(
+    joints={"A": (1, 2), "B": (3, 2), "C": (4, 3), "ground": (1, 4)},
+    drives={**FourBar.drives, **InvertedSliderCrank.drives},
+)
 """Of a Dataset that has lost its scene: nobody knows how its link 4 is held."""
 
 

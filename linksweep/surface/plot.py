@@ -1,4 +1,4 @@
-"""Plots of a cycle: pin forces and torque over the revolution, and the page that shows all of it.
+"""Plots of a cycle: pin forces and torque over the revolution, and the page that shows all of it; by name, all plots.
 
 Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
 settings. Peaks marked are those of the samples in the Dataset. Colours are Okabe and Ito's, told apart by colour-blind
@@ -15,17 +15,41 @@ import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
 from linksweep.surface import signals
-from linksweep.surface.bearing_plot import bearing
+from linksweep.surface.balance_plot import balance
+from linksweep.surface.bearing_plot import bearing, bearings
 from linksweep.surface.drawings import Drawing, drawing_of_results
+from linksweep.surface.drive_plot import flywheel, motor_load
+from linksweep.surface.heat_map import heat_map
+from linksweep.surface.load_plot import breakdown, over_speed
 from linksweep.surface.loop_plot import loop
 from linksweep.surface.mechanism_plot import mechanism
+from linksweep.surface.shaking_plot import hodograph, orders
+from linksweep.surface.study_plot import parallel_coordinates, scatter
 from linksweep.surface.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, VERMILION, axes_or_new, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["bearing", "cycle", "forces", "loop", "mechanism", "torque"]
+__all__ = [
+    "balance",
+    "bearing",
+    "bearings",
+    "breakdown",
+    "cycle",
+    "flywheel",
+    "forces",
+    "heat_map",
+    "hodograph",
+    "loop",
+    "mechanism",
+    "motor_load",
+    "orders",
+    "over_speed",
+    "parallel_coordinates",
+    "scatter",
+    "torque",
+]
 
 SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
 STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
@@ -116,10 +140,12 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
 def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Plot the torque of the drive (T12, T13 or T14) [N m] over the crank angle [degree], largest and smallest marked.
 
+    Of a cylinder that drives, its force [N].
+
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with the torque of one design, or of up to six along one dimension, one line each.
+        From `linksweep.sweep`, with that of one design, or of up to six along one dimension, one line each.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
 
@@ -131,7 +157,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        Without a torque in the Dataset, and for more designs than a plot can show.
+        Without the drive's torque or force in the Dataset, and for more designs than a plot can show.
 
     Examples
     --------
@@ -140,7 +166,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     'drive torque $T_{12}$ [N m]'
     """
     signals.require_angles(ds)
-    name = signals.torque_name(ds)
+    name = signals.drive_name(ds)
     units = signals.unit(ds[name], "N m")
     curves = _curves(ds, {name: ds[name]})
     extremes = [(curve, _extremes(curve)) for curve in curves]
@@ -150,7 +176,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     _draw(ax, curves)
     _span(ax, every, size)
-    ax.set_ylabel(f"drive torque {signals.symbol(name)} [{units}]")
+    ax.set_ylabel(f"{signals.drive_kind(name)} {signals.symbol(name)}".rstrip() + f" [{units}]")
     widest = _shade(ax, ds, ds[name])
     _angle_axis(ax, curves[0].angles)
     if len(curves) > 1:
@@ -160,7 +186,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
 
 def cycle(ds: xr.Dataset) -> Figure:
-    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, torque, that pin's bearing.
+    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, drive, that pin's bearing.
 
     Of a car in a loop, what `loop` plots.
 
@@ -203,7 +229,8 @@ def cycle(ds: xr.Dataset) -> Figure:
         torque(ds, ax=panels[1, 1])
         where = f"Largest pin force, at $\\theta_2$ = {signals.angle_text(angle)}"
         kind = _kind(drawing, _names(ds, None)).capitalize()
-        titles = (where, f"{kind} forces", f"Load of {drawing.said(pin)}: {signals.symbol(pin)}", "Drive torque")
+        drive = signals.drive_kind(signals.drive_name(ds)).capitalize()
+        titles = (where, f"{kind} forces", f"Load of {drawing.said(pin)}: {signals.symbol(pin)}", drive)
         for panel, title in zip(panels.flat, titles, strict=True):
             panel.set_title(title, loc="left")
     return figure

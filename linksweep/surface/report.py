@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
+from math import prod
 
 import numpy as np
 import xarray as xr
@@ -54,17 +55,48 @@ def _aligned(rows: list[tuple[str, ...]]) -> Iterator[str]:
 
 def _remarks(found: xr.Dataset) -> list[str]:
     status = np.asarray(found.status.values).reshape(-1)
-    partly, never = int((status == 1).sum()), int((status == 2).sum())
+    partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
     who = "It" if status.size == 1 else f"{partly} of {status.size} designs"
     if "never_on_track" in found.status.attrs["flag_meanings"]:
         somewhere = "does not stay on the track all the way round: peaks are those of where it is."
         nowhere = "not on the track at any position."
     else:
-        somewhere = "cannot be assembled at every angle, or jams: peaks are those of the angles that are ok."
+        somewhere = (
+            "cannot be assembled at every angle, jams, or has dead centres: peaks are those of the angles that are ok."
+        )
         nowhere = "cannot be assembled at any angle."
     said = [f"{who} {somewhere}"] * bool(partly)
     said += [f"{never} of {status.size} designs {nowhere}"] * bool(never)
+    grows = "grows without bound at a toggle, where it wedges or at a dead centre: its peak is inf."
+    which = "" if status.size == 1 else f" of {unbounded} of {status.size} designs"
+    said += [f"Some quantity{which} {grows}"] * bool(unbounded)
     return ["", *said] if said else []
+
+
+def study_report(found: xr.Dataset, index: str = "theta2") -> str:
+    """A study in short: the worst design of each peak, the best of each, and how many designs are ok."""
+    text = peak_table(found, index)
+    if not found.sizes:
+        return text
+    rows = [_best(found, name) for name in map(str, found.data_vars) if name.endswith("_peak")]
+    header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in found.sizes))
+    tables = [text, "", *_aligned([header, *filter(None, rows)]), ""] if any(rows) else [text, ""]
+    shape = ", ".join(f"{dim} {n}" for dim, n in found.sizes.items())
+    designs = prod(found.sizes.values())
+    counts = np.bincount(found.status.values.reshape(-1)) * (designs // found.status.size)
+    said = ", ".join(f"{word} {n}" for word, n in zip(_words(found.status), counts, strict=False) if n)
+    return "\n".join([*tables, f"designs: {designs} ({shape}): {said}"])
+
+
+def _best(found: xr.Dataset, name: str) -> tuple[str, ...]:
+    """A peak where it is least, of the designs that are ok all the way round; empty where there is none."""
+    values = found[name].where(found.status == 0)
+    size = np.where(np.isfinite(values.values), values.values, np.inf)
+    if not np.isfinite(size).any():
+        return ()
+    place = dict(zip(values.dims, map(int, np.unravel_index(int(np.argmin(size)), size.shape)), strict=True))
+    labels = (_label(found, dim, place.get(dim)) for dim in found.sizes)
+    return name, f"{float(size.min()):.6g}", _unit(found[name]), *labels
 
 
 def check_lines(found: xr.Dataset) -> list[str]:
@@ -83,10 +115,19 @@ def _summary(finding: xr.DataArray) -> str:
         words, counts = _words(finding), np.bincount(finding.values.reshape(-1))
         found = [(word, n) for word, n in zip(words, counts, strict=False) if n]
         return found[0][0] if finding.size == 1 else ", ".join(f"{word} {n}" for word, n in found)
-    values = finding.values[np.isfinite(finding.values)]
     unit = {"degree": "°", "1": ""}.get(_unit(finding), f" {_unit(finding)}")
-    ends = [f"{value:.6g}{unit}" for value in np.unique(values)]
-    return (f"{ends[0]} to {ends[-1]}" if len(ends) > 4 else ", ".join(ends)) if ends else "none"
+    ends = [f"{value:.6g}{unit}" for value in np.unique(finding.values[np.isfinite(finding.values)])]
+    if len(ends) > 4:
+        return f"{ends[0]} to {ends[-1]}"
+    return ", ".join(_labelled(finding, unit) or ends) or "none"
+
+
+def _labelled(finding: xr.DataArray, unit: str) -> list[str]:
+    """The values of one design, each with its label where they have some."""
+    if finding.ndim != 1 or finding[finding.dims[0]].dtype.kind != "U":
+        return []
+    pairs = zip(finding.values, finding[finding.dims[0]].values, strict=True)
+    return [f"{value:.6g}{unit} ({str(label).replace('_', ' ')})" for value, label in pairs if np.isfinite(value)]
 
 
 def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:

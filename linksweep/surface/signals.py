@@ -13,7 +13,6 @@ from linksweep.surface.drawings import drawing_of_results, drive_of_results
 
 INDEX = "theta2"
 PERIODS = (360.0, 720.0)  # degrees: a revolution, and the two of a four-stroke engine
-TORQUES = ("T12", "T13", "T14")
 MOST_LINES = 6  # designs that one plot still tells apart
 
 
@@ -68,10 +67,10 @@ def _known_force(ds: xr.Dataset, pin: str) -> None:
         raise ValueError(f"pin = {pin!r}: must be one of {', '.join(known)}")
 
 
-def torque_name(ds: xr.Dataset) -> str:
-    """The torque of the drive: the scene says which, for a T14 may be the moment of a guide."""
-    drive = drive_of_results(ds)
-    wanted = (drawing_of_results(ds).drives[drive],) if drive else TORQUES
+def drive_name(ds: xr.Dataset) -> str:
+    """The torque or force of the drive: the scene says which, for a T14 may be the moment of a guide."""
+    drives, drive = drawing_of_results(ds).drives, drive_of_results(ds)
+    wanted = [drives[drive]] if drive else list(drives.values())
     for name in wanted:
         if name in ds:
             return name
@@ -208,5 +207,10 @@ def angle_text(angle: float) -> str:
 
 
 def symbol(name: str) -> str:
-    """F32 as one writes it."""
-    return f"${name[0]}_{{{name[1:]}}}$"
+    """F32 as one writes it; nothing for a name in words."""
+    return f"${name[0]}_{{{name[1:]}}}$" if name[1:].isdigit() else ""
+
+
+def drive_kind(name: str) -> str:
+    """What a drive gives: "drive torque", or what a name in words says, "cylinder force"."""
+    return "drive torque" if symbol(name) else name.replace("_", " ")

@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import Any
 
 import xarray as xr
@@ -16,8 +16,9 @@ import xarray as xr
 from linksweep.mechanisms.validate import did_you_mean
 from linksweep.scene.file import parse_scene, read_scene
 from linksweep.scene.scene import Scene
+from linksweep.surface.seal import SAVED, mark_of, seal, sealed
 
-_NETCDF = Lock()
+NETCDF = RLock()
 """The NetCDF library is not made for two threads at once: the process dies."""
 
 
@@ -45,8 +46,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     ...     ls.load_scene(path).omega2
     31.41592653589793
     """
-    with whole(path) as temporary, _NETCDF:
+    with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+        seal(temporary, {}, SAVED)
 
 
 @contextlib.contextmanager
@@ -70,10 +72,10 @@ def whole(path: str | os.PathLike) -> Iterator[Path]:
         with contextlib.suppress(OSError):
             os.unlink(temporary)
         raise
-    _sync_folder(target.parent)
+    sync_folder(target.parent)
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Make the rename itself last; not every system lets a folder be opened."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
@@ -112,12 +114,18 @@ def load_scene(path: str | os.PathLike) -> Scene:
     if not path.exists():
         near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
         raise ValueError(f"{path}: there is no such file{near}")
-    try:
-        with _NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
-            return scene_of(ds.load(), str(path))
-    except OSError as error:
-        reason = error.strerror or error
-        raise ValueError(f"{path}: cannot be read as NetCDF ({reason}); a scene file ends in .toml") from error
+    return scene_of(_loaded(path), str(path))
+
+
+def _loaded(path: Path) -> xr.Dataset:
+    """All of a NetCDF file; one without our seal is read where HDF5 can do no harm."""
+    if not (mark := mark_of(path)):
+        from linksweep.surface.apart import read_apart  # here: it takes what is above
+
+        return read_apart(path)
+    sealed(path, mark)  # which refuses a file that is damaged
+    with NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
+        return ds.load()
 
 
 def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -20,6 +22,18 @@ def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
     import matplotlib.pyplot as plt  # here: only those who plot need wait for it
 
     return plt.subplots(layout="constrained", **figure)[1]
+
+
+def crank_angles(ax: Axes, angles: np.ndarray) -> None:
+    """An axis of crank angles [degree] from the first to the last, with round ticks."""
+    from matplotlib.ticker import MultipleLocator
+
+    span = float(angles[-1] - angles[0])
+    if span >= 180.0:
+        ax.xaxis.set_major_locator(MultipleLocator(90.0 if span <= 400.0 else 180.0))
+    if span > 0.0:
+        ax.set_xlim(angles[0], angles[-1])
+    ax.set_xlabel("crank angle $\\theta_2$ [°]")
 
 
 def grid(ax: Axes) -> None:

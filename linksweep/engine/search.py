@@ -1,0 +1,282 @@
+"""The search for exact peaks, in plain Python that numba compiles into a kernel and that also runs as it stands.
+
+A signal is known at samples x along a path. Each sample above its neighbours opens a lane, if what its curvature
+promises could win:
+
+             b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
+        a    |            of the parabola through them (at first: of the quartic through five samples), all lanes side
+        |    |    c       by side, and keeps the best point with its neighbours. Where that converges slowly (a kink,
+                          a jump), the halves are halved instead.
+
+A lane ends when even the secants through its bracket, drawn on, promise nothing more: where a curve bends down they
+bound what is left.
+
+The path of a whole turn is cut into two halves, each seen by the tangent x of half its angle from its own middle
+(`far` is 0 on one half, 1 on the other), so that x runs from −1 to 1 on both. Samples lie on a sinh grade, dense about
+x = 0 where a pinch is narrow.
+"""
+
+import math
+
+HALF = 24
+"""Samples on either side of the middle of each half turn."""
+SAMPLES = 4 * HALF
+GRADES = 27
+"""Scales of the sinh grade: 1, 1/2, 1/4, …"""
+ROUNDS = 400
+"""More than halving down to the last digit takes."""
+
+# rows of `lanes`: a bracket of three points, where and what it is of, and how it began
+XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, LEFT, DONE, VERTEX, REACH, FAA, FCC = range(17)
+LANE_ROWS, LASTING_ROWS = 17, 11
+TRIALS = 3
+"""Trials of a lane in a round."""
+# rows of `trials`
+X, SIDE, OF, VALUE = range(4)
+TRIAL_ROWS = 4
+# rows of `best`: for each signal the peak, where it is, and how much higher it might be
+PEAK, PEAK_X, PEAK_FAR, BEYOND = range(4)
+BEST_ROWS = 4
+
+BLOCK = 8
+"""Lanes are gone through in blocks, the last one filled with whatever is there: so loops become vector instructions."""
+
+NARROW = 1e-4
+"""A bracket is done only when it has closed to this: its parabola then has the place of the peak to 1e-5 degree."""
+RISE = 1e-11
+"""What may be left of a peak, relative to it."""
+NOISE = 1e-15
+"""What a signal cannot tell from nothing, relative to its largest magnitude."""
+FAR_ABOVE = 1e6
+"""So far above all samples, of which there are some in every pinch, stands no peak but a pole."""
+FAR_ABOVE = 1e3
+"""What is so far above all samples, with no number left between its neighbours, is a pole."""
+
+
+def place_halves(far):
+    """0 for the samples of the near half turn, 1 for those of the far one."""
+    for k in range(2 * HALF):
+        far[k], far[2 * HALF + k] = 0.0, 1.0
+
+
+def place_samples(x, before, after, near, far, grades):
+    """The half-angle tangents of a design's samples and of their neighbours, by how narrow its two pinches are."""
+    for start, width in ((0, near), (2 * HALF, far)):
+        grade = grade_of(width)
+        for k in range(2 * HALF):
+            x[start + k] = grades[grade, k]
+        for k in range(1, 2 * HALF):
+            before[start + k], after[start + k - 1] = x[start + k - 1], x[start + k]
+    # seen from the other middle, 180 degrees away, a tangent is minus its inverse
+    before[0], before[2 * HALF] = -1.0 / x[SAMPLES - 1], -1.0 / x[2 * HALF - 1]
+    after[2 * HALF - 1], after[SAMPLES - 1] = 1.0, 1.0
+
+
+def grade_of(width):
+    """The first scale not above a width."""
+    grade, scale = 0, 1.0
+    while width < scale and grade < GRADES - 1:
+        grade += 1
+        scale *= 0.5
+    return grade
+
+
+def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flags):
+    """Note a signal's largest sample and open a lane at each that could lead higher. Returns how many lanes there are.
+
+    `joined` says whether the path's ends meet, `even` whether each half of it is graded evenly; `before` and `after`
+    are the samples' neighbours.
+    """
+    n = len(row)
+    summits = find_summits(row, joined, flags)
+    top, at = -math.inf, 0
+    for k in range(summits if summits else n):  # a flat or falling signal has no summit
+        j = flags[k] if summits else k
+        if row[j] > top:
+            top, at = row[j], j
+    quarter = n // 4
+    floor = NOISE * max(abs(top), abs(row[0]), abs(row[quarter]), abs(row[2 * quarter]), abs(row[3 * quarter]))
+    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
+    best[PEAK_X, tag], best[PEAK_FAR, tag] = x[at], far[at]
+    if abs(top) == math.inf:
+        return count
+    for k in range(summits):
+        j = flags[k]
+        left, value, right = neighbour(row, j, -1, joined), row[j], neighbour(row, j, 1, joined)
+        if value + ((value - left) + (value - right)) > top + 10.0 * floor:
+            lanes[XA, count], lanes[FA, count] = before[j], left
+            lanes[XB, count], lanes[FB, count] = x[j], value
+            lanes[XC, count], lanes[FC, count] = after[j], right
+            lanes[FAR, count], lanes[TAG, count] = far[j], float(tag)
+            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * (after[j] - before[j]), after[j] - before[j]
+            lanes[FLOOR, count] = floor
+            lanes[VERTEX, count] = math.nan
+            inner = even and 2 <= j % (n // 2) < n // 2 - 2
+            lanes[FAA, count], lanes[FCC, count] = row[j - 2] if inner else math.nan, row[j + 2] if inner else math.nan
+            count += 1
+    return count
+
+
+def find_summits(row, joined, flags):
+    """Put the places of all samples that stand above their neighbours into `flags`. Returns how many they are."""
+    n, summits = len(row), 0
+    for j in range(1, n - 1):
+        left, right = row[j - 1], row[j + 1]
+        left, right = left if left == left else -math.inf, right if right == right else -math.inf
+        flags[j] = 1 if (row[j] >= left) & (row[j] > right) else 0
+    for j in (0, n - 1):
+        stands = row[j] >= neighbour(row, j, -1, joined) and row[j] > neighbour(row, j, 1, joined)
+        flags[j] = 1 if stands else 0
+    for j in range(n, in_blocks(n)):
+        flags[j] = 0
+    for start in range(0, n, BLOCK):
+        total = 0
+        for k in range(BLOCK):
+            total += flags[start + k]
+        if total > 0:
+            for j in range(start, start + BLOCK):
+                if flags[j] > 0:
+                    flags[summits] = j
+                    summits += 1
+    return summits
+
+
+def neighbour(row, j, side, joined):
+    """The sample beside another; −inf where there is none."""
+    k, last = j + side, len(row) - 1
+    if k < 0 or k > last:
+        k = last if k < 0 else 0
+        return row[k] if joined and row[k] == row[k] else -math.inf
+    return row[k] if row[k] == row[k] else -math.inf
+
+
+def open_lanes(rows, x, before, after, joined, lanes, best, flags):
+    """Find the lanes of all signals on all paths: rows (path, signal, sample), tagged path by path."""
+    count = 0
+    paths, signals = rows.shape[:2]
+    for path in range(paths):
+        for k in range(signals):
+            where = x[path], before[path], after[path], x[path]
+            count = find(rows[path, k], *where, joined, False, path * signals + k, lanes, count, best, flags)
+    return count
+
+
+def in_blocks(count):
+    """Room for so many lanes in whole blocks: the second trials start there, the third ones at twice as much."""
+    return (count + BLOCK - 1) // BLOCK * BLOCK
+
+
+def guess(lanes, count):
+    """First guess of each lane's vertex, and how far it may be off: by the quartic through five samples that are even
+    in some smooth grade; NaN where there are no five."""
+    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
+    faa, fcc, vertex, reach = lanes[FAA], lanes[FCC], lanes[VERTEX], lanes[REACH]
+    for k in range(in_blocks(count)):
+        d1 = (faa[k] - fcc[k] + 8.0 * (fc[k] - fa[k])) / 12.0
+        d2 = (16.0 * (fa[k] + fc[k]) - faa[k] - fcc[k] - 30.0 * fb[k]) / 12.0
+        d3 = 0.5 * (fcc[k] - faa[k]) + (fa[k] - fc[k])
+        d4 = fcc[k] + faa[k] - 4.0 * (fc[k] + fa[k]) + 6.0 * fb[k]
+        plain = 0.5 * (fa[k] - fc[k]) / (fa[k] + fc[k] - 2.0 * fb[k])
+        s = plain - (d1 + plain * (d2 + plain * (0.5 * d3 + plain * d4 / 6.0))) / (d2 + plain * (d3 + 0.5 * plain * d4))
+        s -= (d1 + s * (d2 + s * (0.5 * d3 + s * d4 / 6.0))) / (d2 + s * (d3 + 0.5 * s * d4))
+        step = 0.5 * (xc[k] - xa[k])
+        vertex[k] = xb[k] + s * (step + 0.5 * s * ((xc[k] - xb[k]) - (xb[k] - xa[k])))
+        reach[k] = (0.1 * abs(s - plain) + 2e-3) * step
+
+
+def aim(lanes, trials, count):
+    """Trials for each lane: about the vertex of its parabola, or where that has not halved it, in its halves."""
+    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
+    width, first_width, far, tag = lanes[WIDTH], lanes[FIRST_WIDTH], lanes[FAR], lanes[TAG]
+    first_vertex, first_reach = lanes[VERTEX], lanes[REACH]
+    x, side, of, room = trials[X], trials[SIDE], trials[OF], in_blocks(count)
+    for k in range(room):
+        before, after, wide = xb[k] - xa[k], xc[k] - xb[k], xc[k] - xa[k]
+        rise, fall = (fb[k] - fa[k]) / before, (fb[k] - fc[k]) / after
+        guessed = first_vertex[k] == first_vertex[k]
+        vertex = first_vertex[k] if guessed else xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
+        doubt = 0.3 * wide * wide / first_width[k]
+        reach = first_reach[k] if guessed else (doubt if doubt < 0.2 * wide else 0.2 * wide)
+        reach = reach if reach > 1e-6 * first_width[k] else 1e-6 * first_width[k]
+        sound = (wide < 0.6 * width[k]) & (vertex - reach > xa[k]) & (vertex + reach < xc[k])
+        longer = -0.25 * before if before > after else 0.25 * after
+        x[k] = vertex if sound else xb[k] + longer
+        x[room + k] = vertex - reach if sound else xb[k] - 0.5 * before
+        x[2 * room + k] = vertex + reach if sound else xb[k] + 0.5 * after
+        side[k], side[room + k], side[2 * room + k] = far[k], far[k], far[k]
+        of[k], of[room + k], of[2 * room + k] = tag[k], tag[k], tag[k]
+        width[k], first_vertex[k] = wide, math.nan
+
+
+def advance(lanes, trials, count, best):
+    """Take the trials' values into the brackets, note what is best, and close the lanes that are done."""
+    take(lanes, trials, count)
+    for k in range(count):
+        tag = int(lanes[TAG, k])
+        if lanes[FB, k] > best[PEAK, tag]:
+            best[PEAK, tag], best[PEAK_X, tag], best[PEAK_FAR, tag] = lanes[FB, k], lanes[XB, k], lanes[FAR, k]
+    left = 0
+    for k in range(count):
+        tag = int(lanes[TAG, k])
+        if lanes[DONE, k] > 0.0 or lanes[FB, k] + 2.0 * lanes[LEFT, k] < best[PEAK, tag]:
+            settle(lanes, k, best, tag)
+        else:
+            if left < k:
+                for row in range(LASTING_ROWS):
+                    lanes[row, left] = lanes[row, k]
+            left += 1
+    return left
+
+
+def take(lanes, trials, count):
+    """Put the trials of each lane into its bracket, and look at what is left to gain."""
+    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
+    first_width, floor, left, done = lanes[FIRST_WIDTH], lanes[FLOOR], lanes[LEFT], lanes[DONE]
+    x, value, room = trials[X], trials[VALUE], in_blocks(count)
+    for k in range(room):
+        bracket = with_point((xa[k], fa[k], xb[k], fb[k], xc[k], fc[k]), x[k], value[k])
+        bracket = with_point(bracket, x[room + k], value[room + k])
+        a, f_a, b, f_b, c, f_c = with_point(bracket, x[2 * room + k], value[2 * room + k])
+        xa[k], fa[k], xb[k], fb[k], xc[k], fc[k] = a, f_a, b, f_b, c, f_c
+        left[k], done[k] = promise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
+
+
+def with_point(bracket, x, f):
+    """A bracket with another point: as its middle, if it is higher, else as its nearer end."""
+    a, f_a, b, f_b, c, f_c = bracket
+    f = f if f == f else -math.inf
+    inside, higher, before = (x > a) & (x < c) & (x != b), f > f_b, x < b
+    to_a, to_b, to_c = inside & (higher != before), inside & higher, inside & (higher == before)
+    end, f_end = b if higher else x, f_b if higher else f
+    return (
+        end if to_a else a, f_end if to_a else f_a,
+        x if to_b else b, f if to_b else f_b,
+        end if to_c else c, f_end if to_c else f_c,
+    )  # fmt: skip
+
+
+def promise(a, f_a, b, f_b, c, f_c, first_width, floor):
+    """How far a bracket's secants, drawn on, rise above its middle; and 1 if it has converged, 2 if it has shut."""
+    sure = f_b - 0.5 * RISE * abs(f_b)
+    on, back = (sure - f_a) * ((c - b) / (b - a)), (sure - f_c) * ((b - a) / (c - b))
+    most = on if on > back else back
+    tolerance = RISE * abs(f_b) if RISE * abs(f_b) > floor else floor
+    shut = c - a <= 1e-15 * (1e-9 + abs(b))  # no number is left between its points
+    return most, (2.0 if shut else (1.0 if (most <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
+
+
+def settle(lanes, k, best, tag):
+    """Note what a closed lane has found: a peak, its place, and what may be left of it; or a pole."""
+    height, left, place = lanes[FB, k], lanes[LEFT, k], lanes[XB, k]
+    if height < best[PEAK, tag]:
+        return
+    before, after = place - lanes[XA, k], lanes[XC, k] - place
+    if lanes[DONE, k] == 2.0:  # at a jump, a kink or a pole
+        left = height - max(lanes[FA, k], lanes[FC, k])
+        if height > FAR_ABOVE / NOISE * lanes[FLOOR, k]:
+            best[PEAK, tag], left = math.inf, 0.0
+    else:
+        rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
+        step = 0.5 * (rise * after - fall * before) / (rise + fall)
+        place += step if -before < step < after else 0.0
+    best[PEAK_X, tag], best[BEYOND, tag] = place, max(left, 0.0) + RISE * abs(height)

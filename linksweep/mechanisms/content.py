@@ -1,0 +1,28 @@
+"""Equality by content, also of what holds DataArrays: the same class, the same numbers, the same dims and labels."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from linksweep.mechanisms.validate import is_array
+
+
+class ByContent:
+    """A dataclass(frozen=True, eq=False) of this is equal to another of its class that has the same content."""
+
+    def __eq__(self, other: object) -> bool:
+        return content(self) == content(other) if type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(content(self))
+
+
+def content(value: Any) -> Any:
+    """What makes two values equal, as nested tuples; names, attributes and other coordinates of arrays do not."""
+    if is_dataclass(value):
+        return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
+    if is_array(value):
+        labels = [(dim, value[dim].values.tolist()) for dim in value.dims if dim in value.coords]
+        return value.dims, value.astype(float).values.tobytes(), repr(labels)
+    return tuple(map(content, value)) if isinstance(value, tuple | list) else value

@@ -1,0 +1,32 @@
+"""The rounding error of a sample's pin forces as a quantity, for every machine with a crank."""
+
+from __future__ import annotations
+
+from linksweep.engine import rounding
+from linksweep.engine.quantity import Quantity, Row
+from linksweep.engine.trace import Node
+
+FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
+"""Numbers that reach the physics as the user gave them; so do lengths. Others, such as cosines, have been rounded."""
+
+
+def row(*certain: str) -> Row:
+    """The row that bounds the pin forces' error, of a machine that makes `certain` numbers of its closure, and the
+    angle in its own frame, in more than double precision."""
+    certain = ("pinch_cos", "pinch_cos_rest", "pinch_sin", *certain)
+
+    def error_bound(*nodes: Node) -> Node:
+        """Bound on the rounding error of the pin forces' components, relative to the largest of them."""
+        return rounding.relative_bound(nodes[len(certain) :], _is_exact, nodes[: len(certain)])
+
+    return Row(error_bound, ("error_bound",), (*certain, *FORCES))
+
+
+def _is_exact(name: str) -> bool:
+    return name.endswith("_length") or name in EXACT
+
+
+QUANTITY = Quantity(
+    "error_bound", "1", "bound on the rounding error of the sample's pin forces, relative to the largest of them"
+)

@@ -1,0 +1,284 @@
+"""bearings(scene, {...}): what each pin asks of its bearing over a cycle: load diagrams, pressure, friction, life.
+
+Of a rolling bearing of capacity C under loads F that change while it turns by Δψ:
+
+    P = (∑ F^p |Δψ| / ∑ |Δψ|)^(1/p)      equivalent load, p = 3 for balls and 10/3 for rollers
+    L10 = (C/P)^p                        life that nine of ten reach, in million revolutions
+
+Sources: ISO 281:2007 (basic rating life); variable loads by the linear damage rule of A. Palmgren and M. A. Miner, as
+in R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, 10th ed., section 11-7. What turns to and
+fro counts with the whole angle that it turns. Plain bearings: `linksweep.physics.bearing`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.validate import (
+    Number,
+    choice_problems,
+    count_problems,
+    name_problems,
+    parameter,
+    problems,
+    refuse,
+    said,
+)
+from linksweep.physics import bearing as plain
+from linksweep.results.compute import require_scene
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
+FRAMES = ("ground", "journal", "bearing")
+MILLION = 1e6
+SAID = {
+    "F": ("N", "magnitude of the pin force"),
+    "Fx": ("N", "force of the bearing on the journal, component along the x axis of the frame"),
+    "Fy": ("N", "force of the bearing on the journal, component along the y axis of the frame"),
+    "rotation_speed": ("rad s-1", "angular velocity of the journal in its bearing, positive counter-clockwise"),
+    "rotation_share": ("1", "share of the cycle's rotation of the journal in its bearing that this sample stands for"),
+    "rotation": ("degree", "angle that the journal turns in its bearing in a cycle, to and fro added up"),
+    "pressure": ("Pa", "projected pressure, force over diameter times length"),
+    "sliding_speed": ("m s-1", "sliding speed of the journal in its bearing, never negative"),
+    "pv": ("Pa m s-1", "projected pressure times sliding speed"),
+    "friction_loss": ("W", "power that friction in the pin takes, never negative"),
+    "equivalent_load": ("N", "constant load of the same life as the cycle's loads"),
+    "L10": ("1e6", "revolutions of the journal in its bearing that nine of ten rolling bearings reach"),
+    "L10h": ("h", "running time that nine of ten rolling bearings reach"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing(ByContent):
+    """The bearing of a pin.
+
+    Parameters
+    ----------
+    diameter : of the journal [m]
+    length : of the bush [m]
+    friction : coefficient of friction between the two
+    capacity : basic dynamic load rating C of a rolling bearing [N]
+    kind : "ball" or "roller", for the exponent of its life
+
+    All may be left out; what needs them is then NaN. Numbers may be DataArrays of design dims.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Bearing(diameter=0.02, length=0.03, friction=0.1).kind
+    'ball'
+    """
+
+    diameter: Number = parameter("length", None, above=0.0)
+    length: Number = parameter("length", None, above=0.0)
+    friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
+    capacity: Number = parameter("force", None, above=0.0)
+    kind: str = "ball"
+
+    def __post_init__(self) -> None:
+        refuse(problems(self) + choice_problems("kind", self.kind, EXPONENTS))
+
+    @property
+    def exponent(self) -> float:
+        """p of the module's equations."""
+        return EXPONENTS[self.kind]
+
+
+def bearings(
+    scene: Scene, given: Mapping[str, Bearing] | None = None, theta2: int = 720, threads: int | None = None
+) -> xr.Dataset:
+    """Loads, rotation, friction and life of the bearings in the pins of a mechanism.
+
+    Parameters
+    ----------
+    scene : Scene
+    given : a Bearing by pin, {"B": ls.Bearing(...)}; pins that are not named have one without sizes
+    theta2 : count of crank angles over the cycle
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    Dataset over (design dims…, pin, frame, theta2), each variable over those that it depends on:
+
+    - `F`, and `Fx`, `Fy` in each `frame` [N]: of Fij the force of link i on link j, link j has the journal and link i
+      the bearing. "ground" are the ground's axes, "journal" and "bearing" those of these links (x along the line of
+      pins, of a slider along its guide). What the bearing feels is the opposite.
+    - `rotation_speed` [rad/s] of the journal in its bearing, `rotation` [degree] in a cycle, to and fro added up;
+      `rotation_share` of each sample
+    - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
+      friction; `linksweep.pin_friction` couples the two
+    - `equivalent_load` [N] over the rotation, `L10` [million revolutions] and `L10h` [hours]
+
+    Angles that are not ok (see `status`) are left out of sums.
+
+    Raises
+    ------
+    ValueError
+        For a machine without pins, a pin that it lacks, and what is no Bearing.
+
+    Notes
+    -----
+    Source: equations of `linksweep.results.bearings` and `linksweep.physics.bearing`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> found = ls.bearings(ls.example("press"), {"C": ls.Bearing(diameter=0.01, length=0.02, capacity=5000.0)})
+    >>> round(float(found.rotation.sel(pin="A")), 6), bool(found.L10.sel(pin="C") > 1.0)
+    (360.0, True)
+    """
+    pins = checked_pins(scene, given)
+    refuse(count_problems("theta2", theta2))
+    names = [name for pin, links in pins.items() for name in _outputs(scene, pin, links)]
+    cycle = sweep(scene, theta2, ["omega2", *dict.fromkeys(names)], threads=threads)
+    step = scene.period / theta2
+    parts = [_of_pin(cycle, step, pin, links, (given or {}).get(pin, Bearing())) for pin, links in pins.items()]
+    found = {name: joined([part[name] for part in parts], "pin", pins).assign_attrs(_said(name)) for name in parts[0]}
+    attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={theta2})"}
+    return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes)
+
+
+def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
+    """The pins of a scene's mechanism; ValueError for a scene without, and for bearings of pins that it lacks."""
+    require_scene(scene)
+    pins = scene.mechanism.pins
+    refuse(
+        []
+        if pins
+        else [f"scene is of a {type(scene.mechanism).__name__}, which has no pins: give a mechanism of links"]
+    )
+    refuse([] if isinstance(given, Mapping | None) else [f'given = {said(given)}: must be as {{"B": ls.Bearing(...)}}'])
+    found = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
+    wrong = [
+        f"given.{pin} = {said(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
+    ]
+    refuse(found + wrong)
+    return pins
+
+
+def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
+    i, j = links
+    force = f"F{i}{j}"
+    frames = [f"{force}{axis}_link{k}" for k in (i, j) if k != 1 for axis in "xy"]
+    return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
+
+
+def _said(name: str) -> dict[str, str]:
+    return dict(zip(("units", "long_name"), SAID[name], strict=True))
+
+
+def _of_pin(
+    cycle: xr.Dataset, step: float, pin: str, links: tuple[int, int], bearing: Bearing
+) -> dict[str, xr.DataArray]:
+    i, j = links
+    force, speed = cycle[f"F{i}{j}"], cycle[f"omega_{pin}"]
+    share, rotation = _turning(cycle, step, speed)
+    found = {"F": force, "rotation_speed": speed, "rotation_share": share, "rotation": rotation}
+    found |= {f"F{axis}": _in_frames(cycle, i, j, axis) for axis in "xy"}
+    diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
+    sliding = plain.sliding_speed(speed, diameter)
+    pressure = plain.projected_pressure(force, diameter, length)
+    found |= {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
+    found["friction_loss"] = plain.friction_loss(bearing.friction, force, sliding)
+    return found | _life(cycle, step, force, share, rotation, bearing)
+
+
+def _turning(cycle: xr.Dataset, step: float, speed: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+    """Share of each sample in the relative rotation, and all of it [degree]."""
+    turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0)
+    turns = turns.broadcast_like(cycle["theta2"])
+    whole = turns.sum("theta2", skipna=True, min_count=1)
+    return turns / whole, whole * step
+
+
+def _in_frames(cycle: xr.Dataset, i: int, j: int, axis: str) -> xr.DataArray:
+    component = f"F{i}{j}{axis}"
+    names = [component] + [component if k == 1 else f"{component}_link{k}" for k in (j, i)]
+    return joined([cycle[name] for name in names], "frame", FRAMES)
+
+
+def _life(
+    cycle: xr.Dataset,
+    step: float,
+    force: xr.DataArray,
+    share: xr.DataArray,
+    rotation: xr.DataArray,
+    bearing: Bearing,
+) -> dict[str, xr.DataArray]:
+    p = bearing.exponent
+    damage = (force**p * share).sum("theta2", skipna=True, min_count=1)
+    equivalent = damage ** (1.0 / p)
+    life = (_or_nan(bearing.capacity) / equivalent) ** p
+    seconds = (np.radians(step) / np.abs(cycle["omega2"])).broadcast_like(cycle["theta2"]).sum("theta2")
+    hours = life * MILLION / (rotation / 360.0) * seconds / 3600.0
+    return {"equivalent_load": equivalent, "L10": life, "L10h": hours}
+
+
+def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
+    """How much of its rotation each pin makes under which load.
+
+    Parameters
+    ----------
+    found : Dataset from `linksweep.bearings`
+    classes : count of equal classes of load, from none to the largest sample of the pin
+
+    Returns
+    -------
+    Dataset over (…, pin, load_class): `class_load` [N], the middle of each class, and `share` of the rotation in it;
+    the shares of a pin add up to 1.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset that does not hold F and rotation_share, or no count of classes.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> spectrum = ls.load_spectrum(ls.bearings(ls.example("press")), classes=5)
+    >>> spectrum.share.sel(pin="C").sum().round(12).item()
+    1.0
+    """
+    sound = isinstance(found, xr.Dataset) and {"F", "rotation_share"} <= {*found}
+    refuse([] if sound else ["found: must be what ls.bearings returns, with F and rotation_share"])
+    refuse(count_problems("classes", classes))
+    share, largest = xr.apply_ufunc(
+        lambda force, share: _histogram(force, share, classes),
+        *xr.broadcast(found["F"], found["rotation_share"]),
+        input_core_dims=[["theta2"], ["theta2"]],
+        output_core_dims=[["load_class"], []],
+        vectorize=True,
+    )
+    middle = (xr.DataArray(np.arange(classes), dims="load_class") + 0.5) / classes
+    share.attrs = {"units": "1", "long_name": "share of the rotation of the journal in its bearing under such loads"}
+    load = (largest * middle).assign_attrs(units="N", long_name="load in the middle of the class")
+    return xr.Dataset({"share": share, "class_load": load}, attrs=found.attrs)
+
+
+def _histogram(force: np.ndarray, share: np.ndarray, classes: int) -> tuple[np.ndarray, float]:
+    known = np.isfinite(force) & np.isfinite(share)
+    largest = float(np.max(force, initial=0.0, where=known))
+    at = np.minimum((force[known] * (classes / (largest or 1.0))).astype(int), classes - 1)
+    return np.bincount(at, share[known], classes), largest
+
+
+def _or_nan(number: Number) -> Number:
+    return np.nan if number is None else number
+
+
+def joined(parts: Iterable[Any], dim: str, labels: Iterable[str]) -> xr.DataArray:
+    """Arrays side by side along a new dim, each spread over the dims of all."""
+    spread = xr.broadcast(*(xr.DataArray(part) for part in parts))
+    return xr.concat(spread, xr.Variable(dim, list(labels)), coords="minimal", compat="override", join="override")

@@ -1,0 +1,142 @@
+"""Between the samples: a scene's quantities at any pairs of a design and a crank angle.
+
+Designs are counted row-major over the scene's design dims. Each pair is one sample of a sweep whose parameters all
+change from sample to sample, so the same plan and the same kernels do the work.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine.plan import plan
+from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.paths import replaced
+from linksweep.scene.scene import Inputs, Scene
+
+Array = np.ndarray
+Places = Mapping[str, Array]
+"""Along each dim, where each of some designs is."""
+
+AT_ONCE = 256
+"""Designs looked at together: the memory that this takes does not grow with a study."""
+OWN_AT_ONCE = 16
+"""The same where each design has loads over the angle of its own, which are sampled at the angles of all of these."""
+COMBINED = "_combined"
+"""Dimension of the designs of such loads, when they are taken together."""
+
+
+class Group(NamedTuple):
+    """Some designs of a scene: as designs of `scene`, which may be another one, and where they are in the first."""
+
+    scene: Scene
+    designs: Array
+    places: Places
+
+    def some(self, rows: Array) -> Group:
+        return Group(self.scene, self.designs[rows], {dim: at[rows] for dim, at in self.places.items()})
+
+    def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
+        """Values (names, pairs) at pairs of one of these designs and an angle [degree]."""
+        return quantities_at(self.scene, names, self.designs[rows], angles, threads)
+
+    def constants(self, *names: str) -> Array:
+        """Values (names, designs) of what depends on no angle."""
+        return self.values(names, np.arange(len(self.designs)), np.zeros(len(self.designs)))
+
+    def number(self, number: Any) -> Array:
+        """A parameter of the scene, or what was made of some, for each of these designs."""
+        if not isinstance(number, xr.DataArray):
+            return np.full(len(self.designs), float(number))
+        places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs)
+        return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
+
+
+def groups(
+    scene: Scene, names: tuple[str, ...], designs: Array | None = None, at_once: int = AT_ONCE
+) -> Iterator[Group]:
+    """Designs in groups small enough to be looked at together: these, or one of all that share these quantities."""
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
+    chosen = _different(scene, names) if designs is None else designs
+    step = min(at_once, OWN_AT_ONCE) if own else at_once
+    for first in range(0, len(chosen), step):
+        part = chosen[first : first + step]
+        places = places_of(inputs.sizes, part)
+        yield _with_own_loads(scene, places) if own else Group(scene, part, places)
+
+
+def empty(scene: Scene, names: tuple[str, ...]) -> dict[str, Field]:
+    """Fields of NaN for each of these quantities, over its design dims."""
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    request = plan(scene.table, names, inputs.forms)
+    dims = {name: tuple(dim for dim in request.dims(request.outputs[name]) if dim != index) for name in names}
+    return {name: Field(own, np.full(tuple(inputs.sizes[dim] for dim in own), np.nan)) for name, own in dims.items()}
+
+
+def _different(scene: Scene, names: tuple[str, ...]) -> Array:
+    """One design of all those that share these quantities."""
+    inputs = scene.at_one_angle.inputs
+    loops = plan(scene.table, names, inputs.forms).loops
+    designs = np.arange(math.prod(inputs.sizes.values())).reshape(tuple(inputs.sizes.values()))
+    return designs[tuple(slice(None if dim in loops else 1) for dim in inputs.sizes)].ravel()
+
+
+def _with_own_loads(scene: Scene, places: Places) -> Group:
+    """A group as a scene of its own: each load over the angle is then brought to the angles of its group alone."""
+    index = scene.mechanism.index
+    own = [dim for dim in places if any(dim in array.dims for array in scene.arrays.values())]
+    combined, which = np.unique(np.stack([places[dim] for dim in own]), axis=1, return_inverse=True)
+    picked = {dim: xr.DataArray(row, dims=COMBINED) for dim, row in zip(own, combined, strict=True)}
+    arrays = {
+        path: array.drop_vars([name for name in array.coords if name != index]).isel(picked, missing_dims="ignore")
+        for path, array in scene.arrays.items()
+    }
+    part = replaced(scene, arrays)
+    sizes = part.at_one_angle.inputs.sizes
+    inside = {COMBINED: which.ravel()} | {dim: at for dim, at in places.items() if dim not in own}
+    return Group(part, np.ravel_multi_index(tuple(inside[dim] for dim in sizes), tuple(sizes.values())), places)
+
+
+def quantities_at(
+    scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
+) -> Array:
+    """Values (names, pairs) at pairs of a design and an angle [degree]."""
+    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    inputs, sample = _inputs_at(scene, grid)
+    places = places_of(inputs.sizes, designs) | {grid.dim: sample}
+    fields = {name: _paired(field, places, grid.dim) for name, field in inputs.fields.items()}
+    forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
+    found = evaluate(plan(scene.table, names, forms), fields, grid, {}, threads)
+    return np.stack([np.broadcast_to(found[name].values, angles.shape) for name in names])
+
+
+def _inputs_at(scene: Scene, grid: Grid) -> tuple[Inputs, Array]:
+    """The scene's numbers at the different angles of a grid, and which of these each angle is."""
+    if scene.at_one_angle is scene:
+        return scene.inputs, np.empty(0, dtype=int)
+    different, sample = np.unique(in_period(grid.angles, scene.period), return_inverse=True)
+    return scene.at(crank_grid(different, scene.period, grid.dim)).inputs, sample
+
+
+def in_period(angle: Array, period: float) -> Array:
+    """The same angles in [0, period)."""
+    folded = np.mod(angle, period)
+    return np.where(folded < period, folded, 0.0 * folded)
+
+
+def places_of(sizes: Mapping[str, int], designs: Array) -> dict[str, Array]:
+    if not sizes:
+        return {}
+    return dict(zip(sizes, np.unravel_index(designs, tuple(sizes.values())), strict=True))
+
+
+def _paired(field: Field, places: Places, index: str) -> Field:
+    if not field.dims:
+        return field
+    return Field((index,), field.values[tuple(places[dim] for dim in field.dims)])

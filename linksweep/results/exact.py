@@ -1,0 +1,252 @@
+"""Exact peaks of a scene: by the fused search where the crank turns fully, along paths where it does not, or where
+loads change with the angle in ways that only the scene knows.
+
+Values are the signal's own at some angle, so that they never exceed the true peak but for rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine import search
+from linksweep.engine.find_peaks import Peak, find_peaks, search_functions
+from linksweep.engine.plan import plan
+from linksweep.engine.run import Field
+from linksweep.engine.search_kernel import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
+from linksweep.results.between import Array, Group, Places, empty, groups, in_period, places_of
+from linksweep.results.compute import compute, only_where
+from linksweep.results.paths import QUARTER, Paths, about_jumps, arcs, limits, turns
+from linksweep.scene.grid import NAMES as GRID_ROWS
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+NODES = 8
+"""Places near the end of an arc from which a quantity is extrapolated to it."""
+PROBE, PROBED = 0.025, 1e-5
+"""How near to the end, of a step or at least, a quantity is looked at to tell whether it grows without bound."""
+JUMPS_AT_ONCE = 4096
+"""Designs whose jumps are looked at together."""
+PathsOf = Callable[[Group], Paths]
+
+
+class Found(NamedTuple):
+    """A signal's largest value, its angle [degree], a bound on how much higher it may be, and the samples it took."""
+
+    value: Field
+    angle: Field
+    beyond: Field
+    samples: Field
+
+
+def exact_peaks(scene: Scene, signals: tuple[str, ...], threads: int | None = None) -> dict[str, Found]:
+    """The largest value of each signal over the continuous revolution, for every design; NaN where it has none."""
+    names = (*signals, "assembly")
+    if scene.at_one_angle is not scene:
+        found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
+        for group in groups(scene, names):
+            (assembly,) = group.constants("assembly")
+            for kind, paths_of in ((0.0, turns), (1.0, arcs)):
+                if np.any(assembly == kind):
+                    _follow(group.some(assembly == kind), found, paths_of, threads)
+        return found
+    assembly = compute(scene, crank_grid([0.0], scene.period, scene.mechanism.index), ("assembly",))["assembly"]
+    has_arcs = bool(limits(scene))
+    found = _fused(scene, signals, threads)
+    found = peaks_where(Field(assembly.dims, assembly.values < (1.0 if has_arcs else 2.0)), found)
+    if scene.jumps():
+        whole = _designs_where(scene, assembly, 0.0)
+        for group in groups(scene, names, whole, JUMPS_AT_ONCE):
+            _follow(group, found, about_jumps, threads)
+    if has_arcs and np.any(assembly.values == 1.0):
+        for group in groups(scene, names, _designs_where(scene, assembly, 1.0)):
+            _follow(group, found, arcs, threads)
+    return found
+
+
+def _nothing(field: Field) -> Found:
+    return Found(*(Field(field.dims, field.values.copy()) for _ in Found._fields))
+
+
+def _designs_where(scene: Scene, field: Field, value: float) -> Array:
+    """The designs at which a field has a value."""
+    sizes = scene.inputs.sizes
+    designs = np.arange(math.prod(sizes.values()))
+    places = places_of(sizes, designs)
+    return designs[np.broadcast_to(field.values[tuple(places[dim] for dim in field.dims)] == value, designs.shape)]
+
+
+def peaks_where(good: Field, found: dict[str, Found]) -> dict[str, Found]:
+    """The same peaks, NaN where no design that shares one is good."""
+    return {signal: Found(*(only_where(good, field) for field in peak)) for signal, peak in found.items()}
+
+
+# ----------------------------------------------------------------------------------------- the fused search
+
+
+def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, Found]:
+    inputs, index = scene.inputs, scene.mechanism.index
+    forms = tuple((name, form) for name, form in inputs.forms if name not in GRID_ROWS)
+    table = scene.table.between_samples
+    widths = plan(table, (NEAR_WIDTH, FAR_WIDTH), forms)
+    dims = {dim: None for node in widths.outputs.values() for dim in widths.dims(node)}
+    forms += ((TANGENT, (index, *dims)), (FAR, (index,)))
+    request = plan(table, (*signals, NEAR_WIDTH, FAR_WIDTH), forms)
+    turning = tuple(signal for signal in signals if index in request.outputs[signal].dims)
+    found = {}
+    if turning:
+        peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, threads)
+        found = {signal: _turned(scene, peak) for signal, peak in peaks.items()}
+    steady = tuple(signal for signal in signals if signal not in turning)
+    values = compute(scene, crank_grid([0.0], scene.period, index), steady) if steady else {}
+    return found | {signal: _steady(values[signal]) for signal in steady}
+
+
+def _turned(scene: Scene, peak: Peak) -> Found:
+    """A peak with its angle [degree], of which the search knows the half-angle tangent."""
+    dims, value = peak.value
+    away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
+    angle = (xr.DataArray(away, dims=dims) + scene.mechanism.pinch_angle).transpose(*dims).values
+    angle = np.where(np.isnan(value), np.nan, in_period(angle, scene.period))
+    return Found(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
+
+
+def _steady(field: Field) -> Found:
+    zero, one = (np.full(field.values.shape, number) for number in (0.0, 1.0))
+    return Found(*(Field(field.dims, values) for values in (field.values.copy(), zero, zero.copy(), one)))
+
+
+# -------------------------------------------------------------------------------------------- along paths
+
+
+class Best(NamedTuple):
+    """What is found of each signal on each path: Found's numbers (path, signal)."""
+
+    value: Array
+    angle: Array
+    beyond: Array
+    samples: Array
+
+
+def _follow(group: Group, found: dict[str, Found], paths_of: PathsOf, threads: int | None) -> None:
+    """Search along paths of a group's designs, and put what is higher than what stands there in its place."""
+    paths, signals = paths_of(group), tuple(found)
+    if not len(paths.row):
+        return
+    places = group.some(paths.row).places
+    at = [_flat(peak.value, places, len(paths.row)) for peak in found.values()]
+    standing = [peak.value.values.reshape(-1)[place] for peak, place in zip(found.values(), at, strict=True)]
+    best = _search(group, signals, paths, np.stack(standing, axis=1), threads)
+    best = best if paths.steps is None else _with_limits(group, signals, paths, best, threads)
+    for k, (peak, place) in enumerate(zip(found.values(), at, strict=True)):
+        _raise(peak, place, Best(*(numbers[:, k] for numbers in best)))
+
+
+def _flat(field: Field, places: Places, count: int) -> Array:
+    """Where, counted row-major, the numbers of a field are that belong to so many places."""
+    if not field.dims:
+        return np.zeros(count, dtype=int)
+    return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
+
+
+def _raise(peak: Found, at: Array, best: Best) -> None:
+    """Put the highest of what was found for each place there, if it is higher than what stands there."""
+    value, angle, beyond, samples = (field.values.reshape(-1) for field in peak)
+    height = np.nan_to_num(best.value, nan=-np.inf)
+    order = np.lexsort((-np.arange(len(at)), height, at))
+    last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each place
+    place = at[last]
+    with np.errstate(invalid="ignore"):
+        reach = np.nan_to_num(value + beyond, nan=-np.inf)
+        np.maximum.at(reach, at, height + best.beyond)
+        higher = last[~(height[last] <= value[place]) & (height[last] > -np.inf)]
+        value[at[higher]], angle[at[higher]] = best.value[higher], best.angle[higher]
+        beyond[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
+    beyond[place] = np.where(np.isnan(value[place]), np.nan, beyond[place])
+    samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, best.samples, len(value))[place]
+
+
+def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Array, threads: int | None) -> Best:
+    """What engine.search finds along the paths (path, signal) that may be higher than what stands there."""
+    count_of_paths, per_path = paths.x.shape
+    every = np.repeat(np.arange(count_of_paths), per_path)
+    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
+    rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
+    room, tags = search.in_blocks(rows.size // 2 + 1), count_of_paths * len(signals)
+    lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
+    best, samples = np.empty((search.BEST_ROWS, tags)), np.full(count_of_paths, per_path)
+    run = search_functions(rows.size)
+    with np.errstate(all="ignore"):
+        where = paths.x, paths.before, paths.after, paths.joined
+        count = run["open_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
+        best[search.PEAK] = np.fmax(best[search.PEAK], standing.ravel())
+        count = _kept(lanes, _promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
+        for _ in range(search.ROUNDS):
+            if not count:
+                break
+            run["aim"](lanes, trials, count)
+            these = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
+            tag, x = trials[search.OF, these].astype(int), trials[search.X, these]
+            path = tag // len(signals)
+            values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+            trials[search.VALUE, these] = values[tag % len(signals), np.arange(len(tag))]
+            samples += np.bincount(path, minlength=count_of_paths)
+            count = run["advance"](lanes, trials, count, best)
+    value, x, beyond = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
+    angle = in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
+    return Best(value, angle, beyond, np.broadcast_to(samples[:, None], value.shape))
+
+
+def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
+    """Which lanes promise more than the peak that stands; none do at ends where the signals pass on."""
+    tag, x = lanes[search.TAG].astype(int), lanes[search.XB]
+    promise = 3.0 * lanes[search.FB] - (lanes[search.FA] + lanes[search.FC]) > peak[tag]
+    path = tag // signals
+    return promise & ((paths.ends != "pass") | (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
+
+
+def _kept(lanes: Array, which: Array) -> int:
+    """Keep some of the lanes; how many they are."""
+    left = np.flatnonzero(which)
+    lanes[:, : len(left)] = lanes[:, left]
+    return len(left)
+
+
+def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best, threads: int | None) -> Best:
+    """The peaks on arcs, raised to the limits at their ends: infinite where a quantity is unbounded."""
+    value, angle, beyond, samples = best
+    for end, side in enumerate((-1.0, 1.0)):
+        limit, error = _limits(group, signals, paths, end, np.abs(value), threads)
+        raised = limit > value
+        edge = paths.middle + side * paths.half
+        value, beyond = np.where(raised, limit, value), np.where(raised, error, beyond)
+        angle = np.where(raised, in_period(edge, group.scene.period)[:, None], angle)
+    return Best(value, angle, beyond, samples + 2 * (NODES + 2))
+
+
+def _limits(
+    group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array, threads: int | None
+) -> tuple[Array, Array]:
+    """Limits (path, signal) at one end of arcs, with what they may err: polynomials through places before it."""
+    step = paths.steps[:, end]
+    probes = np.maximum(PROBE * step, PROBED)[:, None] * [1.0, 0.1]
+    before = np.concatenate([step[:, None] * np.arange(1.0, NODES + 1), probes], axis=1)
+    path = np.repeat(np.arange(len(step)), before.shape[1])
+    x = (2 * end - 1) * (QUARTER - before).ravel()
+    near = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+    near = near.reshape(len(signals), *before.shape).swapaxes(0, 1)
+    nearer, nearest = near[..., -2], near[..., -1]
+    unbounded = (np.abs(nearest) > 5.0 * np.abs(nearer)) & (np.abs(nearest) > 0.1 * np.nan_to_num(peak))
+    limit, other = (_extrapolated(near[..., :n]) for n in (NODES, NODES - 1))
+    error = np.where(unbounded, 0.0, np.abs(limit - other))
+    return np.where(unbounded, np.copysign(np.inf, nearest), limit), error
+
+
+def _extrapolated(values: Array) -> Array:
+    """The polynomial through values at 1, 2, 3, … steps, at 0."""
+    n = values.shape[-1]
+    return (values * [(-1.0) ** (k + 1) * math.comb(n, k) for k in range(1, n + 1)]).sum(axis=-1)

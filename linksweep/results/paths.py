@@ -1,0 +1,193 @@
+"""Paths round the machine, for what the fused search does not cover: loads over the angle, and turns that end.
+
+A whole turn is followed by its angle [degree]: even samples, more about the pinches by their width, and both sides of
+every jump. An arc that ends at toggles is followed by x with θ2 = middle + half·sin x: what has a square root there is
+smooth in x.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine.find_peaks import grades
+from linksweep.engine.search import GRADES
+from linksweep.results.between import Array, Group, in_period
+from linksweep.scene.scene import Scene
+
+PER_TURN = 720
+"""Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
+PER_ARC = 192
+ASIDE = 1e-9
+"""How far beside a jump its one-sided limits are taken [degree]."""
+BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
+"""Samples on either side of a jump that reach the nearest ones of the fused search [degree]."""
+NEAREST = 1e-5
+"""Nearer to the end of an arc, in x, rounding outweighs what is left to gain."""
+QUARTER = 0.5 * np.pi
+
+
+class Paths(NamedTuple):
+    """Paths of the designs `row` of a group: samples `x` (path, sample) with their neighbours, and `cuts` between
+    smooth pieces. Arcs have a middle and a half [degree], and at both ends the step by which to tell their limits.
+
+    The `ends` of a turn meet, those of an arc stop, and where the ends of a window are, the signals pass on.
+    """
+
+    row: Array
+    x: Array
+    before: Array
+    after: Array
+    cuts: Array
+    middle: Any = None
+    half: Any = None
+    steps: Any = None
+    ends: str = "meet"
+
+    def some(self, which: Array) -> Paths:
+        picked = {name: numbers[which] for name, numbers in self._asdict().items() if isinstance(numbers, np.ndarray)}
+        return self._replace(**picked)
+
+    @property
+    def joined(self) -> bool:
+        return self.ends == "meet"
+
+    def angles(self, path: Array, x: Array) -> Array:
+        """θ2 [degree] at places x of these paths."""
+        return x if self.middle is None or self.half is None else self.middle[path] + self.half[path] * np.sin(x)
+
+    def stretch(self, path: Array, x: Array) -> Array:
+        """dθ2/dx there, but for a factor that is the same for the whole path."""
+        return np.ones(x.shape) if self.half is None else self.half[path] * np.cos(x)
+
+
+def turns(group: Group) -> Paths:
+    """The whole period of each of these designs."""
+    period, turn = group.scene.period, group.scene.mechanism.period
+    rounds = round(period / turn)
+    step = turn / PER_TURN
+    even = (np.arange(PER_TURN * rounds) + 0.381966) * step  # off the round angles, where pinches have samples too
+    even = np.broadcast_to(even, (len(group.designs), len(even)))
+    pinched = np.concatenate([_pinched(group) + turn * k for k in range(rounds)], axis=1)
+    sides = jump_sides(group)
+    x, cuts = (
+        np.sort(in_period(np.concatenate(parts, axis=1), period), axis=1)
+        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], sides))
+    )
+    before, after = _neighbours(x, period)
+    cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
+    return Paths(np.arange(len(x)), x, before, after, cuts)
+
+
+def _neighbours(x: Array, period: float) -> tuple[Array, Array]:
+    """The samples before and after each of a path whose ends meet after a period."""
+    before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
+    before[:, 0] -= period
+    after[:, -1] += period
+    return before, after
+
+
+def _pinched(group: Group) -> Array:
+    """Graded samples of one turn [degree] about both pinches of each design."""
+    middle = group.number(group.scene.mechanism.pinch_angle)
+    table = 2.0 * np.degrees(np.arctan(grades()))
+    near, far = (table[_grades_of(widths)] for widths in group.constants("pinch_near", "pinch_far"))
+    return middle[:, None] + np.concatenate([near, far + 180.0], axis=1)
+
+
+def _grades_of(widths: Array) -> Array:
+    """`engine.search.grade_of` of each width."""
+    scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
+    return np.clip(1 - scale, 0, GRADES - 1)
+
+
+def jump_sides(group: Group) -> Array:
+    """Angles (design, side) just before and just after every jump in every turn of the period."""
+    angles = _jumps(group)
+    return np.concatenate([angles - ASIDE, angles + ASIDE], axis=1)
+
+
+def _jumps(group: Group) -> Array:
+    """Angles (design, jump) of every jump in every turn of the period."""
+    turn = group.scene.mechanism.period
+    rounds = range(round(group.scene.period / turn))
+    found = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in rounds]
+    # a design whose crank does not turn fully may have no such angle: any other does for it
+    return np.nan_to_num(np.stack(found, axis=1)) if found else np.empty((len(group.designs), 0))
+
+
+def about_jumps(group: Group) -> Paths:
+    """A window about every jump of each of these designs, wide enough to reach other samples on both sides."""
+    jumps = _jumps(group)
+    row = np.repeat(np.arange(len(jumps)), jumps.shape[1])
+    x = jumps.reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE])
+    before, after = _neighbours(x, 2.0 * BESIDE[-1] + 1.0)
+    return Paths(row, x, before, after, x, ends="pass")
+
+
+# -------------------------------------------------------------------------------------------------- arcs
+
+
+def arcs(group: Group) -> Paths:
+    """The one or two arcs on which each of these designs can be assembled; not those on which nothing is ok."""
+    first, last = (
+        np.stack([group.number(limit.isel(arc=k)) for k in range(limit.sizes["arc"])], axis=1)
+        for limit in limits(group.scene)
+    )
+    row, which = np.nonzero(np.isfinite(first))
+    middle, half = 0.5 * (first + last)[row, which], 0.5 * (last - first)[row, which]
+    x, cuts = _arc_samples(group.some(row), middle, half)
+    before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
+    before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
+    steps = _steps(first[row], last[row], middle, half)
+    paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
+    return paths.some(_ok_somewhere(group, paths))
+
+
+def _ok_somewhere(group: Group, paths: Paths) -> Array:
+    every = np.repeat(np.arange(len(paths.row)), paths.x.shape[1])
+    (status,) = group.values(("status",), paths.row[every], paths.angles(every, paths.x.ravel()))
+    return (status.reshape(paths.x.shape) == 0.0).any(axis=1)
+
+
+def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array]:
+    """Samples and cuts in x of arcs, one for each of the group's designs: even ones, and more towards both ends, about
+    the pinches that the arc passes, and beside jumps."""
+    even = (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
+    near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
+    shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
+    pinched, sides = (_on_arc(angles, middle, half) for angles in (_pinched(group), jump_sides(group)))
+    x = np.sort(np.concatenate([shared, pinched, sides], axis=1), axis=1)
+    cuts = np.concatenate([shared[:, ::8], pinched[:, ::2], sides, shared[:, :1] * 0.0 + [-QUARTER, QUARTER]], axis=1)
+    return x, np.sort(cuts, axis=1)
+
+
+def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
+    """x of angles on arcs; of those beyond, any other places."""
+    away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
+    anywhere = (np.arange(angles.shape[1]) + 0.3) * (np.pi / (angles.shape[1] + 1)) - QUARTER
+    with np.errstate(invalid="ignore"):
+        x = np.arcsin(away / half[:, None])
+    return np.where(np.abs(x) < QUARTER - NEAREST, x, anywhere)
+
+
+def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
+    """Steps (path, end) small against the way, in x, to the nearest other toggle beyond each end."""
+    own = np.stack([middle - half, middle + half], axis=1)
+    others = np.concatenate([first, last], axis=1)
+    away = np.abs(np.mod(own[:, :, None] - others[:, None, :] + 180.0, 360.0) - 180.0)
+    away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)[:, :, 1]  # the least is the end itself
+    return np.clip(0.01 * np.sqrt(2.0 * away / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
+
+
+def limits(scene: Scene) -> tuple[xr.DataArray, ...]:
+    """Start and end of the arcs [degree] over the dims of the lengths and `arc`; none for a machine without arcs."""
+    for findings, numbers in scene.mechanism.findings():
+        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
+        found = findings(*(array.values for array in arrays))
+        if "arc_start" in found:
+            dims = (*arrays[0].dims, "arc")
+            return tuple(xr.DataArray(found[name].values, dims=dims) for name in ("arc_start", "arc_end"))
+    return ()

@@ -1,0 +1,158 @@
+"""Means over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
+
+The revolution is cut at jumps and, more densely, about the pinches; a piece is halved until its two rules agree. One
+that never does reaches to where the quantity grows without bound, and so fast that it has no mean: that is infinite.
+Where a quantity is not known (jammed, off the track) it is left out, of the mean as of the length. Arcs are followed
+by x with θ2 = middle + half·sin x, as in `linksweep.results.paths`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.run import Field
+from linksweep.results.between import Array, Group, empty, groups
+from linksweep.results.paths import Paths, arcs, turns
+from linksweep.scene.scene import Scene
+
+Power = tuple[str, int]
+"""A quantity and the power whose mean is wanted."""
+
+HALVINGS = 45
+TOLERANCE = 1e-12
+"""Of a piece, relative to the whole: a revolution has up to a hundred pieces that matter."""
+BURSTING = 1e5
+"""A piece that outgrows the first estimate of the whole so far diverges."""
+ROUNDING = 1e-13
+"""Of a piece, relative to itself: less cannot be told from the rounding of its samples."""
+
+NODES = np.array([
+    0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
+    0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
+    0.586087235467691130294144691693013, 0.405845151377397166906606412076961,
+    0.207784955007898467600689403773245, 0.0,
+])  # fmt: skip
+KRONROD = np.array([
+    0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
+    0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
+    0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
+    0.204432940075298892414161999234649, 0.209482141084727828012999174891714,
+])  # fmt: skip
+GAUSS = np.array([
+    0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
+    0.381830050505118944950369775488975, 0.417959183673469387755102040816327,
+])  # fmt: skip
+POINTS = np.concatenate([-NODES, NODES[-2::-1]])
+OUTER = np.concatenate([KRONROD, KRONROD[-2::-1]])
+INNER = np.zeros(15)
+INNER[1::2] = np.concatenate([GAUSS, GAUSS[-2::-1]])
+
+
+class Pieces(NamedTuple):
+    """Parts of paths, from `start` to `end` in their x."""
+
+    path: Array
+    start: Array
+    end: Array
+
+    def some(self, which: Array) -> Pieces:
+        return Pieces(*(numbers[which] for numbers in self))
+
+    def halved(self) -> Pieces:
+        middle = 0.5 * (self.start + self.end)
+        return Pieces(np.tile(self.path, 2), np.append(self.start, middle), np.append(middle, self.end))
+
+
+class Rules(NamedTuple):
+    """Integrals (row, piece) by both rules, and of the magnitude; rows: a power and its known length, in turn."""
+
+    outer: Array
+    inner: Array
+    size: Array
+
+
+def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
+    """Means of powers of quantities over the revolution, for every design; NaN where no angle is ok."""
+    names = tuple(dict.fromkeys(name for name, _ in powers))
+    fields = empty(scene, names)
+    found = {power: Field(fields[power[0]].dims, fields[power[0]].values.copy()) for power in powers}
+    for group in groups(scene, (*names, "assembly")):
+        (assembly,) = group.constants("assembly")
+        for kind, paths_of in ((1.0, arcs), (0.0, turns)):
+            if np.any(assembly == kind):
+                part = group.some(assembly == kind)
+                _put(part, found, paths_of(part), threads)
+    return found
+
+
+def _put(group: Group, found: dict[Power, Field], paths: Paths, threads: int | None) -> None:
+    if not len(paths.row):
+        return
+    integrals = _integrals(group, tuple(found), paths, threads)
+    for k, field in enumerate(found.values()):
+        total, length = _by_owner(integrals[2 * k : 2 * k + 2], paths.row, len(group.designs))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = total / length
+        field.values[tuple(group.places[dim] for dim in field.dims)] = mean if field.dims else mean[0]
+
+
+def _integrals(group: Group, powers: tuple[Power, ...], paths: Paths, threads: int | None) -> Array:
+    """For each power the integral over each path, and the length over which it is known, row by row."""
+    count, pieces, scale = len(paths.x), _first_pieces(paths), None
+    done = np.zeros((2 * len(powers), count))
+    for _ in range(HALVINGS):
+        rules = _rules(group, powers, paths, pieces, threads)
+        scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
+        rest = _disagree(rules, scale[:, pieces.path])
+        bursting = rest & (rules.size > BURSTING * scale[:, pieces.path])
+        rules.outer[bursting] = np.copysign(np.inf, rules.outer[bursting])
+        rest &= ~bursting
+        settled = ~rest.any(axis=0)
+        done += _by_owner(rules.outer[:, settled], pieces.path[settled], count)
+        if settled.all():
+            return done
+        pieces, unsettled = pieces.some(np.flatnonzero(~settled)).halved(), rules.outer[:, ~settled]
+        rest = rest[:, ~settled]
+    owner = pieces.path[: unsettled.shape[1]]
+    return done + _by_owner(np.where(rest, np.copysign(np.inf, unsettled), unsettled), owner, count)
+
+
+def _disagree(rules: Rules, scale: Array) -> Array:
+    """Where the rules differ by more than rounding, and the better one errs by too much, as QUADPACK reckons."""
+    difference = np.abs(rules.outer - rules.inner)
+    above_rounding = difference > ROUNDING * rules.size  # beside a pole a piece may be larger than the rest together
+    difference = difference / scale
+    return above_rounding & (difference > TOLERANCE) & ((200.0 * difference) ** 1.5 > TOLERANCE)
+
+
+def _by_owner(rows: Array, owner: Array, count: int) -> Array:
+    """Sums (row, owner) of what belongs to each of so many owners."""
+    with np.errstate(invalid="ignore"):  # without bound both ways: NaN
+        return np.stack([np.bincount(owner, row, count) for row in rows])
+
+
+def _first_pieces(paths: Paths) -> Pieces:
+    count, edges = paths.cuts.shape
+    path = np.repeat(np.arange(count), edges - 1)
+    return Pieces(path, paths.cuts[:, :-1].ravel(), paths.cuts[:, 1:].ravel())
+
+
+def _rules(group: Group, powers: tuple[Power, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:
+    middle, half = 0.5 * (pieces.start + pieces.end), 0.5 * (pieces.end - pieces.start)
+    x = (middle[:, None] + half[:, None] * POINTS).ravel()
+    path = np.repeat(pieces.path, len(POINTS))
+    names = tuple(dict.fromkeys(name for name, _ in powers))
+    values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x), threads), strict=True))
+    stretch, rows = paths.stretch(path, x), []
+    for name, power in powers:
+        known = np.isfinite(values[name])
+        rows += [np.where(known, values[name], 0.0) ** power * stretch, known * stretch]
+    samples = np.stack(rows).reshape(len(rows), len(half), len(POINTS)) * half[:, None]
+    # no matrix products: how they sum, and so the last bit, depends on how many pieces there are
+    return Rules(*((part * weights).sum(axis=-1) for part, weights in _weighted(samples)))
+
+
+def _weighted(samples: Array) -> tuple[tuple[Array, Array], ...]:
+    return (samples, OUTER), (samples, INNER), (np.abs(samples), OUTER)

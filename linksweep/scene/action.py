@@ -1,0 +1,74 @@
+"""What every action on a mechanism offers to the scene that takes it, with what most of them answer."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeVar
+
+from linksweep.engine.run import Grid
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.actions import Form
+from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.validate import Number, Rule, problems
+from linksweep.scene.over_angle import at_angles
+
+Owner = TypeVar("Owner")
+
+
+class Revolution(NamedTuple):
+    """What a sweep looks at: the machine, its angles, and the speed of the crank at them."""
+
+    mechanism: Mechanism
+    grid: Grid
+    omega2: Number
+
+    def sample(self, path: str, value: Any, rule: Rule) -> Any:
+        """A number at the angles, where it changes with them."""
+        return at_angles(path, value, rule, self.grid, self.mechanism.period)
+
+
+class Action(ByContent):
+    """What may stand among a scene's loads: a frozen dataclass that knows its form and its numbers."""
+
+    @property
+    def form(self) -> Form:
+        """Which rows it brings, without its numbers."""
+        raise NotImplementedError
+
+    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """Its numbers under the names that the physics wires by, given the machine's."""
+        raise NotImplementedError
+
+    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        """What is wrong with it on a machine of these links; by default, what is with its numbers."""
+        return problems(self, path + ".")
+
+    def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
+        """Why a mechanism does not take it, sound as it is in itself."""
+        return []
+
+    @property
+    def period(self) -> float:
+        """After which it repeats [degree], besides what its numbers over theta2 say; 0 where it has none of its own."""
+        return 0.0
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Crank angles [degree] at which its force or torque jumps."""
+        return ()
+
+    def sampled(self, path: str, revolution: Revolution) -> Action:
+        """The same with all that changes over the revolution at its angles; itself where nothing does."""
+        return self
+
+
+def with_values(owner: Owner, **values: Any) -> Owner:
+    """The same dataclass with these values; itself where it has them already."""
+    other = {name: value for name, value in values.items() if not _same(getattr(owner, name), value)}
+    return replace(owner, **other) if other else owner  # type: ignore[type-var]
+
+
+def _same(old: Any, new: Any) -> bool:
+    """Whether two values are one, or tuples of the same ones."""
+    return old is new or (isinstance(new, tuple) and len(old) == len(new) and all(map(operator.is_, old, new)))

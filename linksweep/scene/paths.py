@@ -1,0 +1,69 @@
+"""The numbers of a scene by their paths, as messages and coordinates name them: "coupler.length", "loads[1].at[2]".
+
+"mechanism" is left out of a path, and lists count from one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from linksweep.scene.action import Owner, with_values
+
+PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
+"""Kinds of the numbers that come in pairs."""
+
+
+def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
+    """Every number of a scene with its path and its kind ("" for a word that stands among numbers)."""
+    for item in fields(owner):
+        value, path = getattr(owner, item.name), prefix + item.name
+        if "rule" in item.metadata and not _has_parts(value):
+            yield path, value, item.metadata["rule"].kind
+        elif item.name == "loads":
+            for k, load in enumerate(value, 1):
+                yield from numbers(load, f"loads[{k}].")
+        elif _has_parts(value):
+            yield from numbers(value, "" if item.name == "mechanism" else path + ".")
+        elif isinstance(value, tuple | list):
+            kinds = zip(value, _kinds(item.name, value), strict=False)
+            yield from ((f"{path}[{k}]", number, kind) for k, (number, kind) in enumerate(kinds, 1))
+
+
+def free(scene: Any) -> dict[str, tuple[Any, str]]:
+    """What may vary in a study: value and kind of each number by its path, but for words that this machine lacks."""
+    return {
+        path: (value, kind) for path, value, kind in numbers(scene) if kind and not (value is None and "." not in path)
+    }
+
+
+def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner:
+    """A scene with other numbers at these paths, all put in at once, so that it is judged only when it is complete.
+
+    Raises ValueError where the scene with these numbers is refused.
+    """
+    parts = {item.name: getattr(owner, item.name) for item in fields(owner)}  # type: ignore[arg-type]
+    below = {name: prefix if name == "mechanism" else prefix + name for name in parts}
+    return with_values(owner, **{name: _replaced(part, below[name], values) for name, part in parts.items()})
+
+
+def _replaced(value: Any, path: str, values: Mapping[str, Any]) -> Any:
+    if path in values:
+        return values[path]
+    if _has_parts(value):
+        return replaced(value, values, path and path + ".")
+    if isinstance(value, tuple | list):
+        return tuple(_replaced(item, f"{path}[{k}]", values) for k, item in enumerate(value, 1))
+    return value
+
+
+def _has_parts(value: Any) -> bool:
+    return is_dataclass(value) and not isinstance(value, type)
+
+
+def _kinds(name: str, value: tuple | list) -> tuple[str, ...]:
+    """Kinds of the items of a pair, or of the end of a spring: a link, then a point of the ground or of the link."""
+    if name in ("from_", "to"):
+        return ("", "length", "length" if value[0] == "ground" else "angle")
+    return PAIRS.get(name, ("",) * len(value))

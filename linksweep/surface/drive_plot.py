@@ -1,0 +1,130 @@
+"""Plots of a drive: its speed with a flywheel, and a motor's torque–speed points beside its curve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.mechanisms.validate import refuse
+from linksweep.results.motor import Motor
+from linksweep.surface import signals
+from linksweep.surface.style import BLUE, GREY, SHADE, VERMILION, axes_or_new, crank_angles, grid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TICK = 90.0  # degrees of the crank between named points
+
+
+def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Plot the crank's speed over the cycle with a flywheel, its largest and least.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.flywheel`, of one design.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without speed, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.plot.flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05)).get_ylabel()
+    'crank speed $\\\\omega_2$ [rad/s]'
+    """
+    refuse([] if "speed" in found else ["found has no speed: take what ls.flywheel returns"])
+    signals.require_angles(found)
+    angles, speed = signals.revolution(found, found["speed"])
+    ax = axes_or_new(ax)
+    grid(ax)
+    middle = 0.5 * (np.max(speed) + np.min(speed))
+    ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
+    ax.plot(angles, speed, color=BLUE, label="_speed")
+    _extremes(ax, angles, speed)
+    size, fluctuation = float(found["flywheel_inertia"]), float(found["fluctuation"])
+    ax.set_title(f"flywheel {signals.number(size)} kg m², fluctuation {100.0 * fluctuation:.3g} %", loc="left")
+    crank_angles(ax, angles)
+    ax.margins(y=0.18)
+    ax.set_ylabel("crank speed $\\omega_2$ [rad/s]")
+    return ax
+
+
+def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
+    from linksweep.surface.labels import label
+
+    for said, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
+        ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{said}")
+        label(ax, angles[k], speed[k], (f"{said} {speed[k]:.5g} rad/s", BLUE))
+
+
+def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
+    """Plot the torque that a motor must give over its speed, beside the most that it can.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.motor_load`, of one design.
+    motor : Motor
+        The same.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Where the motor is too weak, the path is red.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without a motor's torque, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> servo = ls.Motor(speeds=(0.0, 300.0, 600.0), torques=(4.0, 4.0, 1.0), inertia=2e-4)
+    >>> found = ls.motor_load(ls.example("press"), servo, ratio=10.0)
+    >>> ls.plot.motor_load(found, servo).get_xlabel()
+    'motor speed [rad/s]'
+    """
+    refuse([] if "motor_torque" in found else ["found has no motor_torque: take what ls.motor_load returns"])
+    signals.require_angles(found)
+    _, speed, torque, margin = signals.revolution(
+        found, found["motor_speed"], found["motor_torque"], found["torque_margin"]
+    )
+    ax = axes_or_new(ax)
+    grid(ax)
+    side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
+    curve = side * np.asarray(motor.speeds, dtype=float), np.asarray(motor.torques, dtype=float)
+    ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can")
+    ax.plot(np.r_[curve[0], curve[0][::-1]], np.r_[curve[1], -curve[1][::-1]], color=GREY, linewidth=1.0)
+    ax.plot(speed, torque, color=BLUE, linewidth=1.6, label="what the machine takes")
+    if (margin < 0.0).any():
+        ax.plot(speed, np.where(margin < 0.0, torque, np.nan), color=VERMILION, linewidth=2.4, label="too much")
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    _worst(ax, speed, torque, margin)
+    ax.set_xlabel("motor speed [rad/s]")
+    ax.set_ylabel("motor torque [N m]")
+    ax.margins(y=0.12)
+    ax.legend(fontsize="small", frameon=False)
+    return ax
+
+
+def _worst(ax: Axes, speed: np.ndarray, torque: np.ndarray, margin: np.ndarray) -> None:
+    from linksweep.surface.labels import label
+
+    k = int(np.nanargmin(margin))
+    color = VERMILION if margin[k] < 0.0 else BLUE
+    ax.plot([speed[k]], [torque[k]], "o", color=color, markersize=4.5, label="_worst")
+    label(ax, speed[k], torque[k], (f"least margin {signals.number(margin[k])} N m", color))

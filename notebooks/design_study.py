@@ -1,0 +1,249 @@
+# ---
+# jupyter:
+#   jupytext:
+#     formats: ipynb,py:percent
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Which four-bar loads its bearings least?
+#
+# A stirrer: a motor at 240 rpm swings a paddle to and fro by 60°, through a four-bar of steel bars. The fluid brakes the paddle in
+# proportion to its speed. The four lengths are ours to choose. Short links mean large forces for the same torque; long ones are
+# heavy and have to be thrown about. Somewhere between lies the design whose hardest loaded pin bears least. We look at a hundred
+# thousand of them, exactly, over the whole revolution, and then walk from the best one down to the bottom.
+
+# %%
+import time
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import xarray as xr
+from scipy.optimize import differential_evolution
+
+import linksweep as ls
+
+bar = {"width": 0.02, "thickness": 0.02, "density": 7850.0}  # 2 × 2 cm steel [m, kg/m³]
+
+
+def stirrer(crank, coupler, rocker, ground):
+    """The scene for four lengths [m], or for arrays of them."""
+    machine = ls.FourBar(ls.Bar(crank, **bar), ls.Bar(coupler, **bar), ls.Bar(rocker, **bar), ground)
+    fluid = ls.TorsionDamper("ground", "rocker", coefficient=0.4)  # N m s/rad
+    return ls.Scene(machine, omega2=2 * np.pi * 240 / 60, gravity=(0.0, -9.81), loads=[fluid])
+
+
+# %% [markdown]
+# The design that the textbook gives without a search is the centric one, whose rocker takes the same time both ways:
+# crank / rocker = sin(swing / 2), ground² = coupler² + rocker² − crank². With a rocker of 10 cm and a coupler of 20 cm:
+
+# %%
+first = stirrer(0.05, 0.20, 0.10, np.sqrt(0.20**2 + 0.10**2 - 0.05**2))
+ls.peaks(first).linksweep.to_pandas().T
+
+# %% [markdown]
+# ## A hundred thousand candidates
+#
+# `sample` spreads designs evenly over what the lengths may be. Which of them turn at all, `check` answers in closed form.
+
+# %%
+may_be = {
+    "crank.length": ("3 cm", "8 cm"),
+    "coupler.length": ("10 cm", "30 cm"),
+    "rocker.length": ("6 cm", "16 cm"),
+    "ground": ("12 cm", "30 cm"),
+}
+start = time.perf_counter()
+sampled = ls.check(ls.sample(first, may_be, n=100_000))
+turning = sampled.grashof == 0  # crank-rockers
+candidates = stirrer(*(sampled[path][turning] for path in may_be))
+print(f"{int(turning.sum())} of 100 000 turn, {time.perf_counter() - start:.1f} s")
+
+# %% [markdown]
+# Their swing and their transmission angle are geometry too, by the law of cosines: the rocker reverses where crank and coupler lie on
+# one line, and the coupler meets the rocker most askew where the crank lies along the ground.
+
+
+# %%
+def angle(p, q, opposite):
+    """The angle [degree] between two sides of a triangle."""
+    return np.degrees(np.arccos(((p**2 + q**2 - opposite**2) / (2 * p * q)).clip(-1, 1)))
+
+
+def swing(ds):
+    """What the rocker swings through [degree], from the lengths that stand in a Dataset."""
+    crank, coupler, rocker, ground = (ds[path] for path in may_be)
+    return angle(rocker, ground, coupler + crank) - angle(rocker, ground, coupler - crank)
+
+
+def transmission_angle(ds):
+    """Least acute angle between coupler and rocker [degree]."""
+    crank, coupler, rocker, ground = (ds[path] for path in may_be)
+    return 90 - np.maximum(*(abs(90 - angle(coupler, rocker, ground + reach)) for reach in (-crank, crank)))
+
+
+def fits(ds, least_swing=60.0):
+    return (swing(ds) >= least_swing) & (transmission_angle(ds) >= 40)
+
+
+# %% [markdown]
+# Now the exact peaks of all that turn: every pin force and the torque, each at its worst crank angle. The bearing load of a
+# design is that of its hardest loaded pin. A design fits when the rocker swings through 60° at least and the transmission angle
+# stays above 40°.
+
+# %%
+PINS = ["F12", "F32", "F43", "F14"]
+
+
+def bearing_load(ds):
+    """The peak force in the pin that is loaded hardest [N]."""
+    peaks = ds[[f"{pin}_peak" for pin in PINS]]
+    return peaks.to_dataarray().max("variable").assign_attrs(units="N")
+
+
+start = time.perf_counter()
+study = ls.peaks(candidates)
+print(f"exact peaks of {study.sizes['design']} designs: {time.perf_counter() - start:.1f} s, compiling included")
+
+study["bearing_load"] = bearing_load(study)
+study["swing"] = swing(study).assign_attrs(units="degree")
+study["transmission_angle"] = transmission_angle(study).assign_attrs(units="degree")
+fitting = study.isel(design=np.flatnonzero(fits(study)))
+print(fitting.sizes["design"], "of them fit")
+
+# %% [markdown]
+# Two things that one would like small, bearing load and drive torque, against each other. What no other design beats in both is the
+# Pareto front: along it, less of one costs more of the other.
+
+# %%
+fitting.linksweep.scatter("bearing_load", "T12_peak", color="rocker.length")
+# %%
+front = ls.pareto(fitting, minimize=["bearing_load", "T12_peak"])
+front[["bearing_load", "T12_peak", "swing", "transmission_angle"]].linksweep.to_pandas().round(3)
+
+# %% [markdown]
+# Parallel coordinates show what good designs have in common. Each line is a design, from its lengths on the left to its results on
+# the right.
+
+# %%
+fitting.linksweep.parallel_coordinates([*may_be, "transmission_angle", "swing", "T12_peak", "bearing_load"])
+# %% [markdown]
+# The good ones have a crank of about half the rocker, use no more swing than they must, and hardly more transmission angle. Their
+# size lies well inside what we allowed: below it forces grow because the levers are short, above it because the links are heavy.
+#
+# ## From the best candidate to the best design
+#
+# `scene_at` makes a candidate a scene of its own. `objective` makes a scene a function of its four lengths, which scipy's
+# differential evolution calls with a whole population at once. It starts from the best candidates instead of from anywhere.
+
+# %%
+best = ls.scene_at(fitting, design=fitting.bearing_load.idxmin())
+
+
+def refined(least_swing):
+    """The design of least bearing load."""
+    load = ls.objective(first, may_be, minimize=bearing_load, constraint=lambda ds: fits(ds, least_swing), of=PINS)
+    enough = fitting.isel(design=np.flatnonzero(fitting.swing >= least_swing)).sortby("bearing_load")
+    start = np.stack([enough[path][:40] for path in may_be], axis=1)
+    found = differential_evolution(
+        load, load.bounds, vectorized=True, updating="deferred", init=start, maxiter=80, tol=1e-6, polish=False, rng=1
+    )
+    print(f"{len(start) * (found.nit + 1)} designs more")
+    return load.scene(found.x)
+
+
+start = time.perf_counter()
+winner = refined(least_swing=60.0)
+print(f"{time.perf_counter() - start:.1f} s")
+
+
+# %%
+def told(scene):
+    """What one wants to know of a design."""
+    machine, worst, rocker = scene.mechanism, ls.peaks(scene), ls.sweep(scene, outputs=["theta4"]).theta4
+    return {
+        **{f"{link} [mm]": 1000 * getattr(machine, link).length for link in ("crank", "coupler", "rocker")},
+        "ground [mm]": 1000 * machine.ground,
+        "swing [°]": float(rocker.max() - rocker.min()),
+        "transmission angle [°]": float(ls.check(scene).transmission_angle_min),
+        "peak bearing load [N]": float(bearing_load(worst)),
+        "peak torque [N m]": float(worst.T12_peak),
+    }
+
+
+designs = {"textbook": first, "best of 100 000": best, "refined": winner}
+table = pd.DataFrame({name: told(scene) for name, scene in designs.items()})
+table.round(2)
+
+# %% [markdown]
+# Swing and transmission angle in this table come from a sweep and from `check`, which do not know our formulas. What became of the
+# load is seen at the pin that bears most, between crank and ground:
+
+# %%
+fig, panels = plt.subplots(1, 2, figsize=(10, 4.8), layout="constrained")
+for ax, name in zip(panels, ("textbook", "refined"), strict=True):
+    ls.sweep(designs[name]).linksweep.bearing("F12", ax=ax)
+    ax.set_title(name)
+
+# %% [markdown]
+# Why just there? Crank and rocker varied about the winner, 80 × 80 designs; those that do not fit are grey. The winner stands in a
+# corner: below it the rocker swings less than 60°, to its left the transmission angle is less than 40°. Without these two limits
+# the load would fall further.
+
+# %%
+machine = winner.mechanism
+crank, rocker = (
+    xr.DataArray(np.linspace(0.96, 1.16, 80) * getattr(machine, link).length, dims=link) for link in ("crank", "rocker")
+)
+around = ls.peaks(stirrer(crank, machine.coupler.length, rocker, machine.ground))
+fixed = around.assign_coords({"coupler.length": machine.coupler.length, "ground": machine.ground})
+around["swing"] = swing(fixed).assign_attrs(units="degree")
+around["bearing_load"] = bearing_load(around).where(fits(fixed))
+around.linksweep.heat_map("bearing_load", contours="swing")
+# %% [markdown]
+# ## Made in a workshop
+#
+# Nobody makes a link to the last digit. Let each length be off by 0.05 mm standard deviation, and the torque of the
+# fluid by a tenth. A tolerance study is a sample around the scene's own values.
+
+# %%
+off = {path: ls.Normal(deviation="0.05 mm", within=3) for path in may_be}
+made = ls.peaks(ls.sample(winner, off | {"loads[1].coefficient": ls.Normal(deviation=0.04)}, n=20_000))
+made_load, made_swing = bearing_load(made), swing(made)
+
+fig, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
+left.hist(made_load, bins=60)
+left.set(xlabel="peak bearing load [N]", ylabel="machines of 20 000")
+left.axvline(table.loc["peak bearing load [N]", "refined"], color="k", linewidth=1, label="as designed")
+left.legend()
+right.hist(made_swing, bins=60)
+right.set(xlabel="swing [°]")
+right.axvline(60, color="k", linewidth=1)
+print(f"99 % bear less than {float(made_load.quantile(0.99)):.1f} N")
+print(f"{100 * float((made_swing < 60).mean()):.0f} % swing less than 60°")
+
+# %% [markdown]
+# The load follows the fluid and hardly minds the lengths. But an optimum leans on its limits: it uses just 60°, so about half of the
+# machines fall short. A margin of three standard deviations cures that, and the same search tells what it costs:
+
+# %%
+safe = refined(least_swing=60 + 3 * float(made_swing.std()))
+table["with margin"] = told(safe)
+table.round(2)
+
+# %%
+short = swing(ls.check(ls.sample(safe, off, n=20_000))) < 60
+print(f"{100 * float(short.mean()):.2f} % swing less than 60°")
+
+load = table.loc["peak bearing load [N]"]
+assert abs(table.loc["swing [°]", "textbook"] - 60) < 1e-3
+assert load["refined"] < load["with margin"] < load["textbook"]
+assert load["refined"] < load["best of 100 000"]
+assert short.mean() < 0.01

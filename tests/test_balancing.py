@@ -1,0 +1,310 @@
+"""Regressor, counterweights by closed form and by least squares: against identities, known results and brute force."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from refusals import LOOP, refusal
+
+import linksweep as ls
+
+PRESS, SHAPER = ls.example("press"), ls.example("quick-return")
+ENGINE = replace(ls.example("engine"), mechanism=replace(ls.example("engine").mechanism, friction=0.0))
+SKEW = replace(
+    PRESS,
+    mechanism=ls.FourBar(
+        ls.Link(0.08, 0.5, 1e-3, 0.03, 40.0),
+        ls.Link(0.22, 0.9, 5e-3, 0.13, -20.0),
+        ls.Link(0.18, 0.7, 3e-3, 0.07, 160.0),
+        ground=0.2,
+        ground_angle=25.0,
+    ),
+    alpha2=50.0,
+)
+OUTPUTS = ["F12x", "F32y", "F43x", "F14y", "T12", "Fsx", "Ms", "power", "F32x_link3"]
+
+# ------------------------------------------------------------------------------------------------- regressor
+
+
+@pytest.mark.parametrize("scene", [PRESS, ENGINE, SHAPER, SKEW, replace(SKEW, drive="coupler")])
+def test_coefficients_times_parameters_are_the_sweep(scene):
+    names = [name.replace("T12", scene.mechanism.drives[scene.drive]) for name in OUTPUTS]
+    names = [name for name in names if name in scene.table.quantity]
+    found, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, outputs=names)
+    for name in names:
+        again = (found[name] * found.value).sum("parameter", skipna=False) + found[f"{name}_of_loads"]
+        near = 1e-12 * float(np.abs(cycle[name]).max())
+        np.testing.assert_allclose(*xr.broadcast(again, cycle[name]), rtol=1e-9, atol=near)
+
+
+def test_coefficients_foretell_other_masses():
+    """What no probe has seen: a coupler of other mass, place and inertia."""
+    found = ls.regressor(SKEW, OUTPUTS, theta2=36)
+    m, d, angle, inertia = 1.7, 0.05, 75.0, 2e-3
+    h = m * d * np.exp(1j * np.radians(angle))
+    values = found.value.copy()
+    for word, number in {"m": m, "mx": h.real, "my": h.imag, "J": inertia + m * d**2}.items():
+        values.loc[{"parameter": f"coupler.{word}"}] = number
+    other = replace(SKEW.mechanism, coupler=ls.Link(0.22, m, inertia, d, angle))
+    cycle = ls.sweep(replace(SKEW, mechanism=other), theta2=36, outputs=OUTPUTS)
+    for name in OUTPUTS:
+        again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
+        np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
+
+
+def test_the_torque_of_a_flywheel_is_its_inertia_times_alpha():
+    found = ls.regressor(SKEW, ["T12", "F12x"], theta2=36)
+    np.testing.assert_allclose(found.T12.sel(parameter="crank.J"), 50.0, rtol=1e-12)
+    np.testing.assert_allclose(found.F12x.sel(parameter="crank.J"), 0.0, atol=1e-12)
+
+
+def test_designs_go_along():
+    lengths = xr.DataArray([0.2, 0.22, 0.24], dims="coupler_length")
+    several = replace(
+        PRESS, mechanism=replace(PRESS.mechanism, ground=lengths), omega2=xr.DataArray([5.0, 9.0], dims="s")
+    )
+    found = ls.regressor(several, ["F32x"], theta2=12)
+    cycle = ls.sweep(several, theta2=12, outputs=["F32x"]).F32x
+    again = (found.F32x * found.value).sum("parameter") + found.F32x_of_loads
+    np.testing.assert_allclose(again.transpose(*cycle.dims), cycle, rtol=1e-10, atol=1e-10)
+
+
+# ------------------------------------------------------------------------------------------------- counterweights
+
+
+def shaking(scene, **options):
+    return ls.sweep(scene, outputs=["Fsx", "Fsy", "Fs", "Ms"], **options)
+
+
+@pytest.mark.parametrize(
+    "scene", [PRESS, SKEW, replace(SKEW, mechanism=replace(SKEW.mechanism, branch="crossed")), SHAPER]
+)
+def test_balanced_wholly(scene):
+    """Berkof and Lowen: no shaking force is left, at any speed and acceleration of the crank."""
+    weights = ls.counterweights(scene, radius={"crank": 0.05, "rocker": 0.07})
+    balanced = ls.with_counterweights(scene, weights)
+    before, after = shaking(scene), shaking(balanced)
+    assert float(after.Fs.max()) < 1e-12 * float(before.Fs.max())
+    assert [weight.link for weight in weights] == ["crank", "rocker"]
+    faster = shaking(replace(balanced, omega2=300.0, alpha2=-1e4))
+    assert float(faster.Fs.max()) < 1e-12 * float(shaking(replace(scene, omega2=300.0, alpha2=-1e4)).Fs.max())
+
+
+def test_berkof_and_lowens_in_line_four_bar():
+    """In-line links: m2 r2 = m3 (1 − r3/b) a and m4 r4 = m3 r3 c/b, both counterweights opposite to the pins."""
+    a, b, c = 0.05, 0.15, 0.1
+    coupler = ls.Link(b, 2.0, 0.01, cg_distance=0.06)
+    light = ls.FourBar(ls.Link(a, 0.0, 0.0), coupler, ls.Link(c, 0.0, 0.0), ground=0.14)
+    crank, rocker = ls.counterweights(ls.Scene(light, omega2=1.0), radius=0.04)
+    assert crank.mass * 0.04 == pytest.approx(2.0 * (1.0 - 0.06 / b) * a, rel=1e-14)
+    assert rocker.mass * 0.04 == pytest.approx(2.0 * 0.06 * c / b, rel=1e-14)
+    assert abs(crank.at[1]) == abs(rocker.at[1]) == pytest.approx(180.0, abs=1e-12)
+
+
+def test_forces_of_a_balanced_machine_on_the_ground_add_up_to_nothing():
+    """Without loads and weights: F21 + F41 = 0, whatever is left is a couple."""
+    free = replace(SKEW, gravity=(0.0, 0.0), loads=[])
+    cycle = ls.sweep(ls.with_counterweights(free, ls.counterweights(free, radius=0.05)))
+    largest = float(np.hypot(cycle.F12x, cycle.F12y).max())
+    np.testing.assert_allclose(cycle.F12x, -cycle.F14x, atol=1e-12 * largest)
+    np.testing.assert_allclose(cycle.F12y, -cycle.F14y, atol=1e-12 * largest)
+
+
+@pytest.mark.parametrize("fraction", [0.0, 0.5, 1.0])
+def test_a_fraction_of_the_first_order(fraction):
+    """An upright engine: 1 − f of m_rec·r·ω² stays along the cylinder, f of it goes across; higher orders stay."""
+    balanced = ls.with_counterweights(ENGINE, ls.counterweights(ENGINE, radius=0.05, fraction=fraction))
+    before, after = (ls.orders(shaking(s, theta2=1440), ["Fsx", "Fsy"], n=6) for s in (ENGINE, balanced))
+    rod = ENGINE.mechanism.rod
+    reciprocating = ENGINE.mechanism.slider_mass + rod.mass * rod.cg_distance / rod.length
+    first = reciprocating * ENGINE.mechanism.crank.length * ENGINE.omega2**2
+    ratio = ENGINE.mechanism.crank.length / rod.length
+    expected = first * (1.0 - fraction)
+    assert float(after.Fsy_amplitude.sel(order=1)) == pytest.approx(expected, abs=1e-12 * first)
+    assert float(after.Fsx_amplitude.sel(order=1)) == pytest.approx(first * fraction, abs=1e-12 * first)
+    second = first * (ratio + ratio**3 / 4.0 + 15.0 * ratio**5 / 128.0)
+    assert float(after.Fsy_amplitude.sel(order=2)) == pytest.approx(second, rel=1e-4)
+    for name in ("Fsx", "Fsy"):
+        high = {"order": [2, 3, 4, 5, 6]}
+        same = before[f"{name}_amplitude"].sel(high)
+        np.testing.assert_allclose(after[f"{name}_amplitude"].sel(high), same, atol=1e-11 * first)
+
+
+def test_a_counterweight_weighs_and_turns():
+    weight = ls.Counterweight("rocker", 0.3, at=(0.05, 120.0), inertia=2e-4)
+    both = ls.with_counterweights(PRESS, weight).mechanism.rocker
+    rocker = PRESS.mechanism.rocker
+    assert both.mass == pytest.approx(rocker.mass + 0.3, rel=1e-15)
+    at = (rocker.mass * 0.09 + 0.3 * 0.05 * np.exp(2j * np.pi / 3.0)) / both.mass
+    assert both.cg_distance == pytest.approx(abs(at), rel=1e-14)
+    steiner = rocker.inertia + rocker.mass * abs(at - 0.09) ** 2 + 2e-4
+    steiner += 0.3 * abs(at - 0.05 * np.exp(2j * np.pi / 3.0)) ** 2
+    assert both.inertia == pytest.approx(steiner, rel=1e-13)
+
+
+def test_counterweights_of_designs():
+    masses = xr.DataArray([0.5, 1.0, 2.0], dims="coupler")
+    several = replace(SKEW, mechanism=replace(SKEW.mechanism, coupler=replace(SKEW.mechanism.coupler, mass=masses)))
+    balanced = ls.with_counterweights(several, ls.counterweights(several, radius=0.05))
+    assert (shaking(balanced).Fs.max("theta2") < 1e-12 * shaking(several).Fs.max("theta2")).all()
+
+
+def test_the_loads_stay_what_they_are():
+    weights = ls.counterweights(PRESS, radius=0.05)
+    assert ls.with_counterweights(PRESS, weights).loads == PRESS.loads
+    assert ls.with_counterweights(PRESS, []) == PRESS
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: ls.counterweights(LOOP, 0.1), "which has no links"),
+        (lambda: ls.counterweights(PRESS, 0.0), "radius = 0 m: must be greater than 0"),
+        (lambda: ls.counterweights(PRESS, {"crank": 0.05}), "radius.rocker: missing; give it"),
+        (lambda: ls.counterweights(PRESS, 0.05, fraction=0.5), "fraction = 0.5: must be left out"),
+        (lambda: ls.Counterweight("crank", -1.0), "mass = -1 kg: must be at least 0"),
+        (lambda: ls.with_counterweights(PRESS, [ls.Counterweight("rod", 1.0)]), "counterweights.link = 'rod'"),
+        (lambda: ls.with_counterweights(PRESS, [3.0]), "counterweights = 3.0: must be a Counterweight"),
+        (lambda: ls.regressor(PRESS, ["F32"]), "outputs: nothing is named 'F32'"),
+        (lambda: ls.regressor(ls.example("engine"), ["T12"]), "friction is not 0"),
+        (lambda: ls.regressor(LOOP, ["speed"]), "scene is of a LoopTrack"),
+    ],
+)
+def test_refusals(call, said):
+    (line,) = refusal(call)
+    assert said in line
+
+
+def test_loads_at_the_centre_of_gravity_would_move():
+    loaded = replace(PRESS, loads=[ls.Load("crank", force=(1.0, 0.0), origin="cg")])
+    (line,) = refusal(ls.with_counterweights, loaded, [ls.Counterweight("crank", 1.0)])
+    assert 'loads[1].origin = "cg"' in line
+
+
+# ------------------------------------------------------------------------------------------------- best counterweights
+
+
+def mix(scene, weights, minimize):
+    """The objective by definition, from sweeps."""
+    table = ls.compare(scene, ls.with_counterweights(scene, weights), of=minimize, theta2=180)
+    ratio = {name: table[name].sel(balance="after") / table[name].sel(balance="before") for name in minimize}
+    return sum(minimize[name] * ratio[name] ** 2 for name in minimize).values
+
+
+def test_for_the_shaking_force_alone_it_finds_berkof_and_lowen():
+    found = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
+    assert mix(SKEW, found, {"Fs_rms": 1.0}) < 1e-10
+    for best, exact in zip(found, ls.counterweights(SKEW, radius=0.06), strict=True):
+        moments = [w.mass * w.at[0] * np.exp(1j * np.radians(w.at[1])) for w in (best, exact)]
+        assert abs(moments[0] - moments[1]) < 1e-6 * abs(moments[1])
+        assert best.mass == pytest.approx(exact.mass, rel=0.01)  # the lightest of those that do
+
+
+@pytest.mark.parametrize(
+    "minimize",
+    [
+        {"F32_rms": 1.0, "T12_ripple": 1.0},
+        {"F14_peak": 1.0},
+        {"F12_peak": 1.0, "Fs_rms": 0.5, "Ms_peak": 0.5, "T12_ripple": 0.3},
+    ],
+)
+def test_brute_force_finds_nothing_better(minimize):
+    """Masses at the radius in any two directions, by a search that knows nothing of linearity."""
+    from scipy.optimize import differential_evolution
+
+    best = mix(SKEW, ls.best_counterweights(SKEW, minimize, radius=0.06, theta2=180), minimize)
+    assert best < 0.999 * sum(minimize.values())
+
+    def value(x):
+        mass2, angle2, mass4, angle4 = (xr.DataArray(row, dims="candidate") for row in x)
+        weights = [ls.Counterweight("crank", mass2, (0.06, angle2)), ls.Counterweight("rocker", mass4, (0.06, angle4))]
+        return mix(SKEW, weights, minimize)
+
+    bounds, options = [(0.0, 3.0), (-180.0, 180.0)] * 2, {"vectorized": True, "updating": "deferred", "polish": False}
+    searched = differential_evolution(value, bounds, maxiter=15, popsize=15, rng=1, **options)
+    assert best < searched.fun * (1.0 + 0.01)
+
+
+def test_sizes_are_what_their_names_say():
+    """Of an engine's torque, whose mean is not 0."""
+    other = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slider_mass=0.6))
+    table = ls.compare(ENGINE, other, of=["T12_peak", "T12_rms", "T12_ripple", "F43_rms"])
+    for scene, when in ((ENGINE, "before"), (other, "after")):
+        cycle = ls.sweep(scene, outputs=["T12", "F43x", "F43y"])
+        torque, squares = cycle.T12.values, cycle.F43x.values**2 + cycle.F43y.values**2
+        found = table.sel(balance=when)
+        assert float(found.T12_peak) == max(torque.max(), -torque.min())
+        assert float(found.T12_rms) == pytest.approx(np.sqrt(np.mean(torque**2)), rel=1e-12)
+        assert float(found.T12_ripple) == pytest.approx(np.std(torque), rel=1e-12)
+        assert float(found.F43_rms) == pytest.approx(np.sqrt(squares.mean()), rel=1e-12)
+    assert table.T12_ripple.units == "N m"
+
+
+def test_a_constant_torque_on_the_crank_is_no_ripple():
+    aims = {"T12_ripple": 1.0, "Fs_rms": 1.0}
+    loaded = replace(SKEW, loads=[*SKEW.loads, ls.Load("crank", torque=100.0)])
+    for one, other in zip(
+        *(ls.best_counterweights(s, aims, radius=0.06, theta2=90) for s in (SKEW, loaded)), strict=True
+    ):
+        assert other.mass == pytest.approx(one.mass, rel=1e-6)
+        np.testing.assert_allclose(other.at, one.at, rtol=1e-6)
+
+
+def test_the_limit_of_mass_is_kept():
+    free = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
+    bound = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius=0.06, most={"crank": 0.2, "rocker": 5.0}, theta2=180)
+    assert free[0].mass > 0.3
+    assert bound[0].mass == pytest.approx(0.2, rel=1e-6)
+    assert bound[0].mass <= 0.2 * (1.0 + 1e-12)
+    assert bound[0].at[0] == pytest.approx(0.06, rel=0.01)  # none of it is wasted
+    one = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius={"rocker": 0.06}, theta2=180)
+    assert [weight.link for weight in one] == ["rocker"]
+
+
+def test_what_cannot_be_bettered_is_left_alone():
+    """A balanced machine without loads: any counterweight would make it shake."""
+    free = replace(SKEW, gravity=(0.0, 0.0), loads=[])
+    balanced = ls.with_counterweights(free, ls.counterweights(free, radius=0.06))
+    heavier = ls.with_counterweights(balanced, [ls.Counterweight("rocker", 0.2, (0.0, 0.0))])
+    found = ls.best_counterweights(heavier, {"T12_ripple": 1.0}, radius={"rocker": 0.06}, theta2=90)
+    before = ls.compare(heavier, ls.with_counterweights(heavier, found), of=["T12_ripple"], theta2=90).T12_ripple
+    assert float(before.sel(balance="after")) <= float(before.sel(balance="before")) * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: ls.best_counterweights(PRESS, {"F32_max": 1.0}, 0.05), "minimize: nothing is named 'F32_max'"),
+        (lambda: ls.best_counterweights(PRESS, {}, 0.05), "minimize = {}: must be weights by name"),
+        (lambda: ls.best_counterweights(PRESS, {"Fs_rms": -1.0}, 0.05), "minimize.Fs_rms = -1: must be greater than 0"),
+        (lambda: ls.best_counterweights(PRESS, {"Fs_rms": 1.0}, 0.05, most=0.0), "most = 0 kg: must be greater than 0"),
+        (
+            lambda: ls.best_counterweights(
+                replace(PRESS, omega2=xr.DataArray([1.0, 2.0], dims="s")), {"Fs_rms": 1.0}, 1.0
+            ),
+            "scene has designs over s: give one",
+        ),
+    ],
+)
+def test_refusals_of_aims(call, said):
+    (line,) = refusal(call)
+    assert said in line
+
+
+# ------------------------------------------------------------------------------------------------- plot
+
+
+def test_the_plot_shows_both():
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
+    figure = ls.plot.balance(PRESS, balanced, theta2=90)
+    hodograph, moment, torque, pin = figure.axes
+    for ax, names in ((hodograph, ("Fsx", "Fsy")), (moment, ("Ms",)), (torque, ("T12",)), (pin, ("F43",))):
+        lines = [line for line in ax.get_lines() if line.get_label().startswith(("before", "after"))]
+        for line, scene in zip(lines, (PRESS, balanced), strict=True):
+            cycle = ls.sweep(scene, theta2=90, outputs=list(names))
+            np.testing.assert_array_equal(line.get_ydata()[:-1], cycle[names[-1]])
+    mpl.pyplot.close(figure)

@@ -1,0 +1,342 @@
+"""What the drive gives: work, power, reduced inertia, mechanical advantage, flywheel, motor."""
+
+from dataclasses import replace
+
+import numpy as np
+import oracle
+import pytest
+import xarray as xr
+from drawn import closed_figures, line, plt, texts  # noqa: F401
+from oracle import mp
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+
+import linksweep as ls
+
+CRANK = ls.Link(0.08, 0.5, 1e-3, 0.03, 20.0)
+ROD = ls.Link(0.22, 0.7, 3e-3, 0.1, -10.0)
+ROCKER = ls.Link(0.18, 0.6, 2e-3, 0.08, 5.0)
+LIGHT = tuple(replace(link, mass=0.0, inertia=0.0) for link in (CRANK, ROD, ROCKER))
+FOUR_BAR = ls.FourBar(CRANK, ROD, ROCKER, ground=0.2)
+SLIDER_CRANK = ls.SliderCrank(CRANK, ROD, slider_mass=0.4, offset=0.02, slide_angle=15.0)
+INVERTED = ls.InvertedSliderCrank(CRANK, ROCKER, 0.2, block_mass=0.3, block_inertia=1e-4, offset=0.02)
+MACHINES = pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK, INVERTED])
+SPRING = ls.Spring(("ground", 0.3, 0.1), ("crank", 0.04, 30.0), rate=2000.0, free_length=0.1)
+
+# ------------------------------------------------------------------------------------------------ duty
+
+
+@MACHINES
+def test_inertia_takes_no_work_in_a_cycle(mechanism):
+    found = ls.duty(ls.Scene(mechanism, 30.0))
+    assert abs(float(found.effort_mean)) < 1e-10 * float(found.effort_peak)
+    assert abs(float(found.work)) < 1e-10 * float(found.work_fed)
+
+
+@MACHINES
+def test_nor_do_weights_and_springs(mechanism):
+    found = ls.duty(ls.Scene(mechanism, -30.0, gravity=(1.0, -9.81), loads=[SPRING]))
+    assert abs(float(found.work)) < 1e-10 * float(found.work_fed)
+    np.testing.assert_allclose(found.work_fed, found.work_regenerated, rtol=1e-9)
+
+
+def test_energy_in_is_energy_out_and_friction():
+    found = ls.duty(ls.example("engine"))
+    terms = [float(found[name]) for name in ("work", "work_of_loads", "work_of_friction")]
+    assert abs(sum(terms)) < 1e-10 * max(map(abs, terms))
+    assert terms[2] < 0.0 < terms[1]
+    assert float(found.work_fed - found.work_regenerated) == pytest.approx(terms[0], rel=1e-10)
+
+
+def test_a_constant_torque_on_the_crank_by_hand():
+    scene = ls.Scene(FOUR_BAR, -20.0, loads=[ls.Load("crank", torque=3.0)])
+    found = ls.duty(scene)
+    np.testing.assert_allclose(found.effort_mean, -3.0, rtol=1e-10)
+    np.testing.assert_allclose(found.work, 3.0 * 2.0 * np.pi, rtol=1e-10)  # the crank turns against it
+    np.testing.assert_allclose(found.power_mean, 60.0, rtol=1e-10)
+    np.testing.assert_allclose(found.work_of_loads, -3.0 * 2.0 * np.pi, rtol=1e-10)
+
+
+def test_it_is_what_a_fine_grid_gives():
+    scene = ls.Scene(FOUR_BAR, 30.0, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=-5.0)])
+    found, cycle = ls.duty(scene), ls.sweep(scene, 7200, outputs=["T12", "power"])
+    np.testing.assert_allclose(found.effort_rms, np.sqrt((cycle.T12**2).mean()), rtol=1e-9)
+    np.testing.assert_allclose(found.work_fed, cycle.power.clip(min=0.0).mean() * 2.0 * np.pi / 30.0, rtol=1e-6)
+    np.testing.assert_allclose(found.power_min, cycle.power.min(), rtol=1e-6)
+
+
+def test_designs_and_broken_cycles():
+    rocker = replace(ROCKER, length=xr.DataArray([0.18, 0.10], dims="rocker"))
+    scene = ls.Scene(replace(FOUR_BAR, rocker=rocker), 30.0, loads=[ls.Load("crank", torque=-3.0)])
+    found = ls.duty(scene)
+    assert found.status.values.tolist()[0] == 0
+    assert found.status.values.tolist()[1] != 0
+    assert np.isfinite(found.work).values.tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        (ls.Scene(FOUR_BAR, 0.0), "omega2 = 0 rad/s: must turn"),
+        (ls.Scene(FOUR_BAR, lambda theta2: 30.0 + np.cos(np.radians(theta2))), "omega2 changes with theta2"),
+        (ls.example("loop"), "which has no crank"),
+    ],
+)
+def test_a_mean_takes_a_steady_crank(scene, said):
+    with pytest.raises(ValueError, match=said):
+        ls.duty(scene)
+
+
+# ------------------------------------------------------------------------------------------ reduced inertia
+
+
+@MACHINES
+def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_inertia(mechanism):
+    names = ["reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "inertia_power"]
+    ds = ls.sweep(ls.Scene(mechanism, 30.0, 70.0), outputs=names)
+    J, slope = ds.reduced_inertia, ds.reduced_inertia_slope
+    np.testing.assert_allclose(ds.kinetic_energy, 0.5 * J * 900.0, rtol=1e-14)
+    power = 0.5 * slope * 30.0**3 + J * 30.0 * 70.0
+    np.testing.assert_allclose(-ds.inertia_power, power, rtol=0, atol=1e-13 * float(abs(power).max()))
+    angles = np.radians(np.append(ds.theta2.values, 360.0))
+    spline = CubicSpline(angles, np.append(J.values, J.values[0]), bc_type="periodic")
+    np.testing.assert_allclose(slope, spline(angles[:-1], 1), atol=1e-6 * float(abs(slope).max()))
+
+
+@pytest.mark.parametrize("theta2", [20.0, 145.0, 290.0])
+def test_of_the_four_bar_by_60_digits(theta2):
+    links = [oracle.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
+    data = oracle.FourBarData(*links, ground=0.2)
+
+    def centre(k, link, angle):
+        corners = oracle.close_loop(data, angle)
+        first, second = corners["ABD"[k]], corners["BCC"[k]]
+        return first + link.cg_distance * (second - first) / link.length * oracle.turn(link.cg_angle)
+
+    def line_of_pins(k, angle):
+        corners = oracle.close_loop(data, angle)
+        return corners["BCC"[k]] - corners["ABD"[k]]
+
+    def J(angle):
+        total = mp.mpf(0)
+        for k, link in enumerate(links):
+            velocity = mp.diff(lambda at, k=k, link=link: centre(k, link, at), angle) * 180 / mp.pi
+            turning = mp.diff(lambda at, k=k: mp.log(line_of_pins(k, at)), angle).imag * 180 / mp.pi
+            total += mp.mpf(link.mass) * abs(velocity) ** 2 + mp.mpf(link.inertia) * turning**2
+        return total
+
+    names = ["reduced_inertia", "reduced_inertia_slope"]
+    ds = ls.sweep(ls.Scene(FOUR_BAR, 0.0), [theta2], outputs=names).isel(theta2=0)
+    step = mp.mpf("1e-6")
+    slope = (J(theta2 + step) - J(theta2 - step)) / (2 * step) * 180 / mp.pi
+    np.testing.assert_allclose(ds.reduced_inertia, float(J(mp.mpf(theta2))), rtol=1e-13)
+    np.testing.assert_allclose(ds.reduced_inertia_slope, float(slope), rtol=1e-9)
+
+
+# -------------------------------------------------------------------------------------- mechanical advantage
+
+
+@pytest.mark.parametrize(
+    "mechanism", [ls.FourBar(*LIGHT, ground=0.2), ls.InvertedSliderCrank(LIGHT[0], LIGHT[2], 0.2, 0.0)]
+)
+def test_a_torque_on_the_rocker_takes_its_share_on_the_crank(mechanism):
+    scene = ls.Scene(mechanism, 5.0, loads=[ls.Load("rocker", torque=-2.0)])
+    ds = ls.sweep(scene, 90, outputs=["T12", "torque_ratio", "velocity_ratio", "omega4"])
+    np.testing.assert_allclose(ds.T12 * ds.torque_ratio, 2.0, rtol=1e-12)
+    np.testing.assert_allclose(ds.velocity_ratio, ds.omega4 / 5.0, rtol=1e-14)
+
+
+def test_a_force_square_to_the_rocker_at_c_takes_its_share_at_b():
+    push = ls.Load("rocker", force=(0.0, -10.0), at=(0.18, 0.0), frame="link")
+    ds = ls.sweep(
+        ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 5.0, loads=[push]), 90, outputs=["T12", "mechanical_advantage"]
+    )
+    np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
+
+
+def test_a_force_on_a_slider_takes_its_share_at_b():
+    scene = ls.Scene(ls.SliderCrank(*LIGHT[:2], 0.0, offset=0.02), 5.0, loads=[ls.Load("slider", force=-10.0)])
+    ds = ls.sweep(
+        scene, np.arange(5.0, 360.0, 10.0), outputs=["T12", "mechanical_advantage", "velocity_ratio", "v_slider"]
+    )
+    np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
+    np.testing.assert_allclose(ds.velocity_ratio, ds.v_slider / 5.0, rtol=1e-14)
+
+
+def test_the_reduced_torque_is_the_drives_power_per_crank_speed_whatever_drives():
+    for drive in ("crank", "coupler", "rocker"):
+        scene = ls.Scene(FOUR_BAR, -30.0, 70.0, (1.0, -9.81), [ls.Load("coupler", torque=3.0)], drive)
+        ds = ls.sweep(scene, 91, outputs=["reduced_torque", "power", "power_fed", "power_regenerated"])
+        np.testing.assert_allclose(ds.reduced_torque * -30.0, ds.power, rtol=1e-9)
+        np.testing.assert_array_equal(ds.power_fed - ds.power_regenerated, ds.power)
+        assert float(ds.power_fed.min()) == float(ds.power_regenerated.min()) == 0.0
+
+
+# ------------------------------------------------------------------------------------------------ flywheel
+
+
+def test_a_torque_of_second_order_on_a_crank_without_mass_by_hand():
+    """T = 4 + 6 sin 2θ: the energy swings by 6 J, J = 6/(δ ω²) (R. L. Norton, section 11.11)."""
+    load = ls.Load("crank", torque=lambda theta2: -4.0 - 6.0 * np.sin(np.radians(2.0 * theta2)))
+    found = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[load]), fluctuation=0.03)
+    np.testing.assert_allclose(found.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=1e-7)
+    np.testing.assert_allclose(found.drive_torque, 4.0, rtol=1e-9)
+    np.testing.assert_allclose(found.energy_fluctuation, 6.0, rtol=1e-7)
+    assert found.flywheel_inertia.attrs["units"] == "kg m2"
+
+
+@MACHINES
+@pytest.mark.parametrize("omega2", [30.0, -30.0])
+def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
+    scene = ls.Scene(mechanism, omega2, 55.0, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-2.0), SPRING])
+    found = ls.flywheel(scene, inertia=0.05)
+    speed = np.append(found.speed.values, found.speed.values[0])
+    np.testing.assert_allclose(0.5 * (speed.max() + speed.min()), omega2, rtol=1e-12)
+
+    angles = np.append(found.theta2.values, 360.0)
+    static = ls.sweep(
+        replace(scene, omega2=0.0, alpha2=0.0), outputs=["T12", "reduced_inertia", "reduced_inertia_slope"]
+    )
+    T, J, slope = (CubicSpline(angles, np.append(row, row[0]), bc_type="periodic") for row in
+                   (static.T12.values, static.reduced_inertia.values, static.reduced_inertia_slope.values))  # fmt: skip
+    drive = float(found.drive_torque)
+
+    def motion(angle, square):  # (J_f + J) dω²/dθ/2 + J' ω²/2 = T_d − T
+        degrees = np.degrees(angle)
+        return 2.0 * (drive - T(degrees) - 0.5 * slope(degrees) * square) / (0.05 + J(degrees))
+
+    solved = solve_ivp(motion, (0.0, 2.0 * np.pi), speed[:1] ** 2, t_eval=np.radians(angles), rtol=1e-10, atol=1e-8)
+    np.testing.assert_allclose(solved.y[0], speed**2, rtol=1e-7)
+
+
+@pytest.mark.parametrize("scene", [ls.example("press"), ls.example("quick-return"), ls.Scene(SLIDER_CRANK, -30.0)])
+def test_what_is_asked_for_is_what_results(scene):
+    found = ls.flywheel(scene, fluctuation=0.02)
+    again = ls.flywheel(scene, inertia=float(found.flywheel_inertia))
+    if float(found.flywheel_inertia) > 0.0:
+        np.testing.assert_allclose(found.fluctuation, 0.02, rtol=1e-10)
+    np.testing.assert_allclose(again.speed, found.speed, rtol=1e-12)
+    assert float(again.fluctuation) <= 0.02 * (1.0 + 1e-10)
+
+
+def test_a_torque_that_never_changes_needs_no_flywheel():
+    found = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[ls.Load("crank", torque=-4.0)]), 0.01)
+    np.testing.assert_allclose([found.drive_torque, found.flywheel_inertia], [4.0, 0.0], atol=1e-12)
+
+
+def test_a_large_flywheel_is_that_of_the_energy_at_constant_speed():
+    found = ls.flywheel(ls.example("press"), fluctuation=1e-6)
+    estimate = found.energy_fluctuation / (1e-6 * ls.example("press").omega2 ** 2)
+    np.testing.assert_allclose(found.flywheel_inertia, estimate, rtol=1e-3)
+
+
+def test_a_machine_that_needs_none_gets_none_and_one_that_would_stall_no_speed():
+    heavy = ls.FourBar(ls.Disk(0.08, 0.5, 0.1, 7800), ROD, ROCKER, ground=0.2)
+    assert float(ls.flywheel(ls.Scene(heavy, 30.0), fluctuation=0.1).flywheel_inertia) == 0.0
+    pull = ls.Load("rocker", torque=lambda theta2: -200.0 * np.cos(np.radians(theta2)))
+    stalls = ls.flywheel(ls.Scene(FOUR_BAR, 5.0, loads=[pull]), inertia=0.0)
+    assert np.isnan(stalls.speed).all()
+    assert np.isnan(stalls.fluctuation)
+
+
+def test_designs_fluctuations_and_broken_cycles():
+    rocker = replace(ROCKER, length=xr.DataArray([0.18, 0.10], dims="rocker"))
+    wanted = xr.DataArray([0.01, 0.05], dims="wanted")
+    found = ls.flywheel(ls.Scene(replace(FOUR_BAR, rocker=rocker), 10.0, loads=[SPRING]), fluctuation=wanted)
+    assert found.flywheel_inertia.sizes == {"rocker": 2, "wanted": 2}
+    assert np.isfinite(found.flywheel_inertia.isel(rocker=0)).all()
+    assert np.isnan(found.flywheel_inertia.isel(rocker=1)).all()
+    single = ls.flywheel(ls.Scene(FOUR_BAR, 10.0, loads=[SPRING]), fluctuation=0.05)
+    np.testing.assert_allclose(found.flywheel_inertia.isel(rocker=0, wanted=1), single.flywheel_inertia, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ({}, "give one of fluctuation"),
+        ({"fluctuation": 0.1, "inertia": 1.0}, "give one of fluctuation"),
+        ({"fluctuation": 0.0}, "fluctuation = 0: must be greater than 0"),
+        ({"fluctuation": 2.0}, "fluctuation = 2.0: must be less than 2"),
+        ({"inertia": -1.0}, r"inertia = -1 kg m\^2: must be at least 0"),
+    ],
+)
+def test_what_a_flywheel_refuses(words, said):
+    with pytest.raises(ValueError, match=said):
+        ls.flywheel(ls.Scene(FOUR_BAR, 30.0), **words)
+
+
+# --------------------------------------------------------------------------------------------------- motor
+
+DC = ls.Motor(speeds=(0.0, 400.0), torques=(2.0, 0.0), inertia=1e-4)
+
+
+def test_a_motors_curve():
+    assert DC.torque_at(100.0) == DC.torque_at(-100.0) == 1.5
+    assert DC.torque_at(500.0) == 0.0
+    np.testing.assert_array_equal(DC.torque_at(np.array([0.0, 200.0])), [2.0, 1.0])
+
+
+@pytest.mark.parametrize(("torque", "needed"), [(-4.0, 4.0 / (10.0 * 0.8)), (4.0, -4.0 * 0.8 / 10.0)])
+def test_a_gear_with_losses_by_hand(torque, needed):
+    """To feed 4 N m by 10:1 at 80 % takes 0.5 N m, to brake them 0.32 N m; besides, the rotor's J·i·α = 0.05 N m."""
+    scene = ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, 50.0, loads=[ls.Load("crank", torque=torque)])
+    found = ls.motor_load(scene, DC, ratio=10.0, efficiency=0.8, theta2=8)
+    np.testing.assert_allclose(found.motor_torque, needed + 1e-4 * 10.0 * 50.0, rtol=1e-12)
+    np.testing.assert_allclose(found.motor_speed, 200.0)
+    np.testing.assert_allclose(found.available_torque, 1.0)
+    np.testing.assert_allclose(found.torque_margin, 1.0 - np.abs(found.motor_torque))
+    np.testing.assert_allclose(found.motor_torque_rms, np.abs(needed + 0.05), rtol=1e-12)
+    np.testing.assert_allclose(found.reflected_inertia, 1e-4 * 100.0)
+
+
+def test_a_motor_on_the_rocker_and_ratios_as_a_design():
+    ratio = xr.DataArray([5.0, 10.0], dims="ratio")
+    scene = ls.Scene(FOUR_BAR, 20.0, drive="rocker")
+    found = ls.motor_load(scene, DC, ratio=ratio, theta2=[100.0, 200.0])
+    ds = ls.sweep(scene, [100.0, 200.0], outputs=["T14", "omega4", "alpha4"])
+    np.testing.assert_allclose(found.motor_torque, ds.T14 / ratio + 1e-4 * ratio * ds.alpha4)
+    np.testing.assert_allclose(found.motor_speed, ratio * ds.omega4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ({"speeds": (0.0, 1.0), "torques": (1.0,)}, "torques has 1 values for 2 speeds"),
+        ({"speeds": (1.0, 2.0), "torques": (1.0, 1.0)}, "must grow from 0"),
+        ({"speeds": (0.0, 1.0), "torques": (1.0, -1.0)}, r"torques\[2\] = -1: must be at least 0"),
+        ({"speeds": (0.0, 1.0), "torques": (1.0, 1.0), "inertia": -1.0}, "inertia = -1"),
+    ],
+)
+def test_curves_that_are_none(words, said):
+    with pytest.raises(ValueError, match=said):
+        ls.Motor(**words)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ({"ratio": 0.0}, "ratio = 0: must be greater than 0"),
+        ({"efficiency": 1.5}, "efficiency = 1.5: must be at most 1"),
+        ({"motor": 3.0}, "motor = 3.0: must be a Motor"),
+        ({"scene": ls.Scene(INVERTED, 1.0, drive="cylinder")}, 'drive = "cylinder": must be the torque on a link'),
+    ],
+)
+def test_what_a_motor_load_refuses(words, said):
+    with pytest.raises(ValueError, match=said):
+        ls.motor_load(**{"scene": ls.Scene(FOUR_BAR, 30.0), "motor": DC} | words)
+
+
+def test_the_plots_say_what_the_numbers_say():
+    found = ls.flywheel(ls.example("press"), fluctuation=0.05)
+    ax = ls.plot.flywheel(found)
+    np.testing.assert_array_equal(line(ax, "_speed").get_ydata()[:-1], found.speed)
+    assert line(ax, "_max").get_ydata()[0] == found.speed.max()
+    assert "fluctuation 5 %" in ax.get_title(loc="left")
+    weak = ls.Motor((0.0, 600.0), (1.0, 0.2))
+    load = ls.motor_load(ls.example("press"), weak, ratio=10.0)
+    ax = ls.plot.motor_load(load, weak)
+    assert "too much" in [text.get_text() for text in ax.get_legend().get_texts()]
+    (speed,), (torque,) = line(ax, "_worst").get_data()
+    worst = load.isel(theta2=int(np.argmin(load.torque_margin.values)))
+    assert (speed, torque) == (worst.motor_speed, worst.motor_torque)
+    assert f"{float(worst.torque_margin):.4g}".replace("-", "−") in texts(ax)[0]

@@ -1,0 +1,30 @@
+"""Mass properties of bars and disks, against sums over small squares of them."""
+
+import numpy as np
+import pytest
+
+import linksweep as ls
+
+DENSITY, THICKNESS = 7800.0, 0.013
+
+
+def summed(width: float, height: float, inside, n: int = 2000) -> tuple[float, float]:
+    """Mass and moment of inertia about the middle of the part of a plate for which inside(x, y) holds."""
+    middles = (np.arange(n) + 0.5) / n - 0.5
+    x, y = np.meshgrid(width * middles, height * middles)
+    mass = DENSITY * THICKNESS * (width / n) * (height / n) * inside(x, y)
+    return mass.sum(), (mass * (x**2 + y**2)).sum()
+
+
+def test_a_bar_is_what_its_parts_add_up_to():
+    bar = ls.Bar(length=0.3, width=0.04, thickness=THICKNESS, density=DENSITY)
+    expected = summed(0.3, 0.04, lambda x, y: np.ones_like(x))
+    assert (bar.mass, bar.inertia) == pytest.approx(expected, rel=1e-5)
+    assert (bar.cg_distance, bar.cg_angle) == (0.15, 0.0)
+
+
+def test_a_disk_is_what_its_parts_add_up_to():
+    disk = ls.Disk(length=0.05, radius=0.08, thickness=THICKNESS, density=DENSITY)
+    expected = summed(0.16, 0.16, lambda x, y: x**2 + y**2 < 0.08**2)
+    assert (disk.mass, disk.inertia) == pytest.approx(expected, rel=1e-4)
+    assert disk.cg_distance == 0.0

@@ -1,0 +1,156 @@
+"""Shaking force and moment: what the moving links' inertia does to the ground."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from drawn import closed_figures, line, plt, texts  # noqa: F401
+
+import linksweep as ls
+
+CRANK = ls.Link(0.08, 0.5, 1e-3, 0.03, 20.0)
+ROD = ls.Link(0.22, 0.7, 3e-3, 0.1, -10.0)
+ROCKER = ls.Link(0.18, 0.6, 2e-3, 0.08, 5.0)
+FOUR_BAR = ls.FourBar(CRANK, ROD, ROCKER, ground=0.2, ground_angle=12.0)
+SLIDER_CRANK = ls.SliderCrank(CRANK, ROD, slider_mass=0.4, offset=0.02, slide_angle=15.0)
+INVERTED = ls.InvertedSliderCrank(CRANK, ROCKER, 0.2, block_mass=0.3, block_inertia=1e-4, offset=0.02)
+MACHINES = pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK, INVERTED])
+OMEGA, ALPHA = 30.0, 70.0
+SHAKING = ["Fsx", "Fsy", "Ms"]
+
+
+def turned(link, first, direction):
+    """Centre of gravity of a link whose first pin and direction [degree] are known."""
+    at = np.radians(direction + link.cg_angle)
+    return first[0] + link.cg_distance * np.cos(at), first[1] + link.cg_distance * np.sin(at)
+
+
+def bodies(mechanism, theta2):
+    """Mass, moment of inertia, centre of gravity and angle [rad] of each moving link, from positions alone."""
+    ds = ls.sweep(ls.Scene(mechanism, 0.0), theta2, outputs=positions(mechanism))
+    B = ds.Bx.values, ds.By.values
+    theta3 = ds.theta3.values
+    found = [(CRANK, turned(CRANK, (0.0, 0.0), theta2), theta2)]
+    if mechanism is SLIDER_CRANK:
+        found.append((ROD, turned(ROD, B, theta3), theta3))
+        slider = ls.Link(1.0, mechanism.slider_mass, 0.0)
+        found.append((slider, (ds.Cx.values, ds.Cy.values), 0.0 * theta2))
+    else:
+        angle = np.radians(mechanism.ground_angle)
+        D = mechanism.ground * np.cos(angle), mechanism.ground * np.sin(angle)
+        if mechanism is INVERTED:
+            block = ls.Link(1.0, mechanism.block_mass, mechanism.block_inertia)
+            found.append((block, B, theta3))
+        else:
+            found.append((ROD, turned(ROD, B, theta3), theta3))
+        found.append((ROCKER, turned(ROCKER, D, ds.theta4.values), ds.theta4.values))
+    return [(link.mass, link.inertia, np.array(G), np.radians(angle)) for link, G, angle in found]
+
+
+def positions(mechanism):
+    return ["Bx", "By", "theta3", *(["Cx", "Cy"] if mechanism is SLIDER_CRANK else ["theta4"])]
+
+
+def second_derivative(rows, step):
+    """Of seven samples in time, at the middle one, to the sixth order."""
+    weights = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0
+    return rows @ weights / step**2
+
+
+@MACHINES
+@pytest.mark.parametrize("theta2", [10.0, 77.0, 200.0, 301.0])
+def test_it_is_minus_the_rate_of_momentum_by_finite_differences_of_positions(mechanism, theta2):
+    step = 4e-4
+    times = step * np.arange(-3, 4)
+    angles = theta2 + np.degrees(OMEGA * times + 0.5 * ALPHA * times**2)
+    force, moment = np.zeros(2), 0.0
+    for mass, inertia, G, angle in bodies(mechanism, angles):
+        a = second_derivative(G, step)
+        force -= mass * a
+        x, y = G[:, 3]
+        moment -= mass * (x * a[1] - y * a[0]) + inertia * second_derivative(np.unwrap(angle), step)
+    loaded = ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-5.0)])
+    found = ls.sweep(loaded, [theta2], outputs=[*SHAKING, "Fs"]).isel(theta2=0)
+    np.testing.assert_allclose([found.Fsx, found.Fsy], force, rtol=1e-6, atol=1e-6 * np.hypot(*force))
+    np.testing.assert_allclose(found.Ms, moment, rtol=1e-5)
+    np.testing.assert_allclose(found.Fs, np.hypot(*force), rtol=1e-6)
+
+
+@MACHINES
+def test_the_ground_bears_it_and_weights_and_loads(mechanism):
+    push = ls.Load("crank", force=(30.0, -80.0), at=(0.05, 10.0))
+    scene = ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81), loads=[push])
+    ds = ls.sweep(scene, outputs=["F21x", "F21y", "F41x", "F41y", *SHAKING])
+    mass = sum(mass for mass, *_ in bodies(mechanism, np.array([0.0])))
+    for axis, gravity, load in (("x", 1.0, 30.0), ("y", -9.81, -80.0)):
+        ground = ds[f"F21{axis}"] + ds[f"F41{axis}"]
+        np.testing.assert_allclose(ground, ds[f"Fs{axis}"] + mass * gravity + load, rtol=0, atol=1e-11 * ds.F21x.max())
+
+
+def test_without_weights_and_loads_pins_and_torque_hold_its_moment():
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), outputs=["F14x", "F14y", "T12", *SHAKING])
+    angle = np.radians(12.0)
+    x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
+    held = ds.T12 + x * ds.F14y - y * ds.F14x
+    np.testing.assert_allclose(held, -ds.Ms, rtol=0, atol=1e-12 * float(abs(ds.Ms).max()))
+
+
+def test_the_moment_about_d_has_no_arm_of_the_pin_there():
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), outputs=["F12x", "F12y", "T12", *SHAKING])
+    angle = np.radians(12.0)
+    x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
+    held = ds.T12 + (-x) * ds.F12y - (-y) * ds.F12x  # from D to A
+    about = ls.shaking_moment(ds, about=(x, y))
+    np.testing.assert_allclose(about, -held, rtol=0, atol=1e-12 * float(abs(ds.Ms).max()))
+    assert about.attrs["units"] == "N m"
+    assert "0.195" in about.attrs["long_name"]
+
+
+def test_about_many_points():
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 36, outputs=SHAKING)
+    x = xr.DataArray([0.0, 0.1], dims="x")
+    about = ls.shaking_moment(ds, (x, 0.0))
+    np.testing.assert_array_equal(about.isel(x=0), ds.Ms)
+    np.testing.assert_allclose(about.isel(x=1), ds.Ms - 0.1 * ds.Fsy)
+
+
+def test_it_has_only_the_dims_of_what_moves():
+    loads = [ls.Load("rocker", torque=xr.DataArray([1.0, 2.0], dims="load"))]
+    heavy = replace(FOUR_BAR, rocker=replace(ROCKER, mass=xr.DataArray([0.5, 0.6, 0.7], dims="m")))
+    ds = ls.sweep(ls.Scene(heavy, OMEGA, gravity=(0.0, -9.81), loads=loads), 12, outputs=["Fsx", "T12"])
+    assert ds.Fsx.sizes == {"m": 3, "theta2": 12}
+    assert set(ds.T12.dims) == {"load", "m", "theta2"}
+
+
+def test_its_peak_is_that_of_the_continuous_revolution():
+    scene = ls.Scene(FOUR_BAR, OMEGA)
+    found = ls.peaks(scene, of=["Fs", "Ms"])
+    fine = ls.sweep(scene, np.linspace(0.0, 360.0, 40_001), outputs=["Fs", "Ms"])
+    np.testing.assert_allclose(found.Fs_peak, fine.Fs.max(), rtol=1e-6)
+    np.testing.assert_allclose(found.Ms_min, fine.Ms.min(), rtol=1e-6)
+    assert found.Fs_peak >= fine.Fs.max()
+
+
+def test_what_it_refuses():
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 12, outputs=SHAKING)
+    with pytest.raises(ValueError, match="ds has no Ms: sweep with outputs="):
+        ls.shaking_moment(ds.drop_vars("Ms"))
+    with pytest.raises(ValueError, match=r"about = 3.0: must be a pair \(x, y\)"):
+        ls.shaking_moment(ds, 3.0)
+    with pytest.raises(ValueError, match="ds has no Fsy"):
+        ls.plot.hodograph(ds.drop_vars("Fsy"))
+
+
+def test_the_hodograph_is_its_path():
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), outputs=SHAKING)
+    ax = ls.plot.hodograph(ds)
+    np.testing.assert_array_equal(line(ax, "_path Fs").get_xdata()[:-1], ds.Fsx)
+    np.testing.assert_array_equal(line(ax, "_path Fs").get_ydata()[:-1], ds.Fsy)
+    size = np.hypot(ds.Fsx, ds.Fsy)
+    (x,), (y,) = line(ax, "_peak Fs").get_data()
+    assert np.hypot(x, y) == size.max()
+    assert len(line(ax, "_dots").get_xdata()) == 12
+    said = "\n".join(texts(ax))
+    assert f"{float(ds.theta2[size.argmax('theta2')]):g}°" in said
+    assert ax.get_xlabel().endswith("[N]")

@@ -1,0 +1,105 @@
+"""Tables: a row for each design and angle, units in the header, every digit; files whole or not at all."""
+
+import csv
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import linksweep as ls
+
+PRESS = ls.example("press")
+
+
+def study(n=8) -> xr.Dataset:
+    made = ls.sample(PRESS, {"ground": (0.1, 0.3), "omega2": [20.0, 30.0]}, n=n)
+    return ls.peaks(made, of=["F32", "T12"], theta2=36)
+
+
+def test_a_row_for_each_design():
+    found = study()
+    table = found.linksweep.to_pandas()
+    assert list(table.columns[:4]) == ["design", "ground [m]", "omega2 [rad/s]", "F32_peak [N]"]
+    assert table["design"].tolist() == list(range(8))
+    for name, header in (("ground", "ground [m]"), ("F32_peak", "F32_peak [N]"), ("T12_max_at", "T12_max_at [degree]")):
+        np.testing.assert_array_equal(table[header].to_numpy(), found[name].values)
+    words = found.status.attrs["flag_meanings"].split()
+    assert table["status"].tolist() == [words[k] for k in found.status.values]
+    assert set(table["status"]) >= {"ok", "partial_revolution"}
+
+
+def test_a_row_for_each_design_and_angle_angles_innermost():
+    cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=3), theta2=4, outputs=["theta4", "T12"])
+    table = cycle.linksweep.to_pandas()
+    assert list(table.columns) == [
+        "design",
+        "theta2 [degree]",
+        "omega2 [rad/s]",
+        "theta4 [degree]",
+        "T12 [N m]",
+        "status",
+    ]
+    assert table["design"].tolist() == [0] * 4 + [1] * 4 + [2] * 4
+    assert table["theta2 [degree]"].tolist() == [0.0, 90.0, 180.0, 270.0] * 3
+    for _, row in table.iterrows():  # theta4 is the same for all designs
+        at = cycle.sel(design=row["design"], theta2=row["theta2 [degree]"])
+        assert (row["theta4 [degree]"], row["T12 [N m]"]) == (float(at.theta4), float(at.T12))
+        assert row["omega2 [rad/s]"] == float(at.omega2)
+
+
+def test_several_dims_with_and_without_labels():
+    torque = xr.DataArray([1.0, 2.0], dims="case")
+    mechanism = ls.FourBar(PRESS.mechanism.crank, PRESS.mechanism.coupler, PRESS.mechanism.rocker, 0.2, branch="both")
+    found = ls.peaks(ls.Scene(mechanism, 30.0, loads=[ls.Load("rocker", torque=torque)]), of=["F32"], theta2=8)
+    table = found.linksweep.to_pandas()
+    assert set(zip(table["branch"], table["case"], strict=True)) == {
+        (b, c) for b in ("open", "crossed") for c in (0, 1)
+    }
+    for _, row in table.iterrows():
+        assert row["F32_peak [N]"] == float(found.F32_peak.sel(branch=row["branch"]).isel(case=row["case"]))
+        assert row["loads[1].torque [N m]"] == row["case"] + 1.0
+
+
+def test_one_design_is_one_row():
+    table = ls.peaks(PRESS, of=["F32"], theta2=36).linksweep.to_pandas()
+    assert len(table) == 1 and list(table.columns) == ["F32_peak [N]", "F32_peak_at [degree]", "status"]
+    check = ls.check(PRESS).linksweep.to_pandas()
+    assert set(check["grashof"]) == {"crank_rocker"}
+
+
+def test_the_file_reads_back_to_the_bit(tmp_path):
+    found = study()
+    found["F32_peak"][2] = math.inf
+    found.linksweep.to_csv(tmp_path / "study.csv")
+    with open(tmp_path / "study.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    table = found.linksweep.to_pandas()
+    assert list(rows[0]) == list(table.columns) and len(rows) == 8
+    for header in table.columns.drop("status"):
+        read = [float(row[header] or "nan") for row in rows]
+        np.testing.assert_array_equal(read, table[header].to_numpy())
+    assert [row["status"] for row in rows] == table["status"].tolist()
+    impossible = [row["T12_peak [N m]"] == "" for row in rows]
+    assert impossible == np.isnan(found.T12_peak.values).tolist() and rows[2]["F32_peak [N]"] == "inf"
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    path = tmp_path / "study.csv"
+    path.write_text("old")
+
+    def breaks(self, file, **options):
+        file.write_text("half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", breaks)
+    with pytest.raises(OSError, match="disk full"):
+        study(n=4).linksweep.to_csv(path)
+    assert path.read_text() == "old"
+    assert [file.name for file in tmp_path.iterdir()] == ["study.csv"]
+
+
+def test_a_folder_that_is_not_there(tmp_path):
+    with pytest.raises(FileNotFoundError, match="there is no folder"):
+        study(n=4).linksweep.to_csv(tmp_path / "nowhere" / "study.csv")
