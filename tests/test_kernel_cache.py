@@ -28,6 +28,7 @@ def swept():
 def forget():
     """As in a new process: compiled kernels and their modules are not in memory."""
     kernels.compiled.cache_clear()
+    kernels._compiled_functions.cache_clear()
     for name in [name for name in sys.modules if name.startswith("kernel_")]:
         del sys.modules[name]
 
