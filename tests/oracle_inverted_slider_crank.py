@@ -13,11 +13,11 @@ x + jy, from A.
     no friction: F43 . r = 0, or what a cylinder between block and rocker gives, which is then the unknown of the drive
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from oracle import (
+from judges import (
     BRANCHES,
     FOLD,
     FORCES,
@@ -26,21 +26,22 @@ from oracle import (
     LoadData,
     Motion,
     Unassemblable,
+    centres,
     components,
-    cross,
+    crank_angle,
+    happening,
+    joined,
     largest_force,
     linear_solve,
-    load_force,
-    load_point,
+    link_rows,
     log_uniform,
+    moving,
     mp,
-    polar,
     random_gravity,
     random_link,
     random_load,
     turn,
 )
-from oracle import LINKS as FOUR_BAR_LINKS
 
 LINKS = ("crank", "block", "rocker")
 NUMBER = {"crank": 2, "block": 3, "rocker": 4}
@@ -122,49 +123,25 @@ def motion_and_slide(data: InvertedSliderCrankData, theta2) -> tuple[Motion, dic
     a4, s2 = turning_and_sliding(w, r, acceleration + w4**2 * w - 2j * w4 * s1 * r)
     line = by_link(turn(theta2), r, r)
     omega, alpha = by_link(w2, w4, w4), by_link(a2, a4, a4)
-    first, v0, a0 = by_link(0, B, pin["D"]), by_link(0, velocity, 0), by_link(0, acceleration, 0)
-    rG = {name: polar((link.cg_distance, link.cg_angle)) * line[name] for name, link in links(data).items()}
-    G = {name: first[name] + rG[name] for name in LINKS}
-    vG = {name: v0[name] + 1j * omega[name] * rG[name] for name in LINKS}
-    aG = {name: a0[name] + (1j * alpha[name] - omega[name] ** 2) * rG[name] for name in LINKS}
-    move = Motion(pin, line, omega, alpha, G, vG, aG)
-    return move, {"slide": s, "slide_velocity": s1, "slide_acceleration": s2}
+    first = by_link(*pin.values()), by_link(0, velocity, 0), by_link(0, acceleration, 0)
+    sliding = {"slide": s, "slide_velocity": s1, "slide_acceleration": s2}
+    return moving(links(data), pin, line, omega, alpha, *first), sliding
 
 
 def motion(data: InvertedSliderCrankData, theta2) -> Motion:
     return motion_and_slide(data, theta2)[0]
 
 
-def point(move: Motion, load: LoadData):
-    """Where a load acts, from A; on the block from B, which is its pin and its centre of gravity."""
-    return load_point(move, load) if load.link != "block" else move.pin["B"] + polar(load.at) * move.line["block"]
-
-
-def link_rows(data: InvertedSliderCrankData, move: Motion, name: str) -> tuple[list, list]:
-    """One link's three rows of the 10x10 and their right-hand sides: forces x, y and moments about its G."""
-    link, G = links(data)[name], move.G[name]
-    rows = [[mp.mpf(0)] * 10 for _ in range(3)]
-    for force, pin, sign in ACTING[name]:
-        column, arm = 2 * FORCES.index(force), move.pin[pin] - G
-        rows[0][column] = rows[1][column + 1] = mp.mpf(sign)
-        rows[2][column], rows[2][column + 1] = -sign * arm.imag, sign * arm.real
-    rows[2][T43], rows[2][DRIVE] = mp.mpf(MOMENT[name]), mp.mpf(name == data.drive)
-    force = mp.mpf(link.mass) * (move.aG[name] - mp.mpc(*data.gravity))
-    moment = mp.mpf(link.inertia) * move.alpha[name]
-    for load in (load for load in data.loads if load.link == name):
-        P = load_force(move, load)
-        force -= P
-        moment -= cross(point(move, load) - G, P) + mp.mpf(load.torque)
-    return rows, [force.real, force.imag, moment]
-
-
 def system(data: InvertedSliderCrankData, move: Motion) -> tuple[list, list]:
     """The 10x10; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, and the drive's torque or force."""
-    blocks = [link_rows(data, move, name) for name in LINKS]
+    rows, sides = joined(
+        link_rows(data, move, name, link, ACTING[name], MOMENT[name], name == data.drive)
+        for name, link in links(data).items()
+    )
     smooth, r, column = [mp.mpf(0)] * 10, move.line["rocker"], 2 * FORCES.index("F43")
     smooth[column : column + 2] = r.real, r.imag
     smooth[DRIVE] = -mp.mpf(data.drive == "cylinder")
-    return [row for rows, _ in blocks for row in rows] + [smooth], [b for _, rhs in blocks for b in rhs] + [mp.mpf(0)]
+    return [*rows, smooth], [*sides, mp.mpf(0)]
 
 
 def hold(data: InvertedSliderCrankData, move: Motion):
@@ -188,9 +165,7 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
         raise DeadPoint(f"theta2 = {float(theta2)} degree: the {data.drive} stands still and cannot drive")
     solution = linear_solve(*system(data, move))
     forces = {name: mp.mpc(*solution[2 * i : 2 * i + 2]) for i, name in enumerate(FORCES)}
-    vectors = {pin: move.pin[pin] for pin in "BD"}
-    for name in LINKS:
-        vectors |= {f"{symbol}{NUMBER[name]}": getattr(move, symbol)[name] for symbol in ("G", "vG", "aG")}
+    vectors = {pin: move.pin[pin] for pin in "BD"} | centres(move, NUMBER)
     for k in (3, 4):
         values |= {f"theta{k}": mp.degrees(mp.arg(move.line["rocker"]))}
         values |= {f"omega{k}": move.omega["rocker"], f"alpha{k}": move.alpha["rocker"]}
@@ -217,19 +192,13 @@ def to_scene(data: InvertedSliderCrankData):
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rocker")}
     rest = ("ground", "block_mass", "block_inertia", "offset", "branch", "ground_angle")
-    loads = [
-        ls.Load(**vars(load) | {"force": load.force if any(load.force) else None, "torque": load.torque or None})
-        for load in data.loads
-    ]
-    state = {name: getattr(data, name) for name in ("omega2", "alpha2", "gravity", "drive")}
     mechanism = ls.InvertedSliderCrank(**bars, **{name: getattr(data, name) for name in rest})
-    return ls.Scene(mechanism, **state, loads=loads)
+    return ls.Scene(mechanism, **happening(data))
 
 
 # ---- random scenes -----
 
 KINDS = ("swings", "turns_fully", "limited")
-OF_FOUR_BAR = dict(zip(FOUR_BAR_LINKS, LINKS, strict=True))
 
 
 def kind_of(crank: float, ground: float, offset: float) -> str:
@@ -270,7 +239,7 @@ def random_data(
     omega2 = log_uniform(rng, 0.1, 1000.0) * (1 if rng.integers(2) else -1)
     gravity = random_gravity(rng, omega2**2 * scale)
     force = max(mass, *(bar.mass for bar in bars)) * (omega2**2 * scale + float(np.hypot(*gravity)))
-    drawn = [random_load(rng, force, scale) for _ in range(int(rng.integers(5)) if loads is None else loads)]
+    drawn = [random_load(rng, LINKS, force, scale) for _ in range(int(rng.integers(5)) if loads is None else loads)]
     return InvertedSliderCrankData(
         *bars,
         ground=ground,
@@ -283,7 +252,7 @@ def random_data(
         alpha2=float(rng.uniform(-2, 2)) * omega2**2,
         gravity=gravity,
         drive=drive or str(rng.choice(DRIVES)),
-        loads=tuple(replace(load, link=OF_FOUR_BAR[load.link]) for load in drawn),
+        loads=tuple(drawn),
     )
 
 
@@ -298,8 +267,4 @@ def toggle_margin(data: InvertedSliderCrankData, theta2: float) -> float:
 
 def random_theta2(rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1) -> float:
     """A crank angle [degree] with a toggle margin above the given one."""
-    for _ in range(1000):
-        theta2 = float(rng.uniform(-180, 540))
-        if toggle_margin(data, theta2) > margin:
-            return theta2
-    raise ValueError(f"no crank angle with toggle margin above {margin}")
+    return crank_angle(rng, lambda theta2: toggle_margin(data, theta2) > margin)

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from oracle import (
+from judges import (
     BRANCHES,
     FOLD,
     FORCES,
@@ -28,22 +28,25 @@ from oracle import (
     LoadData,
     Motion,
     Unassemblable,
+    centres,
     components,
+    crank_angle,
     cross,
+    happening,
+    joined,
     largest_force,
     linear_solve,
-    load_force,
+    link_rows,
     log_uniform,
+    moving,
     mp,
-    polar,
     random_gravity,
     random_link,
     random_load,
-    torque_name,
     turn,
     two_rates,
 )
-from oracle import LINKS as FOUR_BAR_LINKS
+from oracle import torque_name
 
 LINKS = ("crank", "rod", "slider")
 NUMBER = {"crank": 2, "rod": 3, "slider": 4}
@@ -51,7 +54,6 @@ DRIVES = ("crank", "coupler")
 DRIVEN = {"crank": "crank", "coupler": "rod"}
 # the link without the drive: its own moment equation alone settles the guide's force
 FREE = {"crank": "rod", "coupler": "crank"}
-FIRST_PIN = {"crank": "A", "rod": "B", "slider": "C"}
 ACTING = {
     "crank": (("F12", "A", 1), ("F32", "B", 1)),
     "rod": (("F32", "B", -1), ("F43", "C", 1)),
@@ -129,42 +131,14 @@ def motion(data: SliderCrankData, theta2) -> Motion:
     a3, a4 = two_rates(u, -1j * s, -acceleration + w3**2 * u)
     line = by_link(turn(theta2), u / abs(u), s)
     omega, alpha = by_link(w2, w3, mp.mpf(0)), by_link(a2, a3, mp.mpf(0))
-    r = {name: polar((link.cg_distance, link.cg_angle)) * line[name] for name, link in links(data).items()}
-    v0, a0 = by_link(0, velocity, v4 * s), by_link(0, acceleration, a4 * s)
-    G = {name: pin[FIRST_PIN[name]] + r[name] for name in LINKS}
-    vG = {name: v0[name] + 1j * omega[name] * r[name] for name in LINKS}
-    aG = {name: a0[name] + (1j * alpha[name] - omega[name] ** 2) * r[name] for name in LINKS}
-    return Motion(pin, line, omega, alpha, G, vG, aG)
-
-
-def load_point(move: Motion, load: LoadData):
-    """Where a load acts, from A."""
-    origin = move.G[load.link] if load.origin == "cg" else move.pin[FIRST_PIN[load.link]]
-    return origin + polar(load.at) * move.line[load.link]
+    first = by_link(*pin.values()), by_link(0, velocity, v4 * s), by_link(0, acceleration, a4 * s)
+    return moving(links(data), pin, line, omega, alpha, *first)
 
 
 def sense(data: SliderCrankData, move: Motion) -> int:
     """Sign of the slider's velocity; 0 where it stands, within rounding."""
     v = along(move.vG["slider"], guide(data))
     return 0 if abs(v) <= FOLD * abs(data.omega2 * mp.mpf(data.crank.length)) else int(mp.sign(v))
-
-
-def link_rows(data: SliderCrankData, move: Motion, name: str) -> tuple[list, list]:
-    """One link's three rows of the 10x10 and their right-hand sides: forces x, y and moments about its G."""
-    link, G = links(data)[name], move.G[name]
-    rows = [[mp.mpf(0)] * 10 for _ in range(3)]
-    for force, pin, sign in ACTING[name]:
-        column, arm = 2 * FORCES.index(force), move.pin[pin] - G
-        rows[0][column] = rows[1][column + 1] = mp.mpf(sign)
-        rows[2][column], rows[2][column + 1] = -sign * arm.imag, sign * arm.real
-    rows[2][T14], rows[2][DRIVE] = mp.mpf(name == "slider"), mp.mpf(name == DRIVEN[data.drive])
-    force = mp.mpf(link.mass) * (move.aG[name] - mp.mpc(*data.gravity))
-    moment = mp.mpf(link.inertia) * move.alpha[name]
-    for load in (load for load in data.loads if load.link == name):
-        P = load_force(move, load)
-        force -= P
-        moment -= cross(load_point(move, load) - G, P) + mp.mpf(load.torque)
-    return rows, [force.real, force.imag, moment]
 
 
 def signed_friction(data: SliderCrankData, move: Motion, sign: int):
@@ -182,9 +156,12 @@ def friction_row(data: SliderCrankData, move: Motion, sign: int) -> list:
 
 def system(data: SliderCrankData, move: Motion, sign: int) -> tuple[list, list]:
     """The 10x10 for an assumed sign of N; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T14, T."""
-    blocks = [link_rows(data, move, name) for name in LINKS]
-    rows = [row for block, _ in blocks for row in block] + [friction_row(data, move, sign)]
-    return rows, [b for _, rhs in blocks for b in rhs] + [mp.mpf(0)]
+    driven = DRIVEN[data.drive]
+    rows, sides = joined(
+        link_rows(data, move, name, link, ACTING[name], name == "slider", name == driven)
+        for name, link in links(data).items()
+    )
+    return [*rows, friction_row(data, move, sign)], [*sides, mp.mpf(0)]
 
 
 def hold(data: SliderCrankData, move: Motion, sign: int = 0):
@@ -234,10 +211,7 @@ def kinematic_values(data: SliderCrankData, move: Motion) -> dict:
     values["transmission_angle"] = mp.degrees(mp.atan2(abs(along(u, s)), abs(along(u, 1j * s))))
     travel = [along(getattr(move, of)[name], s) for of, name in slider.items()]
     values |= dict(zip(("x_slider", "v_slider", "a_slider"), travel, strict=True))
-    vectors = {pin: move.pin[pin] for pin in "BC"}
-    for name in LINKS:
-        vectors |= {f"{symbol}{NUMBER[name]}": getattr(move, symbol)[name] for symbol in ("G", "vG", "aG")}
-    return values | components(vectors)
+    return values | components({pin: move.pin[pin] for pin in "BC"} | centres(move, NUMBER))
 
 
 def guide_values(data: SliderCrankData, move: Motion, F14) -> dict:
@@ -279,12 +253,7 @@ def to_scene(data: SliderCrankData):
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rod")}
     rest = {name: getattr(data, name) for name in ("slider_mass", "offset", "friction", "branch", "slide_angle")}
-    loads = [
-        ls.Load(**vars(load) | {"force": load.force if any(load.force) else None, "torque": load.torque or None})
-        for load in data.loads
-    ]
-    state = {name: getattr(data, name) for name in ("omega2", "alpha2", "gravity", "drive")}
-    return ls.Scene(ls.SliderCrank(**bars, **rest), **state, loads=loads)
+    return ls.Scene(ls.SliderCrank(**bars, **rest), **happening(data))
 
 
 def mirrored(data: SliderCrankData) -> SliderCrankData:
@@ -303,7 +272,6 @@ def mirrored(data: SliderCrankData) -> SliderCrankData:
 # ---- random scenes -----
 
 KINDS = ("full_turn", "limited")  # rod longer or shorter than crank plus offset
-OF_FOUR_BAR = dict(zip(FOUR_BAR_LINKS, LINKS, strict=True))
 
 
 def random_lengths(rng: np.random.Generator, kind: str) -> tuple[float, float, float]:
@@ -345,7 +313,7 @@ def random_data(
     omega2 = log_uniform(rng, 0.1, 1000.0) * (1 if rng.integers(2) else -1)
     gravity = random_gravity(rng, omega2**2 * scale)
     force = max(crank.mass, rod.mass, mass) * (omega2**2 * scale + float(np.hypot(*gravity)))
-    drawn = [random_load(rng, force, scale) for _ in range(int(rng.integers(5)) if loads is None else loads)]
+    drawn = [random_load(rng, LINKS, force, scale) for _ in range(int(rng.integers(5)) if loads is None else loads)]
     return SliderCrankData(
         crank,
         rod,
@@ -358,7 +326,7 @@ def random_data(
         alpha2=float(rng.uniform(-2, 2)) * omega2**2,
         gravity=gravity,
         drive=drive or str(rng.choice(DRIVES)),
-        loads=tuple(replace(load, link=OF_FOUR_BAR[load.link]) for load in drawn),
+        loads=tuple(drawn),
     )
 
 
@@ -382,10 +350,11 @@ def random_theta2(
 
     `jammed` asks for an angle where the slider wedges (True) or does not (False).
     """
-    for _ in range(1000):
-        theta2 = float(rng.uniform(-180, 540))
-        if toggle_margin(data, theta2) > margin:
-            excess = wedging(data, motion(data, theta2)) - 1
-            if abs(excess) > 0.05 and jammed in (None, excess > 0):
-                return theta2
-    raise ValueError(f"no crank angle with toggle margin above {margin}, jammed = {jammed}")
+
+    def good(theta2: float) -> bool:
+        if toggle_margin(data, theta2) <= margin:
+            return False
+        excess = wedging(data, motion(data, theta2)) - 1
+        return abs(excess) > 0.05 and jammed in (None, excess > 0)
+
+    return crank_angle(rng, good)

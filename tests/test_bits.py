@@ -17,7 +17,7 @@ KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 MAGNITUDES = ("F12", "F32", "F43", "F14")
 UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
 PLACES = ("Bx", "By", "Cx", "Cy", "aG2x", "aG2y", "aG3x", "aG3y", "aG4x", "aG4y")
-OTHERS = ("F21x", "F34y", "F41", "transmission_angle", "power", "power_residual")
+OTHERS = ("F21x", "F34y", "F41", "transmission_angle", "power", "power_residual", "error_bound")
 REQUESTS = {
     "unknowns": UNKNOWNS,
     "torque": ("T12",),

@@ -6,8 +6,9 @@ mechanism with a change point keeps to its side. At the fold itself the status i
 
 import numpy as np
 import pytest
-from oracle import FourBarData, LinkData, largest_force, mp, solve, to_scene
-from test_metamorphic import OPPOSITE_SIDES, heavy_parallelogram
+from judges import LinkData, largest_force, mp
+from oracle import FourBarData, solve, to_scene
+from test_simpler_machines import OPPOSITE_SIDES, heavy_parallelogram
 
 import linksweep as ls
 

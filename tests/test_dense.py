@@ -6,7 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES, KINDS, LINKS, FourBarData, LinkData, LoadData, random_data, random_theta2, to_scene
+from judges import BRANCHES, LinkData, LoadData
+from oracle import KINDS, LINKS, FourBarData, random_data, random_theta2, to_scene
 
 import linksweep as ls
 from linksweep.results.system import equilibrated

@@ -185,3 +185,19 @@ def test_compiled_and_interpreted_searches_give_the_same_bits(monkeypatch):
     interpreted = ls.peaks(several(), of=OF)
     monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", -1)
     xr.testing.assert_identical(interpreted, ls.peaks(several(), of=OF))
+
+
+def test_a_kink_of_friction_between_the_samples():
+    """Where the guide's force changes sides friction has a kink: here with a peak of T12 on a flank that no sample
+    has seen. Found by the dense samples of benchmarks.missed."""
+    crank = ls.Link(0.6640901746994451, 0.8008109553758354, 0.05516407478476453, 0.13358380678108658)
+    rod = ls.Link(0.666635061979761, 0.872353611090656, 0.04935072445523994, 0.6945211583699386, 154.54925043811323)
+    mechanism = ls.SliderCrank(crank, rod, 0.2510731396155406, friction=0.04794507659519102, branch="crossed")
+    push = ls.Load("slider", (-28.529061164503787, 9.517050429807604))
+    scene = ls.Scene(mechanism, -3.091364670463861, -49.097578860405264, (0.0, -9.81), [push])
+    found = ls.peaks(scene)
+    at = np.linspace(262.0, 263.0, 100_001)
+    cycle = ls.sweep(scene, at, ["T12", "normal_force"])
+    assert np.ptp(np.sign(cycle.normal_force.values)) == 2.0
+    assert float(found.T12_max) >= float(cycle.T12.max())
+    assert float(found.T12_max_at) == pytest.approx(float(cycle.T12.idxmax()), abs=2e-5)

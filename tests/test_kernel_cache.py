@@ -54,7 +54,7 @@ def test_a_damaged_source_is_written_again(folder):
 
 def test_the_name_covers_all_that_enters_the_kernel(folder, monkeypatch):
     scene = ls.example("press")
-    kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms)).fused.source
+    kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms), (), 1024).fused.source
     kernels.compiled(kernel, "")
     kernels.compiled(kernel.replace("sqrt(", "1.0 * sqrt("), "")
     kernels.compiled(kernel, "import math\n\n\ndef unused():\n    return 1.0\n")

@@ -64,7 +64,7 @@ def test_designs_that_are_not_ok_or_not_finite_are_never_on_the_front():
     found.F32_peak[order[0]] = np.nan
     found.T12_peak[order[1]] = np.inf
     found.F32_peak[order[2]] = -np.inf
-    found.status[order[3]] = 1
+    found.status[order[3]] = 3
     found.status[order[4]] = 2
     best = ls.pareto(found, minimize=["F32_peak"])
     assert best.design.values.tolist() == [order[1]]
@@ -76,6 +76,26 @@ def test_nothing_ok_is_an_empty_front():
     found = study(n=4)
     found["status"][:] = 2
     assert ls.pareto(found, minimize=["F32_peak"]).sizes["design"] == 0
+
+
+def test_machines_that_move_over_part_of_a_turn_are_chosen_from_by_their_peaks():
+    found = study()
+    first = int(found.F32_peak.values.argmin())
+    found.status[first] = 1
+    assert ls.pareto(found, minimize="F32_peak").design.values.tolist() == [first]
+    found.status.attrs["flag_meanings"] = "ok partial_lap never_on_track"  # a car that has left its track
+    assert first not in ls.pareto(found, minimize="F32_peak").design
+    del found.status.attrs["flag_meanings"]
+    assert first not in ls.pareto(found, minimize="F32_peak").design
+
+
+def test_rockers_that_only_swing_are_compared_by_how_far():
+    links = (ls.Link(length, 1.0, 1e-3) for length in (0.3, 0.25, 0.2))
+    swings = ls.FourBar(*links, ground=xr.DataArray([0.4, 0.5, 0.6], dims="design"))
+    found = ls.peaks(ls.Scene(swings, omega2=10.0), of=["theta4"])
+    assert found.status.values.tolist() == [1, 1, 1]
+    best = int(found.theta4_max.values.argmin())
+    assert ls.pareto(found, minimize="theta4_max").design.values.tolist() == [best]
 
 
 def test_partial_revolutions_of_a_real_study_are_left_out():

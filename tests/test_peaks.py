@@ -14,9 +14,9 @@ FORCES = ("F12", "F32", "F43", "F14")
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
 
 
-def reduced(function, row, angles, period=360.0) -> tuple[float, float]:
+def reduced(function, row, angles) -> tuple[float, float]:
     """A function of engine.reduce on plain Python numbers, as small requests run it."""
-    return function(list(map(float, row)), list(map(float, angles)), period, np.empty(reduce.WORK))
+    return function(list(map(float, row)), list(map(float, angles)), np.empty(reduce.WORK))
 
 
 def grid(n: int) -> np.ndarray:

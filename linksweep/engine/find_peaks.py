@@ -102,7 +102,7 @@ def find_peaks(
     room = search.in_blocks(len(signals) * search.SAMPLES // 2)
 
     def work(first: int, last: int) -> None:
-        scratch = np.empty(writer.scratch_rows * search.SAMPLES)
+        scratch = np.empty(writer.scratch_size)
         lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
         best = np.empty((search.BEST_ROWS, len(signals)))
         kernel(

@@ -3,10 +3,11 @@
 Design dimensions become nested loops, the index the inner loop. An operation is done in the loop of its own
 dimensions: what depends on no angle once per design, what depends on angle in the inner loop, and what
 is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views are taken before a
-plain inner loop over contiguous rows: that is what vectorises.
+plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart that the source
+says, so that they are known not to overlap: that is what vectorises.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
-           block, block_at, single, single_at, scratch, angles, period, work)
+           block, block_at, single, single_at, scratch, angles, work)
 
 `parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each
 input starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost
@@ -26,7 +27,7 @@ from linksweep.engine.trace import Node
 
 ARGUMENTS = (
     "first, last, samples, sizes, parameters, parameter_at, profiles, profile_at, "
-    "block, block_at, single, single_at, scratch, angles, period, work"
+    "block, block_at, single, single_at, scratch, angles, work"
 )
 INFIX = {"+", "-", "*", "/", "<"}
 
@@ -49,7 +50,7 @@ class Fused:
     rows: tuple[Node, ...]
     singles: tuple[Node, ...]
     reductions: tuple[Reduction, ...]
-    scratch_rows: int
+    scratch_size: int
 
 
 class Writer:
@@ -58,8 +59,8 @@ class Writer:
     PLACED: tuple[str, ...] = ()
     """Inputs per sample that the kernel itself puts into rows of scratch."""
 
-    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
-        self.plan, self.reductions = plan, reductions
+    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
+        self.plan, self.reductions, self.room = plan, reductions, room
         late = set(self._late(plan))
         self.nodes = [node for node in plan.nodes if node not in late]
         stored = () if reductions else plan.stored
@@ -148,29 +149,30 @@ class Writer:
             self.write(depth + 1, f"{cells[node, 'written']} = {name(node)}")
 
     def _cells(self, depth: int, read: list[Node], written: list[Node]) -> dict[tuple[Node, str], str]:
-        """Where sample j of each row is read and written: in views of the rows, taken before the loop."""
-        for node in read:
-            self.write(depth, f"in{node.position} = {self._source(node)}")
-        for node in written:
-            self.write(depth, f"out{node.position} = {self._target(node)}")
-        cells = {(node, "read"): f"in{node.position}[j]" for node in read}
-        return cells | {(node, "written"): f"out{node.position}[j]" for node in written}
+        """Where sample j of each row is read and written: in scratch, or in views of rows that are taken before the
+        loop."""
+        return {
+            (node, how): self._cell(depth, node, how)
+            for how, nodes in (("read", read), ("written", written))
+            for node in nodes
+        }
 
-    def _source(self, node: Node) -> str:
-        """The row that a node's samples are read from; without design loops, the part of it that this call is to do."""
-        if node.operator != "input" or node in self.placed:
-            return self._target(node)
-        return f"profiles[{self._at('profile', self.profiles.index(node), node)}]" + self._part
+    def _cell(self, depth: int, node: Node, how: str) -> str:
+        given = how == "read" and node.operator == "input" and node not in self.placed
+        if node in self.scratch and not given:
+            return f"scratch[{self.scratch[node] * self.room} + j]"
+        rows, k = ("profile", self.profiles.index(node)) if given else ("block", self.rows.index(node))
+        view, table = f"{how}{node.position}", "profiles" if given else "block"
+        part = "" if self.plan.loops else "[first:last]"  # without design loops, what this call is to do
+        self.write(depth, f"{view} = {table}[{self._at(rows, k, node)}]{part}")
+        return f"{view}[j]"
 
-    def _target(self, node: Node) -> str:
-        """The row that a node's samples are written to."""
-        if node in self.scratch:
-            return f"scratch[{self.scratch[node]}]" + self._part
-        return f"block[{self._at('block', self.rows.index(node), node)}]" + self._part
+    def _row(self, node: Node) -> str:
+        """A node's row of scratch."""
+        return self._scratch_row(self.scratch[node])
 
-    @property
-    def _part(self) -> str:
-        return "" if self.plan.loops else "[first:last]"
+    def _scratch_row(self, k: int) -> str:
+        return f"scratch[{k * self.room}:{k * self.room} + samples]"
 
     def _at(self, table: str, k: int, node: Node) -> str:
         """Where a node's value of the current design is: row-major over the node's own loops."""
@@ -193,14 +195,14 @@ class Writer:
         for k, reduction in enumerate(self.reductions):
             node = self.plan.outputs[reduction.name]
             if self.level(node) == level:
-                self.write(depth, f"value, at = {reduction.kind}({self._target(node)}, angles, period, work)")
+                self.write(depth, f"value, at = {reduction.kind}({self._row(node)}, angles, work)")
                 self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
                 self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
 
 
 def name(node: Node) -> str:
     if node.operator == "constant":
-        return "math.nan" if math.isnan(node.value) else repr(node.value)
+        return repr(node.value) if math.isfinite(node.value) else f"math.{node.value}"
     return node.value if node.operator == "input" else f"x{node.position}"
 
 
@@ -216,9 +218,9 @@ def expression(node: Node, inlined: set[Node]) -> str:
     return f"{node.operator}({', '.join(x)})"
 
 
-def fuse(plan: Plan, reductions: tuple[Reduction, ...] = ()) -> Fused:
-    """Write the kernel that stores the plan's outputs, or that reduces them row by row."""
-    writer = Writer(plan, reductions)
+def fuse(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Fused:
+    """Write the kernel that stores the plan's outputs, or that reduces them row by row, for so many samples at most."""
+    writer = Writer(plan, reductions, room)
     body = writer.kernel()
     return Fused(
         source=body,
@@ -227,7 +229,7 @@ def fuse(plan: Plan, reductions: tuple[Reduction, ...] = ()) -> Fused:
         rows=writer.rows,
         singles=writer.singles,
         reductions=reductions,
-        scratch_rows=len(writer.scratch),
+        scratch_size=len(writer.scratch) * room,
     )
 
 

@@ -86,7 +86,7 @@ InputForms = tuple[tuple[str, tuple[str, ...] | float], ...]
 @lru_cache(maxsize=256)
 def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     """Trace what `request` needs from `table`, starting from `inputs`. Raises KeyError for a name nobody makes."""
-    graph = Graph(tabulated=(name for name, _ in inputs))
+    graph = Graph()
     values: dict[str, Node] = {
         name: graph.constant(form) if isinstance(form, float) else graph.input(name, form) for name, form in inputs
     }

@@ -7,13 +7,13 @@ WORK = 80
 """Numbers of working memory that a reduction may use: 64 lanes and 16 to fold them into."""
 
 
-def largest_sample(row, angles, period, work):
+def largest_sample(row, angles, work):
     """Largest sample of a row and its angle. NaN samples are passed over; all NaN gives NaN."""
     at = place_of_largest(row, work)
     return (row[at], angles[at]) if at >= 0 else (math.nan, math.nan)
 
 
-def least_sample(row, angles, period, work):
+def least_sample(row, angles, work):
     """Least sample of a row and its angle, NaN passed over as well."""
     at = -1
     for j in range(len(row)):
@@ -64,7 +64,7 @@ def largest_lane(work):
     return peak
 
 
-def mean(row, angles, period, work):
+def mean(row, angles, work):
     """Mean of the samples that are not NaN, and how many they are."""
     total, count = 0.0, 0
     for j in range(len(row)):
@@ -74,7 +74,7 @@ def mean(row, angles, period, work):
     return (total / count if count else math.nan), float(count)
 
 
-def mean_square(row, angles, period, work):
+def mean_square(row, angles, work):
     """Mean of the squares of the samples that are not NaN, and how many they are."""
     total, count = 0.0, 0
     for j in range(len(row)):

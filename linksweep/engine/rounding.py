@@ -15,7 +15,7 @@ Inputs known to be exact have no error, others are cosines, sines and products o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from linksweep.engine.trace import Node
 
@@ -23,15 +23,21 @@ UNIT = 2.0**-53 * (1.0 + 2.0**-20)
 """Half a unit in the last place, with room for the rounding of the bound itself."""
 INPUT = 4.0 * UNIT
 """Relative error of an input that is not exact: the square of a cosine, a cosine times a length."""
+PAIR = 2.0**-86
+"""Absolute error of a cosine that is the sum of two doubles, and of the difference of two such."""
 
 
-def relative_bound(results: tuple[Node, ...], exact: Callable[[str], bool], certain: tuple[Node, ...] = ()) -> Node:
+def relative_bound(
+    results: tuple[Node, ...], exact: Callable[[str], bool], certain: Mapping[Node, Node | float]
+) -> Node:
     """Bound on the largest error of these results, relative to the largest of them; `exact` knows inputs by name.
 
-    What is `certain` has been made in more than double precision, which this analysis does not see: it counts as an
-    input.
+    What is `certain` has been made of sums of two doubles, which this analysis does not see: it counts as an input that
+    has the error of cosines besides, in the units given.
     """
-    known = {node: INPUT * abs(node) for node in certain}
+    known = {node: INPUT * abs(node) + PAIR * unit for node, unit in certain.items()}
+    # where another operation takes −(−x), it is x that it takes
+    known |= {node.operands[0]: error for node, error in known.items() if node.operator == "negate"}
     largest_error, largest = _zero(results[0]), _zero(results[0])
     for result in results:
         error, size = _bound(result, known, exact), abs(result)

@@ -89,12 +89,13 @@ class Runner:
 
     plan: Plan
     reductions: tuple[Reduction, ...]
+    room: int
     interpreted: int = 0
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
     @cached_property
     def fused(self) -> Fused:
-        return fuse(self.plan, self.reductions)
+        return fuse(self.plan, self.reductions, self.room)
 
     def should_interpret(self, samples: int) -> bool:
         self.interpreted += samples
@@ -120,15 +121,21 @@ def slots(plan: Plan, nodes: list[Node], sizes: Mapping[str, int]) -> tuple[Slot
 
 
 @lru_cache(maxsize=256)
-def runner(plan: Plan, reductions: tuple[Reduction, ...] = ()) -> Runner:
-    return Runner(plan, reductions)
+def runner(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Runner:
+    return Runner(plan, reductions, room)
+
+
+def room_for(samples: int) -> int:
+    """Length of a row of scratch: one of few, so that there are few kernels, and no power of two, at which all rows
+    would compete for the same places of the cache."""
+    return max(1024, 1 << (samples - 1).bit_length()) + 8
 
 
 def evaluate(
     plan: Plan, inputs: Mapping[str, Field], grid: Grid, sizes: Mapping[str, int], threads: int | None = None
 ) -> dict[str, Field]:
     """Every output of the plan over its own dims."""
-    ready = runner(plan)
+    ready = runner(plan, (), room_for(len(grid.angles)))
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
@@ -157,7 +164,7 @@ def reduce_rows(
     threads: int | None = None,
 ) -> dict[Reduction, tuple[Field, Field]]:
     """Two numbers for each reduction (value and angle, or value and count), over the signal's dims but the index."""
-    ready = runner(plan, reductions)
+    ready = runner(plan, reductions, room_for(len(grid.angles)))
     if plan.late or ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         fields = {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
@@ -213,7 +220,7 @@ def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[
     )
     rows = np.broadcast_to(field.values.reshape(math.prod(shape), -1), (math.prod(shape), len(grid.angles)))
     function, work, angles = getattr(reduce, reduction.kind), np.empty(reduce.WORK), grid.angles.tolist()
-    both = np.array([function(row, angles, grid.period, work) for row in rows.tolist()])
+    both = np.array([function(row, angles, work) for row in rows.tolist()])
     return Field(dims, both[:, 0].reshape(shape)), Field(dims, both[:, 1].reshape(shape))
 
 
@@ -238,10 +245,10 @@ def _execute(
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
-        scratch, working = np.empty((fused.scratch_rows, samples)), np.empty(reduce.WORK)
+        scratch, working = np.empty(fused.scratch_size), np.empty(reduce.WORK)
         kernel(
             first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
-            block, block_at, single, single_at, scratch, grid.angles, grid.period, working,
+            block, block_at, single, single_at, scratch, grid.angles, working,
         )  # fmt: skip
 
     length = int(layout.sizes[0]) if plan.loops else samples

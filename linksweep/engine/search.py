@@ -47,8 +47,6 @@ RISE = 1e-11
 """What may be left of a peak, relative to it."""
 NOISE = 1e-15
 """What a signal cannot tell from nothing, relative to its largest magnitude."""
-FAR_ABOVE = 1e6
-"""So far above all samples, of which there are some in every pinch, stands no peak but a pole."""
 FAR_ABOVE = 1e3
 """What is so far above all samples, with no number left between its neighbours, is a pole."""
 
@@ -103,7 +101,8 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
     for k in range(summits):
         j = flags[k]
         left, value, right = neighbour(row, j, -1, joined), row[j], neighbour(row, j, 1, joined)
-        if value + ((value - left) + (value - right)) > top + 10.0 * floor:
+        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[j])
+        if might_reach(left, value, right, ratio) > top + 10.0 * floor:
             lanes[XA, count], lanes[FA, count] = before[j], left
             lanes[XB, count], lanes[FB, count] = x[j], value
             lanes[XC, count], lanes[FC, count] = after[j], right
@@ -117,13 +116,18 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
     return count
 
 
+def might_reach(left, value, right, ratio):
+    """How high a peak about a sample above its neighbours might be, of which the right one is `ratio` times as far as
+    the left one: by as much as both secants, drawn on, say together."""
+    return value + ((value - left) * ratio + (value - right) / ratio)
+
+
 def find_summits(row, joined, flags):
     """Put the places of all samples that stand above their neighbours into `flags`. Returns how many they are."""
     n, summits = len(row), 0
     for j in range(1, n - 1):
-        left, right = row[j - 1], row[j + 1]
-        left, right = left if left == left else -math.inf, right if right == right else -math.inf
-        flags[j] = 1 if (row[j] >= left) & (row[j] > right) else 0
+        below = (row[j] < row[j - 1]) | (row[j] <= row[j + 1]) | (row[j] != row[j])  # a NaN is below, and none above
+        flags[j] = 0 if below else 1
     for j in (0, n - 1):
         stands = row[j] >= neighbour(row, j, -1, joined) and row[j] > neighbour(row, j, 1, joined)
         flags[j] = 1 if stands else 0
@@ -135,9 +139,9 @@ def find_summits(row, joined, flags):
             total += flags[start + k]
         if total > 0:
             for j in range(start, start + BLOCK):
-                if flags[j] > 0:
-                    flags[summits] = j
-                    summits += 1
+                stands = flags[j]
+                flags[summits] = j  # without a branch, which would be guessed wrong
+                summits += stands
     return summits
 
 
@@ -274,7 +278,7 @@ def settle(lanes, k, best, tag):
     if lanes[DONE, k] == 2.0:  # at a jump, a kink or a pole
         left = height - max(lanes[FA, k], lanes[FC, k])
         if height > FAR_ABOVE / NOISE * lanes[FLOOR, k]:
-            best[PEAK, tag], left = math.inf, 0.0
+            best[PEAK, tag], left, height = math.inf, 0.0, 0.0
     else:
         rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
         step = 0.5 * (rise * after - fall * before) / (rise + fall)

@@ -31,15 +31,15 @@ class SearchWriter(Writer):
     PLACED = (TANGENT, FAR)
 
     def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
-        super().__init__(plan, tuple(Reduction("", signal) for signal in signals))
+        super().__init__(plan, tuple(Reduction("", signal) for signal in signals), search.SAMPLES)
         self.signals = [plan.outputs[signal] for signal in signals]
         self.place = {node.value: node for node in self.placed}
-        self.scratch_rows = len(self.scratch) + 2
+        self.scratch_size = (len(self.scratch) + 2) * search.SAMPLES
 
     def kernel(self) -> str:
         self.write(0, f"def kernel({ARGUMENTS}):")
         self.write(1, f"samples = {search.SAMPLES}")
-        self.write(1, f"place_halves({self._target(self.place[FAR])})")
+        self.write(1, f"place_halves({self._row(self.place[FAR])})")
         for level in range(len(self.plan.loops) + 1):
             if level:
                 bounds = "first, last" if level == 1 else f"sizes[{level - 1}]"
@@ -54,27 +54,16 @@ class SearchWriter(Writer):
         """Nothing: a signal must be known between the samples."""
         return ()
 
-    def _row(self, k: int) -> str:
-        """A row of scratch, which is flat here: places that differ by known numbers are known not to overlap."""
-        return f"scratch[{k * search.SAMPLES}:{(k + 1) * search.SAMPLES}]"
-
-    def _target(self, node: Node) -> str:
-        return self._row(self.scratch[node])
-
-    def _cells(self, depth: int, read: list[Node], written: list[Node]) -> dict[tuple[Node, str], str]:
-        cells = {node: f"scratch[{self.scratch[node] * search.SAMPLES} + j]" for node in (*read, *written)}
-        return {(node, how): cells[node] for node in cells for how in ("read", "written")}
-
     def _place_samples(self, level: int) -> None:
         tangent = self.place[TANGENT]
         if self.level(tangent) == level:
             widths = ", ".join(name(self.plan.outputs[width]) for width in (NEAR_WIDTH, FAR_WIDTH))
-            self.write(level + 1, f"place_samples({self._target(tangent)}, {self._neighbours}, {widths}, grades)")
+            self.write(level + 1, f"place_samples({self._row(tangent)}, {self._neighbours}, {widths}, grades)")
 
     @property
     def _neighbours(self) -> str:
         """Rows of scratch that hold the places of the samples before and after each."""
-        return ", ".join(self._row(len(self.scratch) + k) for k in (0, 1))
+        return ", ".join(self._scratch_row(len(self.scratch) + k) for k in (0, 1))
 
     def _search(self, level: int) -> None:
         """Open lanes for this level's signals; evaluate and advance them until none is left."""
@@ -83,10 +72,9 @@ class SearchWriter(Writer):
             return
         depth = level + 1
         self.write(depth, "count = 0")
-        x, far = self._target(self.place[TANGENT]), self._target(self.place[FAR])
+        x, far = self._row(self.place[TANGENT]), self._row(self.place[FAR])
         for k in tags:
-            row = self._target(self.signals[k])
-            where = f"{row}, {x}, {self._neighbours}, {far}"
+            where = f"{self._row(self.signals[k])}, {x}, {self._neighbours}, {far}"
             self.write(depth, f"count = find({where}, True, True, {k}, lanes, count, best, flags)")
         self.write(depth, "guess(lanes, count)")
         self.write(depth, f"evaluations, rounds = {search.SAMPLES}, 0")

@@ -8,7 +8,7 @@ evaluates the graph.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import NamedTuple
 
 COMMUTATIVE = {"+", "*"}
@@ -80,11 +80,6 @@ class Node:
         return self.operator == "constant" and self.value == value
 
 
-def squared(name: str) -> str:
-    """Name of the input that holds the square of another, where a grid has tabulated it."""
-    return f"{name}_squared"
-
-
 class Key(NamedTuple):
     operator: str
     operands: tuple[int, ...]
@@ -94,8 +89,7 @@ class Key(NamedTuple):
 class Graph:
     """Nodes in the order of their making, so that operands come before what uses them."""
 
-    def __init__(self, tabulated: Iterable[str] = ()) -> None:
-        self.tabulated = frozenset(tabulated)
+    def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._known: dict[Key, Node] = {}
 
@@ -156,8 +150,6 @@ class Graph:
             return self.negate(self.multiply(x.operands[0], y))
         if y.operator == "negate":
             return self.negate(self.multiply(x, y.operands[0]))
-        if x is y and x.operator == "input" and squared(x.value) in self.tabulated:
-            return self._make("input", (), x.dims, squared(x.value))
         return self.operation("*", x, y)
 
     def divide(self, x: Node, y: Node) -> Node:

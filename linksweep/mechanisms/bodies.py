@@ -7,12 +7,11 @@ it stands).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms import rounding_error
-from linksweep.physics import crank_driven, inertia, planar, power, reduced_inertia, shaking
+from linksweep.physics import crank_driven, inertia, planar, reduced_inertia, shaking
 
 Source = str | float
 
@@ -86,6 +85,14 @@ class Body:
             ),
             Row(inertia.gravity_power, (f"gravity_power{k}",), (mass, "gravity_x", "gravity_y", *velocity)),
             Row(
+                inertia.power_size,
+                (f"power_size{k}",),
+                (
+                    *(mass, f"{role}_inertia", *self.pin_velocity, *self.pin_acceleration),
+                    *(*rates, *centre, "gravity_x", "gravity_y", f"P{k}x", f"P{k}y", f"M{k}"),
+                ),
+            ),
+            Row(
                 inertia.newton_euler_right_side,
                 (f"rhs{k}x", f"rhs{k}y", f"rhs{k}m"),
                 (
@@ -125,44 +132,6 @@ def crank_pin_slope_rows() -> list[Row | Total]:
     return [
         Row(planar.point_velocity, ("uBx", "uBy"), (0.0, 0.0, 1.0, "r2x", "r2y")),
         Row(crank_driven.crank_pin_acceleration, ("uBx_slope", "uBy_slope"), (1.0, 0.0, "r2x", "r2y")),
-    ]
-
-
-def whole_machine_rows(bodies: Iterable[Body], load_powers: Iterable[str]) -> list[Row | Total]:
-    """Of all moving links together: shaking, reduced inertia, powers, and what the drive gives."""
-    bodies = tuple(bodies)
-    sums = {"Fsx": "S{}x", "Fsy": "S{}y", "Ms": "S{}m", "inertia_power": "inertia_power{}"}
-    sums |= {"gravity_power": "gravity_power{}", "reduced_inertia": "reduced_inertia{}"}
-    sums |= {"reduced_inertia_slope": "reduced_inertia_slope{}"}
-    return [
-        *(Total(name, tuple(part.format(body.number) for body in bodies)) for name, part in sums.items()),
-        Total("load_power", tuple(load_powers)),
-        Row(planar.square, ("Fs_squared",), ("Fsx", "Fsy")),
-        Row(planar.root, ("Fs",), ("Fs_squared",)),
-        Row(reduced_inertia.kinetic_energy, ("kinetic_energy",)),
-        Row(planar.opposite, ("reduced_torque",), ("work",)),
-        Row(power.power_fed, ("power_fed",)),
-        Row(power.power_regenerated, ("power_regenerated",)),
-    ]
-
-
-def whole_machine_quantities() -> list[Quantity]:
-    said = "force of the moving links' inertia on the ground (weights and loads not in it)"
-    return [
-        Quantity("Fsx", "N", f"shaking force: {said}, component along x"),
-        Quantity("Fsy", "N", f"shaking force: {said}, component along y"),
-        Quantity("Fs", "N", f"magnitude of the shaking force: {said}", squared="Fs_squared"),
-        Quantity("Ms", "N m", "shaking moment of the moving links' inertia on the ground about A, counter-clockwise"),
-        rounding_error.QUANTITY,
-        Quantity("reduced_inertia", "kg m2", "inertia of all moving links reduced to the crank"),
-        Quantity("reduced_inertia_slope", "kg m2 rad-1", "derivative of the reduced inertia to the crank angle"),
-        Quantity("kinetic_energy", "J", "kinetic energy of all moving links"),
-        Quantity("reduced_torque", "N m", "drive reduced to the crank: its work per radian of the crank"),
-        Quantity("power_fed", "W", "power of the drive where it feeds the mechanism, else 0"),
-        Quantity("power_regenerated", "W", "power that the drive takes back where the mechanism drives it, else 0"),
-        Quantity("inertia_power", "W", "power of all inertia forces, positive when they feed the mechanism"),
-        Quantity("gravity_power", "W", "power of all weights, positive when they feed the mechanism"),
-        Quantity("load_power", "W", "power of all loads, springs and dampers, positive when they feed the mechanism"),
     ]
 
 
@@ -233,7 +202,7 @@ def pin_force_rows(i: int, j: int) -> list[Row | Total]:
     ]
 
 
-def pin_force_quantities(i: int, j: int, pin: str, links: dict[int, str]) -> list[Quantity]:
+def pin_force_quantities(i: int, j: int, pin: str, links: Mapping[int, str]) -> list[Quantity]:
     found = []
     for a, b in ((i, j), (j, i)):
         said = f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
@@ -245,10 +214,13 @@ def pin_force_quantities(i: int, j: int, pin: str, links: dict[int, str]) -> lis
     return found
 
 
-def motion_quantities(k: int, role: str) -> list[Quantity]:
-    return [
+def motion_quantities(body: Body) -> list[Quantity]:
+    k, role = body.number, body.role
+    turning = [
         Quantity(f"omega{k}", "rad s-1", f"angular velocity of the {role}, positive counter-clockwise"),
         Quantity(f"alpha{k}", "rad s-2", f"angular acceleration of the {role}, positive counter-clockwise"),
+    ]
+    return (turning if body.ratio else []) + [
         Quantity(f"aG{k}x", "m s-2", f"acceleration of the {role}'s centre of gravity along x"),
         Quantity(f"aG{k}y", "m s-2", f"acceleration of the {role}'s centre of gravity along y"),
     ]
@@ -270,6 +242,6 @@ def drive_quantities(unknown: Quantity, powers: str = "drive, loads, gravity and
     return [
         unknown,
         Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
-        Quantity("power_residual", "1", f"sum of the powers of {powers}, relative to the largest of them"),
+        Quantity("power_residual", "1", f"sum of the powers of {powers}, relative to the magnitudes they are made of"),
         Quantity("cond", "1", "1-norm condition number of the 9x9, rows and columns scaled by powers of two"),
     ]

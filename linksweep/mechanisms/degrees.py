@@ -18,6 +18,9 @@ ONE = 2**128
 DEGREE = 5939047689249815265887113184232615463
 """One, and a degree in radians, as integers of so many bits after the point."""
 
+COS_SIGNS, SIN_SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
+"""Of what cosine and sine are, quadrant by quadrant."""
+
 
 def cos_sin(degrees):
     """Cosine and sine of an angle [degree]: a number, an array or a DataArray; two of the same kind come back."""
@@ -32,11 +35,12 @@ def cos_sin_rests(degrees: Any) -> tuple[Any, ...]:
     quarter = np.rint(turned / 90.0)
     cos, sin, cos_rest, sin_rest = _within_an_eighth(turned - 90.0 * quarter)
     quadrant = quarter.astype(np.int64) % 4
+    odd, sign_of_cos, sign_of_sin = quadrant % 2 == 1, COS_SIGNS[quadrant], SIN_SIGNS[quadrant]
     values = (
-        np.choose(quadrant, (cos, -sin, -cos, sin)) + 0.0,  # + 0.0 turns -0.0 into 0.0
-        np.choose(quadrant, (sin, cos, -sin, -cos)) + 0.0,
-        np.choose(quadrant, (cos_rest, -sin_rest, -cos_rest, sin_rest)) + 0.0,
-        np.choose(quadrant, (sin_rest, cos_rest, -sin_rest, -cos_rest)) + 0.0,
+        np.where(odd, sin, cos) * sign_of_cos + 0.0,  # + 0.0 turns -0.0 into 0.0
+        np.where(odd, cos, sin) * sign_of_sin + 0.0,
+        np.where(odd, sin_rest, cos_rest) * sign_of_cos + 0.0,
+        np.where(odd, cos_rest, sin_rest) * sign_of_sin + 0.0,
     )
     return values if np.ndim(degrees) else tuple(map(float, values))
 

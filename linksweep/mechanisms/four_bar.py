@@ -9,9 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.engine.run import Field
 from linksweep.mechanisms import rounding_error
-from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
+from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
@@ -19,27 +18,30 @@ from linksweep.mechanisms.bodies import (
     crank_pin_slope_rows,
     drive_quantities,
     drive_torque,
-    motion_quantities,
     newton_euler_equations,
     on_crank_pin,
-    pin_force_quantities,
-    pin_force_rows,
     position_quantities,
-    whole_machine_quantities,
-    whole_machine_rows,
 )
-from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.four_bar_limits import angles, classes
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
-from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.motion import (
+    CrankDriven,
+    between_rows,
+    frame_parameters,
+    in_range,
+    pinch_rows,
+    straight_rows,
+    turned,
+)
+from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rrr, four_bar, inertia, planar
 
-BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
+DRIVEN = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
@@ -92,13 +94,7 @@ class FourBar(CrankDriven):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
-        found = []
-        for role in self.links:
-            link = getattr(self, role)
-            sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
-        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
-        refuse(found)
+        refuse(link_problems(self, *self.links) + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def lengths(self) -> dict[str, Number]:
@@ -127,14 +123,10 @@ class FourBar(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        ground_cos, ground_sin, cos_rest, sin_rest = cos_sin_rests(self.ground_angle)
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
-            "ground_cos": ground_cos,
-            "ground_sin": ground_sin,
-            "ground_cos_rest": cos_rest,
-            "ground_sin_rest": sin_rest,
-            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+            **frame_parameters("ground", self.ground_angle),
+            "branch_sign": self.branch_sign,
         }
         for role in self.links:
             numbers |= link_parameters(role, getattr(self, role))
@@ -144,10 +136,6 @@ class FourBar(CrankDriven):
     def pinch_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
-
-    def coordinates(self) -> dict[str, list[str]]:
-        """Labels of the dimensions that the mechanism itself brings."""
-        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
@@ -178,10 +166,6 @@ class FourBar(CrankDriven):
         lengths = tuple(self.lengths().values())
         return (classes, lengths), (angles, (*lengths, self.ground_angle))
 
-    def jumps(self) -> tuple[Number, ...]:
-        """Crank angles at which a force may jump [degree]: none."""
-        return ()
-
     @cached_property
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""
@@ -203,16 +187,11 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *_position(),
         *_rates(),
         *_forces(drive),
-        *_power(drive, loads),
+        *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
     ]
-    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
-    for i, j in PINS.values():
-        rows += pin_force_rows(i, j)
-    rows += pin_rows(PINS, BODIES)
-    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("low", "high")]
+    rows += machine_rows(BODIES, PINS, loads) + _transmission() + [rounding_error.row(low=1.0, high=1.0)]
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
-    quantities = (*_quantities(drive), *action_quantities(loads))
-    return Table("theta2", tuple(rows), quantities, between_rows("ground_cos", "ground_sin"))
+    return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 
 def _position() -> list[Row | Total]:
@@ -254,7 +233,8 @@ def _rates() -> list[Row | Total]:
 
 def _transmission() -> list[Row | Total]:
     """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
-    slopes = ("uBx_slope", "uBy_slope", "ratio3", "ratio4", "r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")
+    places = ("BDx", "BDy", "r2_cross_BD", "r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")
+    slopes: tuple[str | float, ...] = ("uBx_slope", "uBy_slope", 1.0, "ratio3", "ratio4", *places)
     radii = ("crank_length", "rocker_length")
     return [
         *crank_pin_slope_rows(),
@@ -288,30 +268,22 @@ def _crank_driven() -> list[Row | Total]:
 def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
     """The crank's moment equation takes the place of the driven link's."""
     crank, coupler, rocker = ("r2x", "r2y", "moment_r2"), ("r3x", "r3y", "moment_r3"), ("r4x", "r4y", "N4")
-    p, q = {"coupler": (crank, rocker), "rocker": (coupler, crank)}[drive]
-    other = {"coupler": "rocker_length", "rocker": "coupler_length"}[drive]
+    other, ratio, length = {
+        "coupler": (rocker, "ratio3", "rocker_length"),
+        "rocker": (coupler, "ratio4", "coupler_length"),
+    }[drive]
     return [
         Row(planar.opposite, ("moment_r3",), ("N3",)),
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
-        Row(planar.cross, ("leverage",), (*p[:2], *q[:2])),
-        Row(inertia.inverse_cross, ("inverse_leverage",), (*p[:2], *q[:2])),
-        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*p, *q, "inverse_leverage")),
+        Row(dyad_rrr.rrr_leverage, ("leverage", "inverse_leverage"), (ratio, "inverse_r4_cross_r3")),
+        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*crank, "crank_length", *other, "inverse_leverage")),
         Row(dyad_rrr.rrr_status, ("closure",)),
-        Row(crank_driven.drive_status, ("status",), ("closure", "leverage", "crank_length", other)),
+        Row(crank_driven.drive_status, ("status",), ("closure", "leverage", "crank_length", length)),
     ]
 
 
-def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
-    driven = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}[drive]
-    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
+def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
     return [
-        Row(planar.product, ("power",), (FourBar.drives[drive], driven)),
-        Row(planar.relative_sum, ("power_residual",), ("power", *terms)),
-    ]
-
-
-def _quantities(drive: str) -> list[Quantity]:
-    found = [
         Quantity("theta3", "degree", "angle of the coupler B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
@@ -320,10 +292,5 @@ def _quantities(drive: str) -> list[Quantity]:
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
         Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
         Quantity("mechanical_advantage", "1", "force of the rocker at C per force on the crank at B, square to them"),
-        *whole_machine_quantities(),
+        *machine_quantities(BODIES, PINS, LINKS, loads),
     ]
-    for body in BODIES:
-        found += motion_quantities(body.number, body.role)
-    for pin, (i, j) in PINS.items():
-        found += pin_force_quantities(i, j, pin, LINKS)
-    return found + pin_quantities(PINS, LINKS)

@@ -10,9 +10,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.engine.run import Field
 from linksweep.mechanisms import rounding_error
-from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
+from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
@@ -21,25 +20,27 @@ from linksweep.mechanisms.bodies import (
     crank_pin_slope_rows,
     drive_quantities,
     drive_torque,
-    motion_quantities,
     newton_euler_equations,
     on_crank_pin,
-    pin_force_quantities,
-    pin_force_rows,
     position_quantities,
-    whole_machine_quantities,
-    whole_machine_rows,
 )
-from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
-from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.motion import (
+    CrankDriven,
+    between_rows,
+    frame_parameters,
+    in_range,
+    pinch_rows,
+    straight_rows,
+    turned,
+)
+from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rpr, inverted_slider_crank, planar
 
-BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
 BODIES = (
@@ -146,13 +147,7 @@ class InvertedSliderCrank(CrankDriven):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
-        found = []
-        for role in ("crank", "rocker"):
-            link = getattr(self, role)
-            sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
-        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
-        refuse(found)
+        refuse(link_problems(self, "crank", "rocker") + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def lengths(self) -> tuple[Number, Number, Number]:
@@ -170,17 +165,13 @@ class InvertedSliderCrank(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        ground_cos, ground_sin, cos_rest, sin_rest = cos_sin_rests(self.ground_angle)
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
-            "ground_cos": ground_cos,
-            "ground_sin": ground_sin,
-            "ground_cos_rest": cos_rest,
-            "ground_sin_rest": sin_rest,
+            **frame_parameters("ground", self.ground_angle),
             "offset": self.offset,
             "block_mass": self.block_mass,
             "block_inertia": self.block_inertia,
-            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+            "branch_sign": self.branch_sign,
         }
         return numbers | BLOCK | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
 
@@ -188,10 +179,6 @@ class InvertedSliderCrank(CrankDriven):
     def pinch_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
-
-    def coordinates(self) -> dict[str, list[str]]:
-        """Labels of the dimensions that the mechanism itself brings."""
-        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
@@ -230,10 +217,6 @@ class InvertedSliderCrank(CrankDriven):
         """The dead centres of a cylinder; a driven rocker's are where it turns round."""
         return ((dead_centres, (*self.lengths(), self.ground_angle)),) if motion["drive"] == "cylinder" else ()
 
-    def jumps(self) -> tuple[Number, ...]:
-        """Crank angles at which a force may jump [degree]: none."""
-        return ()
-
     @cached_property
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""
@@ -251,16 +234,11 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *_position(),
         *_rates(),
         *_forces(drive),
-        *_power(drive, loads),
+        *power_rows(DRIVES[drive].unknown.name, DRIVES[drive].rate, BODIES, loads),
     ]
-    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
-    for i, j in PINS.values():
-        rows += pin_force_rows(i, j)
-    rows += pin_rows(PINS, BODIES)
-    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("slide_squared")]
-    rows += [*arm_rows(2, "R12", "R32"), *_arms()]
-    quantities = (*_quantities(drive), *action_quantities(loads))
-    return Table("theta2", tuple(rows), quantities, between_rows("ground_cos", "ground_sin"))
+    rows += machine_rows(BODIES, PINS, loads) + _transmission()
+    rows += [rounding_error.row(slide_cosine=1.0, pinch_versine=1.0), *arm_rows(2, "R12", "R32"), *_arms()]
+    return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 
 def _arms() -> list[Row | Total]:
@@ -278,7 +256,9 @@ def _position() -> list[Row | Total]:
         Row(planar.same, ("pinch_far",), (1.0,)),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_rest")),
+        Row(inverted_slider_crank.versine, ("pinch_versine",)),
         Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
+        Row(inverted_slider_crank.slide_cosine, ("slide_cosine",)),
         Row(inverted_slider_crank.slide_squared, ("slide_squared",)),
         Row(inverted_slider_crank.slide_leverage, ("slide_leverage",)),
         Row(inverted_slider_crank.closure_noise, ("noise",)),
@@ -357,16 +337,8 @@ def _status(drive: str) -> list[Row | Total]:
     ]
 
 
-def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
-    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
+def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
     return [
-        Row(planar.product, ("power",), (DRIVES[drive].unknown.name, DRIVES[drive].rate)),
-        Row(planar.relative_sum, ("power_residual",), ("power", *terms)),
-    ]
-
-
-def _quantities(drive: str) -> list[Quantity]:
-    found = [
         Quantity("theta3", "degree", "angle of the block, the rocker's"),
         Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the line D-B and the normal force on the rocker"),
@@ -379,10 +351,5 @@ def _quantities(drive: str) -> list[Quantity]:
         *drive_quantities(DRIVES[drive].unknown),
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
         Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
-        *whole_machine_quantities(),
+        *machine_quantities(BODIES, PINS, LINKS, loads),
     ]
-    for body in BODIES:
-        found += motion_quantities(body.number, body.role)
-    for pin, (i, j) in PINS.items():
-        found += pin_force_quantities(i, j, pin, LINKS)
-    return found + pin_quantities(PINS, LINKS)

@@ -7,26 +7,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any
 
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, parameter
-
-
-class Body(Protocol):
-    """What a mechanism asks of a link."""
-
-    @property
-    def length(self) -> Number: ...
-    @property
-    def mass(self) -> Number: ...
-    @property
-    def inertia(self) -> Number: ...
-    @property
-    def cg_distance(self) -> Number: ...
-    @property
-    def cg_angle(self) -> Number: ...
+from linksweep.mechanisms.validate import Number, parameter, problems, said
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +52,7 @@ class Bar(ByContent):
     length, width, thickness : [m]; the width lies in the plane of motion
     density : [kg/m³]
 
-    Source: document 2 (ME 470), bar link.
+    Values are checked as those of a Link. Source: document 2 (ME 470), bar link.
 
     Examples
     --------
@@ -108,7 +93,7 @@ class Disk(ByContent):
     radius, thickness : [m]
     density : [kg/m³]
 
-    Source: document 2 (ME 470), circle link.
+    Values are checked as those of a Link. Source: document 2 (ME 470), circle link.
 
     Examples
     --------
@@ -139,7 +124,17 @@ class Disk(ByContent):
         return 0.0
 
 
-def link_parameters(role: str, link: Body) -> dict[str, Number]:
+def link_problems(mechanism: Any, *roles: str) -> list[str]:
+    """What is wrong with the links that a mechanism has in these roles."""
+    found = []
+    for role in roles:
+        link = getattr(mechanism, role)
+        sound = isinstance(link, Link | Bar | Disk)
+        found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
+    return found
+
+
+def link_parameters(role: str, link: Link | Bar | Disk) -> dict[str, Number]:
     """A link's numbers under the names that the physics wires by; its centre of gravity in the link's own axes."""
     cos, sin = cos_sin(link.cg_angle)
     return {

@@ -118,6 +118,9 @@ class LoopTrack(ByContent):
     def jumps(self) -> tuple[Number, ...]:
         return ()
 
+    def kinks(self) -> tuple[str, ...]:
+        return ()
+
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Where the car leaves the track or stalls [rad], from the bottom."""
         return ((events, self._numbers(motion)),)

@@ -8,10 +8,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.engine.quantity import Row
+from linksweep.engine.run import Field
 from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.validate import Number
+from linksweep.mechanisms.validate import Number, choice_problems
 from linksweep.physics import crank_angle, planar
+
+BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 
 OverDesigns = tuple[tuple[Callable[..., Mapping[str, Any]], tuple[Number, ...]], ...]
 """Functions of arrays of numbers, broadcast over the designs, that return arrays by name; and what each takes."""
@@ -31,6 +35,8 @@ class CrankDriven(ByContent):
     status of peaks tells, with `round_meanings` for 0, 1, 2 and 3.
     """
 
+    branch: str
+
     index: ClassVar[str] = "theta2"
     period: ClassVar[float] = 360.0
     position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
@@ -40,6 +46,26 @@ class CrankDriven(ByContent):
     profiles: ClassVar[Mapping[str, float]] = {}
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
+
+    def branch_problems(self) -> list[str]:
+        return choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
+
+    @property
+    def branch_sign(self) -> float | Field:
+        """1 for open, -1 for crossed; of both, over a dimension that the mechanism itself brings."""
+        return BRANCH_SIGN.get(self.branch, Field(("branch",), np.array(list(BRANCH_SIGN.values()))))
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """Labels of the dimensions that the mechanism itself brings."""
+        return {"branch": list(BRANCH_SIGN)} if self.branch == "both" else {}
+
+    def jumps(self) -> tuple[Number, ...]:
+        """Crank angles at which a force may jump [degree]: none."""
+        return ()
+
+    def kinks(self) -> tuple[str, ...]:
+        """Quantities at whose change of sign others have a kink: none."""
+        return ()
 
     @property
     def closes_everywhere(self) -> bool:
@@ -58,6 +84,12 @@ class CrankDriven(ByContent):
     def driven_findings(self, motion: Mapping[str, Number]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
         """What can be checked in closed form of how it is driven."""
         return ()
+
+
+def frame_parameters(name: str, angle: Number) -> dict[str, Number]:
+    """Cosine and sine of the angle [degree] at which a frame lies, under the names that the physics wires by."""
+    parts = ("cos", "sin", "cos_rest", "sin_rest")
+    return {f"{name}_{part}": number for part, number in zip(parts, cos_sin_rests(angle), strict=True)}
 
 
 def pinch_rows(middle: str) -> list[Row]:

@@ -11,16 +11,18 @@ EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "br
 """Numbers that reach the physics as the user gave them; so do lengths. Others, such as cosines, have been rounded."""
 
 
-def row(*certain: str) -> Row:
-    """The row that bounds the pin forces' error, of a machine that makes `certain` numbers of its closure, and the
-    angle in its own frame, in more than double precision."""
-    certain = ("pinch_cos", "pinch_cos_rest", "pinch_sin", *certain)
+def row(**closure: str | float) -> Row:
+    """The row that bounds the pin forces' error, of a machine that makes these numbers of its closure, and the angle
+    in its own frame, of cosines in more than double precision; with the units that a cosine has in each."""
+    certain = {"pinch_cos": 1.0, "pinch_cos_rest": 1.0, "pinch_sin": 1.0, **closure}
+    n = len(certain)
 
     def error_bound(*nodes: Node) -> Node:
         """Bound on the rounding error of the pin forces' components, relative to the largest of them."""
-        return rounding.relative_bound(nodes[len(certain) :], _is_exact, nodes[: len(certain)])
+        in_units = dict(zip(nodes[:n], nodes[n : 2 * n], strict=True))
+        return rounding.relative_bound(nodes[2 * n :], _is_exact, in_units)
 
-    return Row(error_bound, ("error_bound",), (*certain, *FORCES))
+    return Row(error_bound, ("error_bound",), (*certain, *certain.values(), *FORCES))
 
 
 def _is_exact(name: str) -> bool:

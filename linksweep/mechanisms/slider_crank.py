@@ -10,9 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.engine.run import Field
 from linksweep.mechanisms import rounding_error
-from linksweep.mechanisms.actions import Form, action_powers, action_quantities, action_rows
+from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.bodies import (
     Body,
     Equation,
@@ -20,27 +19,31 @@ from linksweep.mechanisms.bodies import (
     crank_pin_slope_rows,
     drive_quantities,
     drive_torque,
-    motion_quantities,
     newton_euler_equations,
     on_crank_pin,
-    pin_force_quantities,
-    pin_force_rows,
     position_quantities,
-    whole_machine_quantities,
-    whole_machine_rows,
 )
 from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
-from linksweep.mechanisms.motion import CrankDriven, between_rows, in_range, pinch_rows, straight_rows, turned
-from linksweep.mechanisms.pins import Pins, pin_quantities, pin_rows, rotating
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.motion import (
+    BRANCH_SIGN,
+    CrankDriven,
+    between_rows,
+    in_range,
+    pinch_rows,
+    straight_rows,
+    turned,
+)
+from linksweep.mechanisms.pins import Pins, rotating
 from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging, wedging_by_crank
-from linksweep.mechanisms.validate import Number, choice_problems, parameter, problems, refuse, said
+from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_crank
 
-BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
-PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3)}
+DRIVEN = {"crank": "omega2", "coupler": "omega3"}
+PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
     on_crank_pin(3, "rod", "ratio3", "slope3"),
@@ -123,13 +126,7 @@ class SliderCrank(CrankDriven):
     )
 
     def __post_init__(self) -> None:
-        found = []
-        for role in ("crank", "rod"):
-            link = getattr(self, role)
-            sound = isinstance(link, Link | Bar | Disk)
-            found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
-        found += problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))
-        refuse(found)
+        refuse(link_problems(self, "crank", "rod") + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def _never_closes(self) -> list[str]:
@@ -156,7 +153,7 @@ class SliderCrank(CrankDriven):
             "upright_sin_rest": cos_rest,
             "r4x": guide_cos,
             "r4y": guide_sin,
-            "branch_sign": BRANCH_SIGN.get(self.branch, Field(("branch",), np.array([1.0, -1.0]))),
+            "branch_sign": self.branch_sign,
         }
         return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
 
@@ -164,10 +161,6 @@ class SliderCrank(CrankDriven):
     def pinch_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return 90.0 + self.slide_angle
-
-    def coordinates(self) -> dict[str, list[str]]:
-        """Labels of the dimensions that the mechanism itself brings."""
-        return {"branch": ["open", "crossed"]} if self.branch == "both" else {}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
@@ -214,6 +207,10 @@ class SliderCrank(CrankDriven):
         """Crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
         return self.dead_centres() if np.any(self.friction) else ()
 
+    def kinks(self) -> tuple[str, ...]:
+        """Friction has one where the normal force changes sides."""
+        return ("normal_force",) if np.any(self.friction) else ()
+
     def dead_centres(self) -> tuple[Number, ...]:
         """Crank angles [degree] with the rod in line with the crank: for each branch stretched, then folded.
 
@@ -257,16 +254,13 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *_rates(),
         *_forces(drive),
         *_status(drive, loads),
-        *_power(drive, loads),
+        *power_rows(SliderCrank.drives[drive], DRIVEN[drive], BODIES, loads, "friction_power"),
+        Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
     ]
-    rows += [row for body in BODIES for row in body.rows()] + action_rows(loads, BODIES)
-    for i, j in (*PINS.values(), (1, 4)):
-        rows += pin_force_rows(i, j)
-    rows += pin_rows(PINS, BODIES)
-    rows += whole_machine_rows(BODIES, action_powers(loads)) + _transmission() + [rounding_error.row("low", "high")]
+    rows += machine_rows(BODIES, PINS, loads) + _transmission()
+    rows += [rounding_error.row(low="crank_length", high="crank_length")]
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43")]
-    quantities = (*_quantities(drive), *action_quantities(loads))
-    return Table("theta2", tuple(rows), quantities, between_rows("upright_cos", "upright_sin"))
+    return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
 
 
 def _position() -> list[Row | Total]:
@@ -320,6 +314,7 @@ def _forces(drive: str) -> list[Row | Total]:
         "crank": ("inverse_rod_along", "rod_across", "moment_r3"),
         "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
     }[drive]
+    guide = ("guide_cos", "guide_sin")
     ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3"}
     return [
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
@@ -328,11 +323,11 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(slider_crank.friction_direction, ("direction",)),
         Row(
             slider_crank.guide_force,
-            ("normal_force", "friction_force", "wedging"),
-            (*lever, "Q4x", "Q4y", "guide_cos", "guide_sin", "direction"),
+            ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),
+            (*lever, "Q4x", "Q4y", *guide, "direction"),
         ),
-        Row(slider_crank.guide_force_in_ground_axes, ("F14x", "F14y")),
-        Row(planar.vector_sum, ("F43x", "F43y"), ("F14x", "F14y", "Q4x", "Q4y")),
+        Row(slider_crank.from_guide_axes, ("F14x", "F14y"), ("normal_force", "friction_force", *guide)),
+        Row(slider_crank.from_guide_axes, ("F43x", "F43y"), ("rod_force_across", "rod_force_along", *guide)),
         Row(crank_driven.coupler_balance, ("F32x", "F32y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(planar.opposite, ("T14",), ("N4",)),
@@ -358,18 +353,8 @@ def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
     return [*closure, *leverage, jam, *cycle]
 
 
-def _power(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
-    driven = {"crank": "omega2", "coupler": "omega3"}[drive]
-    terms = [term for body in BODIES for term in body.powers()] + action_powers(loads)
+def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
     return [
-        Row(planar.product, ("power",), (SliderCrank.drives[drive], driven)),
-        Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
-        Row(planar.relative_sum, ("power_residual",), ("power", "friction_power", *terms)),
-    ]
-
-
-def _quantities(drive: str) -> list[Quantity]:
-    found = [
         Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
         Quantity("x_slider", "m", "position of the slider along the guide, from the foot of A on it"),
@@ -385,11 +370,5 @@ def _quantities(drive: str) -> list[Quantity]:
         ),
         Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
         Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
-        *whole_machine_quantities(),
+        *machine_quantities(BODIES, PINS, LINKS, loads),
     ]
-    for body in BODIES[:2]:
-        found += motion_quantities(body.number, body.role)
-    found += motion_quantities(4, "slider")[2:]
-    for pin, (i, j) in PINS.items():
-        found += pin_force_quantities(i, j, pin, LINKS)
-    return found + pin_force_quantities(1, 4, "guide", LINKS) + pin_quantities(PINS, LINKS)

@@ -1,7 +1,8 @@
 """Mechanical advantage: what comes out per what goes in, without friction, weight and inertia.
 
 No power is lost then, so that forces are as velocities are, turned over: T_out/T_in = ω_in/ω_out, and with the radii
-at which they act, F_out/F_in = (ω_in/ω_out)·(r_in/r_out). Source: R. L. Norton, Design of Machinery, section 6.4.
+at which they act, F_out/F_in = (ω_in/ω_out)·(r_in/r_out). Source: R. L. Norton, Design of Machinery, chapter
+"Velocity Analysis".
 """
 
 import math

@@ -4,8 +4,8 @@
     v = |ω|·d/2                sliding speed
     P = μ·F·v                  power of friction
 
-Source: R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, 10th ed., 12-15 (boundary-lubricated
-bearings: nominal pressure, PV).
+Source: R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Lubrication and Journal
+Bearings" (boundary-lubricated bearings: nominal pressure, PV).
 """
 
 from linksweep.physics.arithmetic import Number

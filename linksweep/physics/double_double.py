@@ -65,7 +65,7 @@ def dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
     (x, x_rest), (y, y_rest) = two_product(px[0], qx[0]), two_product(py[0], qy[0])
     high, rest = two_sum(x, y)
     mixed = (px[0] * qx[1] + px[1] * qx[0]) + (py[0] * qy[1] + py[1] * qy[0])
-    return high, rest + ((x_rest + y_rest) + mixed)
+    return ordered_sum(high, rest + ((x_rest + y_rest) + mixed))
 
 
 def cross(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Number:

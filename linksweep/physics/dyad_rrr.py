@@ -9,6 +9,8 @@ lose all digits near a toggle. Everything else follows without another subtracti
     r3 × r4 = ±√(low·high)/2
 """
 
+import math
+
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
 from linksweep.physics.planar import cross, dot
 
@@ -60,21 +62,38 @@ def rrr_velocity_ratios(
     )
 
 
+def rrr_leverage(ratio: Number, inverse_r4_cross_r3: Number) -> tuple[Number, Number]:
+    """r2 × r4 from ω3/ω2, or r2 × r3 from ω4/ω2, and its inverse.
+
+    The drive's unknown, from virtual work, is divided by the same ratio: near a dead centre both have the same error.
+    """
+    inverse = where(abs(ratio) > 0.0, inverse_r4_cross_r3 / ratio, math.nan)
+    return ratio / inverse_r4_cross_r3, inverse
+
+
 def rrr_accelerations(
     aBx: Number,
     aBy: Number,
+    omega2: Number,
     omega3: Number,
     omega4: Number,
+    BDx: Number,
+    BDy: Number,
+    r2_cross_BD: Number,
     r3x: Number,
     r3y: Number,
     r4x: Number,
     r4y: Number,
     inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
-    """α3 and α4, from a_B + α3 × r3 − ω3² r3 = α4 × r4 − ω4² r4 (document 2, ME 470, acceleration)."""
-    square3, square4 = omega3 * omega3, omega4 * omega4
-    kx = aBx - square3 * r3x + square4 * r4x
-    ky = aBy - square3 * r3y + square4 * r4y
+    """α3 and α4, from a_B + α3 × r3 − ω3² r3 = α4 × r4 − ω4² r4 (document 2, ME 470, acceleration).
+
+    The two last terms nearly cancel where both links are long; with r3 = BD + r4 and ω4 − ω3 = ω2 (r2 × BD)/(r4 × r3)
+    they are −ω3² BD + (ω4² − ω3²) r4.
+    """
+    square3, growth = omega3 * omega3, omega2 * (r2_cross_BD * inverse_r4_cross_r3) * (omega3 + omega4)
+    kx = aBx - square3 * BDx + growth * r4x
+    ky = aBy - square3 * BDy + growth * r4y
     return (
         dot(kx, ky, r4x, r4y) * inverse_r4_cross_r3,
         dot(kx, ky, r3x, r3y) * inverse_r4_cross_r3,
@@ -82,17 +101,23 @@ def rrr_accelerations(
 
 
 def rrr_pin_force(
-    r3x: Number,
-    r3y: Number,
     N3: Number,
-    r4x: Number,
-    r4y: Number,
     N4: Number,
+    along3: Number,
+    along4: Number,
+    across: Number,
+    BDx: Number,
+    BDy: Number,
     inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
-    """F43 from r3 × F43 = −N3 and r4 × F43 = N4: what is left of the 9×9 once the rest is eliminated by hand."""
+    """F43 from r3 × F43 = −N3 and r4 × F43 = N4: what is left of the 9×9 once the rest is eliminated by hand.
+
+    That is (N4 r3 + N3 r4)/(r4 × r3), by its shares along BD and across: in the ground's axes digits are lost where
+    the links lie nearly in one line.
+    """
     n3, n4 = N3 * inverse_r4_cross_r3, N4 * inverse_r4_cross_r3
-    return n4 * r3x + n3 * r4x, n4 * r3y + n3 * r4y
+    along, aside = n4 * along3 + n3 * along4, (n3 + n4) * across
+    return along * BDx - aside * BDy, along * BDy + aside * BDx
 
 
 def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:

@@ -9,9 +9,7 @@ that pin, whose pin accelerates by a and which bears an outer load (P, moment M 
 so that the pin forces on the link add up to −Q, and their moments about the first pin (with any drive torque) to −N.
 """
 
-import math
-
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.arithmetic import Number
 from linksweep.physics.planar import cross, dot
 
 
@@ -108,23 +106,25 @@ def effective_moment(
     return cross(hx, hy, gravity_x - pin_ax, gravity_y - pin_ay) - J * alpha + M
 
 
-def inverse_cross(px: Number, py: Number, qx: Number, qy: Number) -> Number:
-    product = cross(px, py, qx, qy)
-    return where(abs(product) > 0.0, 1.0 / product, math.nan)
-
-
 def force_from_two_moments(
     px: Number,
     py: Number,
     moment_p: Number,
+    p_length: Number,
     qx: Number,
     qy: Number,
     moment_q: Number,
     inverse_p_cross_q: Number,
 ) -> tuple[Number, Number]:
-    """The force F with p × F = moment_p and q × F = moment_q."""
-    p, q = moment_q * inverse_p_cross_q, moment_p * inverse_p_cross_q
-    return q * qx - p * px, q * qy - p * py
+    """The force F with p × F = moment_p and q × F = moment_q, by its shares along p and across.
+
+    F = q·moment_p − p·moment_q, over p × q, would lose digits where p and q nearly lie in one line.
+    """
+    square = p_length * p_length
+    per_square = 1.0 / square
+    along = (dot(px, py, qx, qy) * moment_p - square * moment_q) * inverse_p_cross_q * per_square
+    across = moment_p * per_square
+    return along * px - across * py, along * py + across * px
 
 
 def inertia_power(
@@ -143,6 +143,32 @@ def inertia_power(
 
 def gravity_power(mass: Number, gravity_x: Number, gravity_y: Number, vGx: Number, vGy: Number) -> Number:
     return mass * dot(gravity_x, gravity_y, vGx, vGy)
+
+
+def power_size(
+    mass: Number,
+    inertia: Number,
+    pin_vx: Number,
+    pin_vy: Number,
+    pin_ax: Number,
+    pin_ay: Number,
+    omega: Number,
+    alpha: Number,
+    rGx: Number,
+    rGy: Number,
+    gravity_x: Number,
+    gravity_y: Number,
+    Px: Number,
+    Py: Number,
+    M: Number,
+) -> Number:
+    """Sum of the magnitudes of all that the powers of a link's inertia, weight and loads are sums of: the motion of its
+    first pin, and the turning about it."""
+    x, y, centripetal = abs(rGx), abs(rGy), omega * omega
+    along_x = (abs(pin_vx) + abs(omega) * y) * (abs(gravity_x) + abs(pin_ax) + abs(alpha) * y + centripetal * x)
+    along_y = (abs(pin_vy) + abs(omega) * x) * (abs(gravity_y) + abs(pin_ay) + abs(alpha) * x + centripetal * y)
+    of_loads = abs(Px * pin_vx) + abs(Py * pin_vy) + abs(M * omega)
+    return mass * (along_x + along_y) + inertia * abs(alpha * omega) + of_loads
 
 
 def newton_euler_right_side(

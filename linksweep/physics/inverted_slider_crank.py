@@ -18,18 +18,21 @@ from linksweep.physics.double_double import Pair, add, difference, divide, multi
 from linksweep.physics.planar import cross, dot
 
 
+def versine(pinch_cos: Number, pinch_cos_rest: Number) -> Number:
+    """1 − cos ψ, which keeps its digits as ψ tends to 0."""
+    return difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
+
+
 def block_from_rocker_pivot(
     crank_length: Number,
     ground_length: Number,
-    pinch_cos: Number,
-    pinch_cos_rest: Number,
+    pinch_versine: Number,
     pinch_sin: Number,
     ground_cos: Number,
     ground_sin: Number,
 ) -> tuple[Number, Number]:
     """w = D→B in ground axes."""
-    versine = difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
-    along, across = (crank_length - ground_length) - crank_length * versine, crank_length * pinch_sin
+    along, across = (crank_length - ground_length) - crank_length * pinch_versine, crank_length * pinch_sin
     return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
 
@@ -41,16 +44,14 @@ def toggle_cosine(crank_length: Number, ground_length: Number, offset: Number) -
     return add((1.0, 0.0), divide(least, two_product(2.0 * a, d)))
 
 
-def slide_squared(
-    crank_length: Number,
-    ground_length: Number,
-    pinch_cos: Number,
-    pinch_cos_rest: Number,
-    toggle_cos: Number,
-    toggle_cos_rest: Number,
-) -> Number:
+def slide_cosine(pinch_cos: Number, pinch_cos_rest: Number, toggle_cos: Number, toggle_cos_rest: Number) -> Number:
+    """cos ψ_t − cos ψ."""
+    return difference((toggle_cos, toggle_cos_rest), (pinch_cos, pinch_cos_rest))
+
+
+def slide_squared(crank_length: Number, ground_length: Number, slide_cosine: Number) -> Number:
     """s², as the module's equation writes it."""
-    return 2.0 * crank_length * ground_length * difference((toggle_cos, toggle_cos_rest), (pinch_cos, pinch_cos_rest))
+    return 2.0 * crank_length * ground_length * slide_cosine
 
 
 def slide_leverage(crank_length: Number, ground_length: Number, pinch_sin: Number) -> Number:

@@ -1,6 +1,6 @@
 """Vectors in the plane: the cross product p × q = px·qy − py·qx, the left normal of p, (−py, px), and turning."""
 
-from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt
 
 
 def cross(px: Number, py: Number, qx: Number, qy: Number) -> Number:
@@ -66,12 +66,3 @@ def point_acceleration(
     """Acceleration of a link's point at (x, y) from its pin: a_pin + α × r − ω² r."""
     centripetal = omega * omega
     return pin_ax - alpha * y - centripetal * x, pin_ay + alpha * x - centripetal * y
-
-
-def relative_sum(*terms: Number) -> Number:
-    """Sum of terms that should cancel, relative to the largest of them; 0 where all are 0."""
-    total, largest = terms[0], abs(terms[0])
-    for term in terms[1:]:
-        total = total + term
-        largest = where(abs(term) > largest, abs(term), largest)
-    return where(largest > 0.0, total / largest, 0.0)

@@ -4,7 +4,7 @@
     dJ/dθ2 = 2 Σ (m u·u' + I k k')
 
 The derivatives u' and k' to θ2 are the accelerations at ω2 = 1, α2 = 0. Source: F. Wittenbauer, Graphische Dynamik
-(1923); R. L. Norton, Design of Machinery, section 10.9.
+(1923).
 """
 
 from linksweep.physics.arithmetic import Number

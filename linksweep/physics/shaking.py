@@ -3,7 +3,8 @@
     Fs = −Σ m a_G        Ms = −Σ (r_G × m a_G + I α),  about A, r_G from there
 
 Weights and loads are not in it: what the ground bears is this and them. About another point P, Ms − r_P × Fs.
-Source: R. S. Berkof, G. G. Lowen, J. Eng. Ind. 91 (1969) 21; R. L. Norton, Design of Machinery, chapter 12.
+Source: R. S. Berkof and G. G. Lowen, Journal of Engineering for Industry 91 (1969) 21–26; R. L. Norton, Design of
+Machinery, chapter "Balancing".
 """
 
 from linksweep.physics.arithmetic import Number

@@ -113,31 +113,30 @@ def guide_force(
     guide_cos: Number,
     guide_sin: Number,
     direction: Number,
-) -> tuple[Number, Number, Number]:
-    """The guide's force on the slider across (normal) and along (friction), and how near it is to wedging.
+) -> tuple[Number, Number, Number, Number, Number]:
+    """The guide's force on the slider across (normal) and along (friction), and how near it is to wedging; then the
+    rod's force F43 across and along.
 
     F43 = F14 + Q4 and r × F43 = moment for the lever r (the rod, or the crank where its torque is known) give,
     without friction, a normal force N0. Friction −μ|N|·sign(v) changes it to N = N0/(1 + sign(N)·k) with k =
     μ·sign(v)·tan ψ, μ·sign(v) the `direction` and tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign
-    of N is consistent, that of N0; for |k| ≥ 1 none or both are: the slider wedges, and nothing is known.
+    of N is consistent, that of N0; for |k| ≥ 1 none or both are: the slider wedges, and nothing is known. F43 comes
+    from the lever, not from the guide's force, which may be far larger.
     """
     Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
     slope = lever_across * inverse_lever_along
-    frictionless = lever_moment * inverse_lever_along + slope * Q4_along - Q4_across
+    lever_force = (lever_moment + lever_across * Q4_along) * inverse_lever_along
+    frictionless = lever_force - Q4_across
     opposing = where(frictionless < 0.0, -direction, direction)
     wedging = abs(direction * slope)
     normal = frictionless / where(wedging < 1.0, 1.0 + opposing * slope, math.nan)
-    return normal, -(opposing * normal), wedging
+    friction = -(opposing * normal)
+    return normal, friction, wedging, lever_force + slope * friction, Q4_along + friction
 
 
-def guide_force_in_ground_axes(
-    normal_force: Number, friction_force: Number, guide_cos: Number, guide_sin: Number
-) -> tuple[Number, Number]:
-    """F14."""
-    return (
-        friction_force * guide_cos - normal_force * guide_sin,
-        friction_force * guide_sin + normal_force * guide_cos,
-    )
+def from_guide_axes(across: Number, along: Number, guide_cos: Number, guide_sin: Number) -> tuple[Number, Number]:
+    """A force in ground axes."""
+    return along * guide_cos - across * guide_sin, along * guide_sin + across * guide_cos
 
 
 def jammed_status(status: Number, wedging: Number) -> Number:

@@ -12,8 +12,8 @@ slider-crank one on the crank cancels the first coefficient and, of the slider's
 the first order, which then appears across the guide.
 
 Sources: R. S. Berkof and G. G. Lowen, A New Method for Completely Force Balancing Simple Linkages, Journal of
-Engineering for Industry 91 (1969) 21–26; for engines H. H. Mabie and C. F. Reinholtz, Mechanisms and Dynamics of
-Machinery, 4th ed.
+Engineering for Industry 91 (1969) 21–26; for engines R. L. Norton, Design of Machinery, chapter "Engine Dynamics"
+(balancing the single-cylinder engine).
 """
 
 from __future__ import annotations

@@ -5,9 +5,11 @@ Of a rolling bearing of capacity C under loads F that change while it turns by �
     P = (∑ F^p |Δψ| / ∑ |Δψ|)^(1/p)      equivalent load, p = 3 for balls and 10/3 for rollers
     L10 = (C/P)^p                        life that nine of ten reach, in million revolutions
 
-Sources: ISO 281:2007 (basic rating life); variable loads by the linear damage rule of A. Palmgren and M. A. Miner, as
-in R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, 10th ed., section 11-7. What turns to and
-fro counts with the whole angle that it turns. Plain bearings: `linksweep.physics.bearing`.
+Sources: ISO 281 (basic rating life); variable loads by the linear damage rule of A. Palmgren and M. A. Miner, as in R.
+G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Rolling-Contact Bearings", and C. R.
+Mischke in Standard Handbook of Machine Design, 3rd ed., section 18.7. What turns to and fro counts with the whole angle
+that it turns, the simplest of the rules that O. Menck and M. Stammler review (Wind Energy Science 9 (2024) 777): swings
+so small that the rolling elements' paths do not overlap want more care. Plain bearings: `linksweep.physics.bearing`.
 """
 
 from __future__ import annotations

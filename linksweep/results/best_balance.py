@@ -9,8 +9,8 @@ is a convex function of masses ≥ 0. An RMS or a ripple is a 2-norm, and this i
 the norm of a high power, reached by reweighting the samples while the power rises (iteratively reweighted least
 squares).
 
-Source: C. L. Lawson and R. J. Hanson, Solving Least Squares Problems, chapter 23 (bounds); R. Fletcher, J. A. Grant and
-M. D. Hebden, The Calculation of Linear Best Lp Approximations, Computer Journal 14 (1971) 276–279 (damped reweighting).
+Source: C. L. Lawson and R. J. Hanson, Solving Least Squares Problems (bounds); R. Fletcher, J. A. Grant and M. D.
+Hebden, The Calculation of Linear Best Lp Approximations, Computer Journal 14 (1971) (damped reweighting).
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class Group(NamedTuple):
 
     def number(self, number: Any) -> Array:
         """A parameter of the scene, or what was made of some, for each of these designs."""
-        if not isinstance(number, xr.DataArray):
+        if not hasattr(number, "dims"):
             return np.full(len(self.designs), float(number))
         places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs)
         return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
@@ -109,10 +109,12 @@ def quantities_at(
     """Values (names, pairs) at pairs of a design and an angle [degree]."""
     grid = crank_grid(angles, scene.period, scene.mechanism.index)
     inputs, sample = _inputs_at(scene, grid)
-    places = places_of(inputs.sizes, designs) | {grid.dim: sample}
-    fields = {name: _paired(field, places, grid.dim) for name, field in inputs.fields.items()}
     forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
-    found = evaluate(plan(scene.table, names, forms), fields, grid, {}, threads)
+    request = plan(scene.table, names, forms)
+    places = places_of(inputs.sizes, designs) | {grid.dim: sample}
+    needed = {name: inputs.fields[name] for name in request.inputs if name in inputs.fields}
+    fields = {name: _paired(field, places, grid.dim) for name, field in needed.items()}
+    found = evaluate(request, fields, grid, {}, threads)
     return np.stack([np.broadcast_to(found[name].values, angles.shape) for name in names])
 
 

@@ -15,9 +15,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
-from linksweep.mechanisms.validate import count_problems, name_problems, refuse
+from linksweep.mechanisms.validate import count_problems, refuse
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import requested, require_scene
+from linksweep.results.compute import quantity_problems, requested, require_scene
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -98,7 +98,7 @@ def _names(scene: Scene, of: Any) -> tuple[str, ...]:
     if of is None:
         return scene.mechanism.peak_quantities(scene.drive)
     names = requested("of", of)
-    refuse([problem for name in names for problem in name_problems("of", name, forces_of(scene))])
+    refuse([problem for name in names for problem in quantity_problems("of", name, forces_of(scene), scene)])
     return tuple(names)
 
 

@@ -7,6 +7,7 @@ import xarray as xr
 from linksweep.mechanisms.finding import Finding
 from linksweep.results.compute import require_scene
 from linksweep.results.record import design_coordinates, flags, origin_attributes
+from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
@@ -46,6 +47,11 @@ def check(scene: Scene) -> xr.Dataset:
 
     Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.four_bar_limits`.
 
+    Raises
+    ------
+    ValueError
+        For what is no Scene.
+
     Examples
     --------
     >>> import linksweep as ls
@@ -60,9 +66,9 @@ def check(scene: Scene) -> xr.Dataset:
     labels: dict[str, xr.Variable] = {}
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     for findings, numbers in (*scene.mechanism.findings(), *driven):
-        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
-        for name, found in findings(*(array.values for array in arrays)).items():
-            variables[name] = _variable(found, arrays[0].dims)
+        dims_of_numbers, arrays = side_by_side(numbers)
+        for name, found in findings(*arrays).items():
+            variables[name] = _variable(found, dims_of_numbers)
             if found.along and found.along[1]:
                 labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))
     dims = {dim for variable in variables.values() for dim in variable.dims}

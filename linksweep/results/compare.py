@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import name_problems, refuse
+from linksweep.mechanisms.validate import refuse
 from linksweep.results.bearings import joined
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import quantity_problems, require_scene
 from linksweep.results.record import origin_attributes
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -73,6 +73,6 @@ def sizes_named(path: str, scene: Scene, names: Iterable[Any]) -> list[tuple[str
     """Quantity and kind of each size by name: F32 and peak of F32_peak. ValueError for unknown names."""
     names = list(names)
     known = [f"{name}_{size}" for name in scene.table.quantity for size in SIZES]
-    refuse([problem for name in names for problem in name_problems(path, name, known)])
+    refuse([problem for name in names for problem in quantity_problems(path, name, known, scene)])
     parts = [name.rpartition("_") for name in names]
     return [(name, word) for name, _, word in parts]

@@ -9,7 +9,7 @@ import numpy as np
 
 from linksweep.engine.plan import plan
 from linksweep.engine.run import Field, Grid, evaluate
-from linksweep.mechanisms.validate import refuse
+from linksweep.mechanisms.validate import name_problems, refuse
 from linksweep.scene.scene import Scene
 
 
@@ -19,6 +19,16 @@ def requested(path: str, names: Any) -> list[str]:
     wrong = [name for name in given if not isinstance(name, str)]
     refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
     return list(dict.fromkeys(given))
+
+
+def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) -> list[str]:
+    """A name that must be one of these quantities; of another drive's unknown is said which one this drive has."""
+    drives, known = scene.mechanism.drives, list(known)
+    for drive, unknown in drives.items():
+        if drive != scene.drive and f"{name}_".startswith(f"{unknown}_") and name not in known:
+            instead = f'with drive="{scene.drive}" give {drives[scene.drive]}'
+            return [f'{path}: {name} belongs to drive="{drive}"; {instead}']
+    return name_problems(path, name, known)
 
 
 def require_scene(scene: Any) -> None:
@@ -43,7 +53,7 @@ def compute(
 
 def surely_ok(scene: Scene) -> bool:
     """Whether the numbers of the mechanism alone say that every sample is ok."""
-    return scene.mechanism.always_ok(scene.drive)
+    return scene.bare.mechanism.always_ok(scene.drive)
 
 
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:

@@ -7,7 +7,8 @@ its forces turned by β. With z the place along the crankshaft, forces of the cy
     Fs = Σ R(β) Fs(θ2 + φ − β)        Ms = Σ Ms(θ2 + φ − β)        T12 = Σ T12(θ2 + φ − β)
     Msx = −Σ z·Fsy,  Msy = Σ z·Fsx    (moments about the axes x and y at z = 0)
 
-Source: C. F. Taylor, The Internal-Combustion Engine in Theory and Practice, volume 2, chapter 8 (engine balance).
+Source: C. F. Taylor, The Internal-Combustion Engine in Theory and Practice, volume 2 (engine balance and vibration); R.
+L. Norton, Design of Machinery, chapter "Multicylinder Engines".
 """
 
 from __future__ import annotations

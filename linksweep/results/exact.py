@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from linksweep.engine import search
 from linksweep.engine.find_peaks import Peak, find_peaks, search_functions
@@ -20,7 +19,8 @@ from linksweep.engine.run import Field
 from linksweep.engine.search_kernel import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.results.between import Array, Group, Places, empty, groups, in_period, places_of
 from linksweep.results.compute import compute, only_where
-from linksweep.results.paths import QUARTER, Paths, about_jumps, arcs, limits, turns
+from linksweep.results.paths import QUARTER, Paths, about_breaks, arcs, limits, turns
+from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -30,7 +30,7 @@ NODES = 8
 PROBE, PROBED = 0.025, 1e-5
 """How near to the end, of a step or at least, a quantity is looked at to tell whether it grows without bound."""
 JUMPS_AT_ONCE = 4096
-"""Designs whose jumps are looked at together."""
+"""Designs whose breaks are looked at together."""
 PathsOf = Callable[[Group], Paths]
 
 
@@ -54,22 +54,29 @@ def exact_peaks(scene: Scene, signals: tuple[str, ...], threads: int | None = No
                 if np.any(assembly == kind):
                     _follow(group.some(assembly == kind), found, paths_of, threads)
         return found
-    assembly = compute(scene, crank_grid([0.0], scene.period, scene.mechanism.index), ("assembly",))["assembly"]
-    has_arcs = bool(limits(scene))
+    assembly = compute(scene, crank_grid(1, scene.period, scene.mechanism.index), ("assembly",))["assembly"]
+    partly = _with_arcs(scene, names, _designs_where(scene, assembly, 1.0))
     found = _fused(scene, signals, threads)
-    found = peaks_where(Field(assembly.dims, assembly.values < (1.0 if has_arcs else 2.0)), found)
-    if scene.jumps():
+    sound = assembly.values < (1.0 if len(partly) else 2.0)
+    if not sound.all():
+        found = peaks_where(Field(assembly.dims, sound), found)
+    if scene.jumps() or scene.mechanism.kinks():
         whole = _designs_where(scene, assembly, 0.0)
         for group in groups(scene, names, whole, JUMPS_AT_ONCE):
-            _follow(group, found, about_jumps, threads)
-    if has_arcs and np.any(assembly.values == 1.0):
-        for group in groups(scene, names, _designs_where(scene, assembly, 1.0)):
-            _follow(group, found, arcs, threads)
+            _follow(group, found, about_breaks, threads)
+    for group in groups(scene, names, partly):
+        _follow(group, found, arcs, threads)
     return found
 
 
 def _nothing(field: Field) -> Found:
     return Found(*(Field(field.dims, field.values.copy()) for _ in Found._fields))
+
+
+def _with_arcs(scene: Scene, names: tuple[str, ...], designs: Array) -> Array:
+    """These designs, which move over part of a turn, where that part is known in closed form; else none."""
+    known = any(limits(group) for group in groups(scene, names, designs[:1]))
+    return designs if known else designs[:0]
 
 
 def _designs_where(scene: Scene, field: Field, value: float) -> Array:
@@ -102,7 +109,7 @@ def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[
         peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, threads)
         found = {signal: _turned(scene, peak) for signal, peak in peaks.items()}
     steady = tuple(signal for signal in signals if signal not in turning)
-    values = compute(scene, crank_grid([0.0], scene.period, index), steady) if steady else {}
+    values = compute(scene, crank_grid(1, scene.period, index), steady) if steady else {}
     return found | {signal: _steady(values[signal]) for signal in steady}
 
 
@@ -110,7 +117,7 @@ def _turned(scene: Scene, peak: Peak) -> Found:
     """A peak with its angle [degree], of which the search knows the half-angle tangent."""
     dims, value = peak.value
     away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
-    angle = (xr.DataArray(away, dims=dims) + scene.mechanism.pinch_angle).transpose(*dims).values
+    angle = away + laid(scene.mechanism.pinch_angle, dims)
     angle = np.where(np.isnan(value), np.nan, in_period(angle, scene.period))
     return Found(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
 
@@ -161,12 +168,13 @@ def _raise(peak: Found, at: Array, best: Best) -> None:
     last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each place
     place = at[last]
     with np.errstate(invalid="ignore"):
-        reach = np.nan_to_num(value + beyond, nan=-np.inf)
+        reach = np.nan_to_num(value + beyond, nan=-np.inf, posinf=np.inf, neginf=-np.inf)
         np.maximum.at(reach, at, height + best.beyond)
         higher = last[~(height[last] <= value[place]) & (height[last] > -np.inf)]
         value[at[higher]], angle[at[higher]] = best.value[higher], best.angle[higher]
         beyond[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
-    beyond[place] = np.where(np.isnan(value[place]), np.nan, beyond[place])
+    known = np.where(np.isfinite(value[place]), beyond[place], 0.0)  # nothing is above what grows without bound
+    beyond[place] = np.where(np.isnan(value[place]), np.nan, known)
     samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, best.samples, len(value))[place]
 
 
@@ -204,7 +212,8 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
 def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
     """Which lanes promise more than the peak that stands; none do at ends where the signals pass on."""
     tag, x = lanes[search.TAG].astype(int), lanes[search.XB]
-    promise = 3.0 * lanes[search.FB] - (lanes[search.FA] + lanes[search.FC]) > peak[tag]
+    ratio = (lanes[search.XC] - x) / (x - lanes[search.XA])
+    promise = search.might_reach(lanes[search.FA], lanes[search.FB], lanes[search.FC], ratio) > peak[tag]
     path = tag // signals
     return promise & ((paths.ends != "pass") | (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
 

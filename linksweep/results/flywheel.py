@@ -9,7 +9,7 @@ With ω between Ω1 = ω2 (1 + δ/2) and Ω2 = ω2 (1 − δ/2), touching both, 
     J_f = (max(E − ½ J Ω1²) − min(E − ½ J Ω2²)) / (δ ω2²)
 
 the two tangents of Wittenbauer's diagram. Source: F. Wittenbauer, Graphische Dynamik (1923); R. L. Norton, Design of
-Machinery, section 11.11, which neglects how J changes the speed.
+Machinery, chapter "Dynamic Force Analysis" (flywheels), which neglects how J changes the speed.
 """
 
 from __future__ import annotations

@@ -11,7 +11,8 @@ with the crank at φ(b + a), and at φ(b − a) + 180°. A slider turns round wh
 
 The time ratio is that of the larger to the smaller angle between these, which a crank at a steady speed takes as times.
 
-Source: R. L. Norton, Design of Machinery, 5th ed., chapters 2 and 3 (limits, time ratio) and 4 (transmission angle).
+Source: R. L. Norton, Design of Machinery, chapters "Graphical Linkage Synthesis" (limiting conditions, time ratio) and
+"Position Analysis" (transmission angle).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ import xarray as xr
 
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.four_bar import BRANCH_SIGN
+from linksweep.mechanisms.motion import BRANCH_SIGN
 from linksweep.mechanisms.validate import as_pair, choice_problems, pair_problems, refuse
 from linksweep.physics import planar
 from linksweep.results.check import check

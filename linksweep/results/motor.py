@@ -100,7 +100,8 @@ def motor_load(
     Notes
     -----
     motor_torque = T/(ratio·η) + inertia·ratio·α where the drive feeds the machine, T·η/ratio + … where the machine
-    drives it. Source: R. L. Norton, Design of Machinery, sections 2.19 and 10.12.
+    drives it. Source: R. L. Norton, Design of Machinery, chapters "Kinematics Fundamentals" (motors and drivers) and
+    "Dynamics Fundamentals" (inertia seen through a gear).
 
     Examples
     --------

@@ -60,10 +60,10 @@ class Objective:
         x = self._numbers(x)
         columns = x.reshape(len(x), -1)
         found = self.peaks(columns)
-        sound = found["status"] == 0
+        sound = _alone(found["status"] == 0)
         if self.constraint is not None:
-            sound = sound & self.constraint(found)
-        value = xr.DataArray(self.measure(found))
+            sound = sound & _alone(self.constraint(found))
+        value = _alone(self.measure(found))
         value = value.where(sound & np.isfinite(value), np.inf)
         worst = value.max([dim for dim in value.dims if dim != CANDIDATES]).values
         return float(worst.reshape(-1)[0]) if x.ndim == 1 else np.array(np.broadcast_to(worst, columns.shape[1:]))
@@ -74,6 +74,11 @@ class Objective:
             wanted = f"({len(self.ranges)},) or ({len(self.ranges)}, designs)"
             raise ValueError(f"x has the shape {x.shape}: must be {wanted}, one row for each of {self.names}")
         return x
+
+
+def _alone(value: Any) -> xr.DataArray:
+    """Without the parameters that stand beside it: to compare them takes longer than to use it."""
+    return xr.DataArray(value).reset_coords(drop=True)
 
 
 def objective(

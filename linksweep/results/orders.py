@@ -2,7 +2,8 @@
 
     F(θ2) = Σ (c_k cos kθ2 + s_k sin kθ2) = Σ A_k cos(kθ2 − φ_k)
 
-Source: W. Thomson, Theory of Vibration, chapter 1; for engines C. F. Taylor, The Internal Combustion Engine, volume 2.
+Source: W. T. Thomson, Theory of Vibration with Applications (harmonic analysis); for engines C. F. Taylor, The
+Internal-Combustion Engine in Theory and Practice, volume 2.
 """
 
 from __future__ import annotations

@@ -15,6 +15,8 @@ from linksweep.results.compute import requested
 FRONT = "front"
 """Dimension of a front whose designs had several."""
 BATCH = 64
+KEPT = ("ok", "partial_revolution")
+"""Words of a status whose designs have peaks to choose by: an arm moves over part of a turn, and is none the worse."""
 
 
 def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str] = ()) -> xr.Dataset:
@@ -29,8 +31,9 @@ def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str]
     Returns
     -------
     The same Dataset at those designs alone, the best in the first objective first, then in the second, and so on.
-    Equal designs are all kept. A design whose status is not ok (0), or with an objective that is not finite, is never
-    among them. One design dim keeps its name; of several the designs lie along `front`, and their labels with them.
+    Equal designs are all kept. A design whose status is neither ok (0) nor partial_revolution (1), or with an objective
+    that is not finite, is never among them; of designs that must turn fully, give ``ds.where(ds.status == 0)``. One
+    design dim keeps its name; of several the designs lie along `front`, and their labels with them.
     `linksweep.scene_at` makes scenes of them.
 
     Raises
@@ -51,17 +54,22 @@ def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str]
     True
     """
     objectives = _objectives(ds, minimize, maximize)
-    counted = [*objectives, ds["status"] == 0] if "status" in ds.variables else objectives
-    together = xr.broadcast(*counted)
-    dims, shape = together[0].dims, together[0].shape
+    *together, sound_status = xr.broadcast(*objectives, has_peaks(ds))
+    dims, shape = sound_status.dims, sound_status.shape
     refuse([] if dims else ["ds holds one design: there is nothing to choose from; give it a dimension of designs"])
-    costs = np.stack([item.values.reshape(-1).astype(float) for item in together[: len(objectives)]], axis=-1)
-    sound = np.isfinite(costs).all(axis=1)
-    for status in together[len(objectives) :]:
-        sound &= status.values.reshape(-1)
+    costs = np.stack([item.values.reshape(-1).astype(float) for item in together], axis=-1)
+    sound = np.isfinite(costs).all(axis=1) & sound_status.values.reshape(-1)
     designs = np.flatnonzero(sound)
     designs = designs[front(costs[designs])]
     return _at(ds, {str(dim): at for dim, at in zip(dims, np.unravel_index(designs, shape), strict=True)})
+
+
+def has_peaks(ds: xr.Dataset) -> xr.DataArray:
+    """Whether each design has peaks to choose by."""
+    if "status" not in ds.variables:
+        return xr.DataArray(True)
+    words = str(ds["status"].attrs.get("flag_meanings", "ok")).split()
+    return ds["status"].isin([code for code, word in enumerate(words) if word in KEPT])
 
 
 def front(costs: np.ndarray) -> np.ndarray:

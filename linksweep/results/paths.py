@@ -1,8 +1,8 @@
 """Paths round the machine, for what the fused search does not cover: loads over the angle, and turns that end.
 
 A whole turn is followed by its angle [degree]: even samples, more about the pinches by their width, and both sides of
-every jump. An arc that ends at toggles is followed by x with θ2 = middle + half·sin x: what has a square root there is
-smooth in x.
+every jump and kink. An arc that ends at toggles is followed by x with θ2 = middle + half·sin x: what has a square root
+there is smooth in x.
 """
 
 from __future__ import annotations
@@ -10,12 +10,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from linksweep.engine.find_peaks import grades
 from linksweep.engine.search import GRADES
 from linksweep.results.between import Array, Group, in_period
-from linksweep.scene.scene import Scene
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
@@ -23,7 +21,9 @@ PER_ARC = 192
 ASIDE = 1e-9
 """How far beside a jump its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
-"""Samples on either side of a jump that reach the nearest ones of the fused search [degree]."""
+"""Samples on either side of a break that reach the nearest ones of the fused search [degree]."""
+KINK_STEPS = 3
+"""Steps of the false position towards a kink between two samples: a search finds it from there."""
 NEAREST = 1e-5
 """Nearer to the end of an arc, in x, rounding outweighs what is left to gain."""
 QUARTER = 0.5 * np.pi
@@ -70,11 +70,11 @@ def turns(group: Group) -> Paths:
     step = turn / PER_TURN
     even = (np.arange(PER_TURN * rounds) + 0.381966) * step  # off the round angles, where pinches have samples too
     even = np.broadcast_to(even, (len(group.designs), len(even)))
-    pinched = np.concatenate([_pinched(group) + turn * k for k in range(rounds)], axis=1)
-    sides = jump_sides(group)
+    pinched = _samples_of_period(group)
+    sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
     x, cuts = (
         np.sort(in_period(np.concatenate(parts, axis=1), period), axis=1)
-        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], sides))
+        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], jumps))
     )
     before, after = _neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
@@ -87,6 +87,13 @@ def _neighbours(x: Array, period: float) -> tuple[Array, Array]:
     before[:, 0] -= period
     after[:, -1] += period
     return before, after
+
+
+def _samples_of_period(group: Group) -> Array:
+    """Samples (design, sample) graded about the pinches of every turn [degree], in order."""
+    turn = group.scene.mechanism.period
+    rounds = range(round(group.scene.period / turn))
+    return np.concatenate([np.sort(in_period(_pinched(group), turn), axis=1) + turn * k for k in rounds], axis=1)
 
 
 def _pinched(group: Group) -> Array:
@@ -103,26 +110,58 @@ def _grades_of(widths: Array) -> Array:
     return np.clip(1 - scale, 0, GRADES - 1)
 
 
-def jump_sides(group: Group) -> Array:
-    """Angles (design, side) just before and just after every jump in every turn of the period."""
-    angles = _jumps(group)
+def _sides(angles: Array) -> Array:
+    """Angles (design, side) just before and just after every one of these."""
     return np.concatenate([angles - ASIDE, angles + ASIDE], axis=1)
 
 
-def _jumps(group: Group) -> Array:
-    """Angles (design, jump) of every jump in every turn of the period."""
-    turn = group.scene.mechanism.period
-    rounds = range(round(group.scene.period / turn))
-    found = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in rounds]
-    # a design whose crank does not turn fully may have no such angle: any other does for it
+def _breaks(group: Group) -> Array:
+    """Angles (design, break) of every jump in every turn of the period, and of every kink, but for a little: no place
+    to cut at for a mean."""
+    kinks = [kink for name in group.scene.mechanism.kinks() for kink in _changes_of_sign(group, name)]
+    return _for_each(group, [*_jumps(group), *kinks])
+
+
+def _for_each(group: Group, found: list[Array]) -> Array:
+    """Angles (design, angle); a design with fewer than others has some of its own twice, or angle 0: any does."""
     return np.nan_to_num(np.stack(found, axis=1)) if found else np.empty((len(group.designs), 0))
 
 
-def about_jumps(group: Group) -> Paths:
-    """A window about every jump of each of these designs, wide enough to reach other samples on both sides."""
-    jumps = _jumps(group)
-    row = np.repeat(np.arange(len(jumps)), jumps.shape[1])
-    x = jumps.reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE])
+def _jumps(group: Group) -> list[Array]:
+    """Angles of each design's jumps; NaN where a crank that does not turn fully has none."""
+    turn = group.scene.mechanism.period
+    rounds = range(round(group.scene.period / turn))
+    return [group.number(jump) + turn * k for jump in group.scene.jumps() for k in rounds]
+
+
+def _changes_of_sign(group: Group, name: str) -> Array:
+    """Angles (change, design) at which a quantity changes sign between two samples; NaN where others have more."""
+    angles = _samples_of_period(group)
+    designs, count = angles.shape
+    (values,) = group.values((name,), np.repeat(np.arange(designs), count), angles.ravel())
+    values = values.reshape(angles.shape)
+    following = np.roll(values, -1, axis=1)
+    row, before = np.nonzero((values < 0.0) & (following > 0.0) | (values > 0.0) & (following < 0.0))
+    if not len(row):
+        return np.empty((0, designs))
+    a, f_a, f_b = angles[row, before], values[row, before], following[row, before]
+    b = a + np.mod(angles[row, (before + 1) % count] - a, group.scene.period)
+    for _ in range(KINK_STEPS):
+        x = b - f_b * (b - a) / (f_b - f_a)
+        (f,) = group.values((name,), row, x)
+        nearer_b = (f < 0.0) == (f_a < 0.0)
+        a, f_a, b, f_b = (np.where(nearer_b, *ends) for ends in ((x, a), (f, f_a), (b, x), (f_b, f)))
+    nth = np.arange(len(row)) - np.searchsorted(row, row)
+    table = np.full((nth.max() + 1, designs), np.nan)
+    table[nth, row] = x
+    return table
+
+
+def about_breaks(group: Group) -> Paths:
+    """A window about every break of each of these designs, wide enough to reach other samples on both sides."""
+    breaks = _breaks(group)
+    row = np.repeat(np.arange(len(breaks)), breaks.shape[1])
+    x = breaks.reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE])
     before, after = _neighbours(x, 2.0 * BESIDE[-1] + 1.0)
     return Paths(row, x, before, after, x, ends="pass")
 
@@ -132,10 +171,7 @@ def about_jumps(group: Group) -> Paths:
 
 def arcs(group: Group) -> Paths:
     """The one or two arcs on which each of these designs can be assembled; not those on which nothing is ok."""
-    first, last = (
-        np.stack([group.number(limit.isel(arc=k)) for k in range(limit.sizes["arc"])], axis=1)
-        for limit in limits(group.scene)
-    )
+    first, last = limits(group)
     row, which = np.nonzero(np.isfinite(first))
     middle, half = 0.5 * (first + last)[row, which], 0.5 * (last - first)[row, which]
     x, cuts = _arc_samples(group.some(row), middle, half)
@@ -147,21 +183,29 @@ def arcs(group: Group) -> Paths:
 
 
 def _ok_somewhere(group: Group, paths: Paths) -> Array:
-    every = np.repeat(np.arange(len(paths.row)), paths.x.shape[1])
-    (status,) = group.values(("status",), paths.row[every], paths.angles(every, paths.x.ravel()))
-    return (status.reshape(paths.x.shape) == 0.0).any(axis=1)
+    """Whether some sample of each path is ok: most are at the first few that are looked at."""
+    ok = np.zeros(len(paths.row), dtype=bool)
+    for some in (paths.x[:, 8::64], paths.x):
+        path = np.repeat(np.flatnonzero(~ok), some.shape[1])
+        (status,) = group.values(("status",), paths.row[path], paths.angles(path, some[~ok].ravel()))
+        ok[~ok] = (status.reshape(-1, some.shape[1]) == 0.0).any(axis=1)
+        if ok.all():
+            break
+    return ok
 
 
 def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array]:
     """Samples and cuts in x of arcs, one for each of the group's designs: even ones, and more towards both ends, about
-    the pinches that the arc passes, and beside jumps."""
+    the pinches that the arc passes, and beside breaks."""
     even = (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
-    pinched, sides = (_on_arc(angles, middle, half) for angles in (_pinched(group), jump_sides(group)))
+    given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
+    pinched, sides, jumps = (_on_arc(angles, middle, half) for angles in given)
     x = np.sort(np.concatenate([shared, pinched, sides], axis=1), axis=1)
-    cuts = np.concatenate([shared[:, ::8], pinched[:, ::2], sides, shared[:, :1] * 0.0 + [-QUARTER, QUARTER]], axis=1)
-    return x, np.sort(cuts, axis=1)
+    # none near the ends: what has a mean is smooth there, and rounding spoils what lies nearer
+    shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
+    return x, np.sort(np.concatenate([shared, pinched[:, ::2], jumps], axis=1), axis=1)
 
 
 def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
@@ -182,12 +226,10 @@ def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
     return np.clip(0.01 * np.sqrt(2.0 * away / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
 
 
-def limits(scene: Scene) -> tuple[xr.DataArray, ...]:
-    """Start and end of the arcs [degree] over the dims of the lengths and `arc`; none for a machine without arcs."""
-    for findings, numbers in scene.mechanism.findings():
-        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in numbers))
-        found = findings(*(array.values for array in arrays))
+def limits(group: Group) -> tuple[Array, ...]:
+    """Starts and ends (design, arc) of the arcs of each of these designs [degree]; none for a machine without arcs."""
+    for findings, numbers in group.scene.mechanism.findings():
+        found = findings(*map(group.number, numbers))
         if "arc_start" in found:
-            dims = (*arrays[0].dims, "arc")
-            return tuple(xr.DataArray(found[name].values, dims=dims) for name in ("arc_start", "arc_end"))
+            return found["arc_start"].values, found["arc_end"].values
     return ()

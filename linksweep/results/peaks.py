@@ -12,8 +12,8 @@ from linksweep.engine.fuse import Reduction
 from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, Grid, reduce_rows
-from linksweep.mechanisms.validate import count_problems, name_problems, refuse
-from linksweep.results.compute import compute, only_where, requested, require_scene, surely_ok
+from linksweep.mechanisms.validate import count_problems, refuse
+from linksweep.results.compute import compute, only_where, quantity_problems, requested, require_scene, surely_ok
 from linksweep.results.exact import Found, exact_peaks, peaks_where
 from linksweep.results.lazy import by_blocks
 from linksweep.results.quadrature import Power, means
@@ -56,7 +56,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, thr
     -------
     Dataset over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity
     `T12_max`, `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution
-    (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak is inf).
+    (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:
         stem, _, ending = name.rpartition("_")
         stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
         if stem not in quantities or stem == "cond":
-            problems += name_problems("of", name, [known for known in quantities if known != "cond"])
+            problems += quantity_problems("of", name, [known for known in quantities if known != "cond"], scene)
         else:
             found.append(_takes(quantities[stem], ending))
     refuse(problems)
@@ -173,11 +173,11 @@ def _angles_missing(scene: Scene) -> list[str]:
 def _status(
     scene: Scene, sampled: Scene, grid: Grid, found: dict[str, Found], averages: Averages, threads: int | None
 ) -> xr.Variable:
-    """The assembly's 0, 1 or 2; 1 also where some sample is not ok, and 3 where a peak is without bound.
+    """The assembly's 0, 1 or 2; 1 also where some sample is not ok, and 3 where a peak or a mean is without bound.
 
     Where no sample is ok, there are no peaks either: they are made NaN.
     """
-    order, at_one = tuple(sampled.inputs.sizes), crank_grid([0.0], scene.period, scene.mechanism.index)
+    order, at_one = tuple(sampled.inputs.sizes), crank_grid(1, scene.period, scene.mechanism.index)
     assembly = compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
@@ -185,10 +185,10 @@ def _status(
         status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
         # on an arc a sample more or less decides nothing: it has been looked at more closely
         _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), found, averages)
-    for peak in found.values():
-        infinite = np.isinf(peak.value.values)
+    for dims, values in (*(peak.value for peak in found.values()), *averages.values()):
+        infinite = np.isinf(values)
         if infinite.any():
-            there = variable(Field(peak.value.dims, infinite), "1", "", order)
+            there = variable(Field(dims, infinite), "1", "", order)
             status = xr.where(there, float(UNBOUNDED), status)
     dims = tuple(dim for dim in order if dim in status.dims)
     return status.transpose(*dims).astype(np.int8)

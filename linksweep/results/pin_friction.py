@@ -4,7 +4,8 @@ A pin of radius r, loaded by F, resists with the moment μ·r·F against its rot
 opposite, on the bearing's link i. The force thus passes the pin's centre at the distance μ·r (friction circle). F
 depends on these moments in turn: they are computed from the forces, and the forces with them, until nothing changes.
 
-Source: H. H. Mabie and C. F. Reinholtz, Mechanisms and Dynamics of Machinery, 4th ed. (friction circle).
+Source: the friction circle of textbooks on the theory of machines, such as R. S. Khurmi and J. K. Gupta, Theory of
+Machines, chapter "Friction".
 """
 
 from __future__ import annotations

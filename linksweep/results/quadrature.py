@@ -25,6 +25,10 @@ TOLERANCE = 1e-12
 """Of a piece, relative to the whole: a revolution has up to a hundred pieces that matter."""
 BURSTING = 1e5
 """A piece that outgrows the first estimate of the whole so far diverges."""
+LAST_DIGIT = 2.0**-44
+"""Of an angle [degree]."""
+POLE = 1e-3
+"""Rules that differ so much, relative to a piece, where all digits of the angle are spent: it has no integral."""
 ROUNDING = 1e-13
 """Of a piece, relative to itself: less cannot be told from the rounding of its samples."""
 
@@ -66,11 +70,15 @@ class Pieces(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """Integrals (row, piece) by both rules, and of the magnitude; rows: a power and its known length, in turn."""
+    """Integrals (row, piece) by both rules, and of the magnitude; rows: a power and its known length, in turn.
+
+    `blur` is what the last digit of the angle makes of an integral: as much as the rows go up and down.
+    """
 
     outer: Array
     inner: Array
     size: Array
+    blur: Array
 
 
 def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
@@ -90,7 +98,8 @@ def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -
 def _put(group: Group, found: dict[Power, Field], paths: Paths, threads: int | None) -> None:
     if not len(paths.row):
         return
-    integrals = _integrals(group, tuple(found), paths, threads)
+    with np.errstate(invalid="ignore"):  # without bound both ways: NaN
+        integrals = _integrals(group, tuple(found), paths, threads)
     for k, field in enumerate(found.values()):
         total, length = _by_owner(integrals[2 * k : 2 * k + 2], paths.row, len(group.designs))
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -105,10 +114,7 @@ def _integrals(group: Group, powers: tuple[Power, ...], paths: Paths, threads: i
     for _ in range(HALVINGS):
         rules = _rules(group, powers, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
-        rest = _disagree(rules, scale[:, pieces.path])
-        bursting = rest & (rules.size > BURSTING * scale[:, pieces.path])
-        rules.outer[bursting] = np.copysign(np.inf, rules.outer[bursting])
-        rest &= ~bursting
+        rest = _burst(rules, _disagree(rules, scale[:, pieces.path]), scale, pieces.path)
         settled = ~rest.any(axis=0)
         done += _by_owner(rules.outer[:, settled], pieces.path[settled], count)
         if settled.all():
@@ -119,18 +125,33 @@ def _integrals(group: Group, powers: tuple[Power, ...], paths: Paths, threads: i
     return done + _by_owner(np.where(rest, np.copysign(np.inf, unsettled), unsettled), owner, count)
 
 
+def _burst(rules: Rules, rest: Array, scale: Array, path: Array) -> Array:
+    """Make infinite what diverges; which pieces are left to halve. Of a path that diverges none is."""
+    size = rules.size / scale[:, path]
+    diverges = _by_owner(rest & (size > BURSTING), path, scale.shape[1]) > 0.0
+    beside = rest & (size > 0.01 * BURSTING) & diverges[:, path]  # a pole has two sides
+    rules.outer[beside] = np.copysign(np.inf, rules.outer[beside])
+    return rest & ~diverges[:, path]
+
+
 def _disagree(rules: Rules, scale: Array) -> Array:
-    """Where the rules differ by more than rounding, and the better one errs by too much, as QUADPACK reckons."""
+    """Where the rules differ by more than rounding, and the better one errs by too much, as QUADPACK reckons.
+
+    What no more digits can better is left, or infinite beside a pole.
+    """
     difference = np.abs(rules.outer - rules.inner)
     above_rounding = difference > ROUNDING * rules.size  # beside a pole a piece may be larger than the rest together
-    difference = difference / scale
-    return above_rounding & (difference > TOLERANCE) & ((200.0 * difference) ** 1.5 > TOLERANCE)
+    share = difference / scale
+    rest = above_rounding & (share > TOLERANCE) & ((200.0 * share) ** 1.5 > TOLERANCE)
+    blurred = rest & (difference <= rules.blur)
+    poles = blurred & (difference > POLE * rules.size)
+    rules.outer[poles] = np.copysign(np.inf, rules.outer[poles])
+    return rest & ~blurred
 
 
 def _by_owner(rows: Array, owner: Array, count: int) -> Array:
     """Sums (row, owner) of what belongs to each of so many owners."""
-    with np.errstate(invalid="ignore"):  # without bound both ways: NaN
-        return np.stack([np.bincount(owner, row, count) for row in rows])
+    return np.stack([np.bincount(owner, row, count) for row in rows])
 
 
 def _first_pieces(paths: Paths) -> Pieces:
@@ -145,13 +166,16 @@ def _rules(group: Group, powers: tuple[Power, ...], paths: Paths, pieces: Pieces
     path = np.repeat(pieces.path, len(POINTS))
     names = tuple(dict.fromkeys(name for name, _ in powers))
     values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x), threads), strict=True))
-    stretch, rows = paths.stretch(path, x), []
+    rows = []
     for name, power in powers:
         known = np.isfinite(values[name])
-        rows += [np.where(known, values[name], 0.0) ** power * stretch, known * stretch]
-    samples = np.stack(rows).reshape(len(rows), len(half), len(POINTS)) * half[:, None]
+        rows += [np.where(known, values[name], 0.0) ** power, known]
+    heights = np.stack(rows).reshape(len(rows), len(half), len(POINTS))
+    blur = LAST_DIGIT * np.abs(np.diff(heights, axis=-1)).sum(axis=-1)
+    samples = heights * paths.stretch(path, x).reshape(-1, len(POINTS)) * half[:, None]
     # no matrix products: how they sum, and so the last bit, depends on how many pieces there are
-    return Rules(*((part * weights).sum(axis=-1) for part, weights in _weighted(samples)))
+    outer, inner, size = ((part * weights).sum(axis=-1) for part, weights in _weighted(samples))
+    return Rules(outer, inner, size, blur)
 
 
 def _weighted(samples: Array) -> tuple[tuple[Array, Array], ...]:

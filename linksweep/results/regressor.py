@@ -7,7 +7,7 @@ that pin, every force and torque at given angles and speeds is
 
 since `linksweep.physics.inertia` is linear in them. The coefficients come from sweeps of links with one of them alone.
 
-Source: W. Khalil and E. Dombre, Modeling, Identification and Control of Robots, chapter 12 (minimal inertial
+Source: W. Khalil and E. Dombre, Modeling, Identification and Control of Robots (identification of the dynamic
 parameters), for linkages.
 """
 
@@ -23,9 +23,9 @@ import xarray as xr
 from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.links import Bar, Disk, Link
-from linksweep.mechanisms.validate import Number, name_problems, refuse
+from linksweep.mechanisms.validate import Number, refuse
 from linksweep.results.bearings import joined
-from linksweep.results.compute import requested, require_scene
+from linksweep.results.compute import quantity_problems, requested, require_scene
 from linksweep.results.record import provenance
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
@@ -104,7 +104,7 @@ def _checked(scene: Scene, outputs: Iterable[str]) -> list[str]:
     refuse([f"scene is of a {type(mechanism).__name__}: {kind}"] if isinstance(mechanism, LoopTrack) else [])
     names = requested("outputs", outputs)
     linear = [name for name, q in quantity.items() if q.units in LINEAR_UNITS and not q.squared]
-    refuse([problem for name in names for problem in name_problems("outputs", name, linear)])
+    refuse([problem for name in names for problem in quantity_problems("outputs", name, linear, scene)])
     rubs = np.any(getattr(mechanism, "friction", 0.0))
     refuse(["friction is not 0: forces are not linear in the masses then; make it 0"] if rubs else [])
     return names

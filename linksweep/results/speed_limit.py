@@ -17,11 +17,11 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
-from linksweep.mechanisms.validate import Rule, name_problems, number_problems, refuse
+from linksweep.mechanisms.validate import Rule, number_problems, refuse
 from linksweep.results.between import quantities_at
 from linksweep.results.breakdown import forces_of, has_friction
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import requested, require_scene
+from linksweep.results.compute import quantity_problems, requested, require_scene
 from linksweep.results.peaks import peaks
 from linksweep.results.record import design_coordinates
 from linksweep.results.sweep import sweep
@@ -74,7 +74,7 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, theta2
     known = [name for name in forces_of(scene) if not scene.table.quantity[name].squared]
     unknowns = scene.mechanism.unknowns(scene.drive)
     names = tuple(name for name in known if name in unknowns) if of is None else tuple(requested("of", of))
-    refuse([problem for name in names for problem in name_problems("of", name, known)])
+    refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
@@ -126,7 +126,7 @@ def speed_limit(scene: Scene, of: str, below: float) -> xr.Dataset:
     (name,) = requested("of", of)[:1] or [""]
     refuse(_problems(scene))
     refuse(_branch_problems(scene))
-    refuse([*name_problems("of", name, forces_of(scene)), *number_problems("below", below, LIMIT)])
+    refuse([*quantity_problems("of", name, forces_of(scene), scene), *number_problems("below", below, LIMIT)])
     parts = (f"{name}x", f"{name}y") if scene.table.quantity[name].squared else (name,)
     unit_speed = replace(scene, omega2=_one_each(scene))
     squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import choice_problems, count_problems, name_problems, refuse
-from linksweep.results.compute import blank, compute, requested, require_scene, sample_status
+from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
+from linksweep.results.compute import blank, compute, quantity_problems, requested, require_scene, sample_status
 from linksweep.results.lazy import by_blocks
 from linksweep.results.record import described
 from linksweep.results.system import dense_solution
@@ -87,7 +87,7 @@ def _names(scene: Scene, names: list[str] | None) -> tuple[str, ...]:
     if names is None:
         return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
     known = [*scene.table.quantity, "status"]
-    refuse([problem for name in names for problem in name_problems("outputs", name, known)])
+    refuse([problem for name in names for problem in quantity_problems("outputs", name, known, scene)])
     return tuple(name for name in names if name != "status")
 
 

@@ -42,6 +42,11 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
       drive="cylinder" cylinder_force stands on block and rocker in place of a torque. The loop: document 3's 2×2,
       example 17-4.
 
+    Raises
+    ------
+    ValueError
+        For what is no Scene, and for angles that are none.
+
     Examples
     --------
     >>> import linksweep as ls

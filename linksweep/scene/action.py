@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
 
 from linksweep.engine.run import Grid
@@ -67,6 +67,16 @@ def with_values(owner: Owner, **values: Any) -> Owner:
     """The same dataclass with these values; itself where it has them already."""
     other = {name: value for name, value in values.items() if not _same(getattr(owner, name), value)}
     return replace(owner, **other) if other else owner  # type: ignore[type-var]
+
+
+def with_sound(owner: Owner, **values: Any) -> Owner:
+    """The same with values made of its own, which need no judging."""
+    if all(_same(getattr(owner, name), value) for name, value in values.items()):
+        return owner
+    made = object.__new__(type(owner))
+    for item in fields(owner):  # type: ignore[arg-type]
+        object.__setattr__(made, item.name, values.get(item.name, getattr(owner, item.name)))
+    return made
 
 
 def _same(old: Any, new: Any) -> bool:

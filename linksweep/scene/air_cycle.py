@@ -14,7 +14,7 @@ sample at that very angle has the value after the jump.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,18 +22,12 @@ import xarray as xr
 from linksweep.mechanisms import SliderCrank
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.slider_crank import BRANCH_SIGN
+from linksweep.mechanisms.motion import BRANCH_SIGN
 from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, said
+from linksweep.scene.dimensions import dims_of
+from linksweep.scene.paths import along, bare, numbers
 
 ATMOSPHERE = 101325.0
-
-
-class Phase(NamedTuple):
-    """A cylinder at crank angles: degrees turned since it fired, at its next bottom dead centre, and x/stroke."""
-
-    turned: Number
-    bottom: Number
-    opened: Number
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +73,12 @@ class OttoCycle(ByContent):
 
     def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
         """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
-        return _pressure(self, self.peak_pressure, 1.0, phase(engine, theta2, turning, self.period))
+        return _labelled(self, engine, theta2, turning)
+
+    @property
+    def combustion(self) -> tuple[Number, Number]:
+        """Pressure after it [Pa], and how far it lasts: volume over the least."""
+        return self.peak_pressure, 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,36 +124,61 @@ class DieselCycle(ByContent):
 
     def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
         """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
-        peak = _compressed(self) if self.peak_pressure is None else self.peak_pressure
-        return _pressure(self, peak, self.cutoff_ratio, phase(engine, theta2, turning, self.period))
+        return _labelled(self, engine, theta2, turning)
+
+    @property
+    def combustion(self) -> tuple[Number, Number]:
+        """Pressure during it [Pa], and how far it lasts: volume over the least."""
+        return _compressed(self) if self.peak_pressure is None else self.peak_pressure, self.cutoff_ratio
 
 
 Cycle = OttoCycle | DieselCycle
 
 
-def phase(engine: SliderCrank, theta2, turning: Number, period: float) -> Phase:
-    """Where a cylinder is in its cycle; NaN for designs whose crank does not turn fully."""
-    angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
-    theta2 = xr.DataArray(angles, {"theta2": angles}, "theta2")
+def pressure_over(cycle: Cycle, engine: SliderCrank, angles: np.ndarray, turning: Number) -> xr.Variable:
+    """Pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
+
+    NaN for designs whose crank does not turn fully. The module's equations.
+    """
+    lengths = engine.slide_angle, engine.offset, engine.crank.length, engine.rod.length
+    given = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
+    dims = (*(dim for dim in dims_of((turning, *lengths, *given)) if dim != "theta2"), "theta2")
+    cycle, engine, turning = along(cycle, dims), along(engine, dims), along(turning, dims)
+    (peak, cutoff), (top, bottom) = cycle.combustion, engine.dead_centres()
+    opened = np.where(engine.turns_fully, _opened(engine, angles), np.nan)
+    turned, bottom = np.mod(turning * (angles - top), cycle.period), np.mod(turning * (bottom - top), 360.0)
+    volume = 1.0 + (cycle.compression_ratio - 1.0) * opened  # over the least
+    expansion = peak * np.minimum(1.0, cutoff / volume) ** cycle.gamma
+    compression = cycle.intake_pressure * (cycle.compression_ratio / volume) ** cycle.gamma
+    opens = bottom + (360.0 if cycle.strokes == 4 else 0.0)  # from blow-down to here the valves are open
+    later = np.where(turned < opens, cycle.intake_pressure, compression)
+    later = np.where(np.isnan(opened), np.nan, later)
+    return xr.Variable(dims, np.where(turned < bottom, expansion, later))
+
+
+def _opened(engine: SliderCrank, angles: np.ndarray) -> np.ndarray:
+    """The slider's distance from top dead centre over its stroke."""
     a, b, e = engine.crank.length, engine.rod.length, engine.offset
-    sign, (top, bottom) = BRANCH_SIGN[engine.branch], engine.dead_centres()
-    cos, sin = cos_sin(theta2 - engine.slide_angle)
+    sign, (cos, sin) = BRANCH_SIGN[engine.branch], cos_sin(angles - engine.slide_angle)
     with np.errstate(all="ignore"):
         reach, least = np.sqrt((a + b) ** 2 - e**2), np.sqrt((b - a) ** 2 - e**2)
         opened = (reach - sign * a * cos - np.sqrt(b**2 - (e - a * sin) ** 2)) / (reach - least)
-    turned, bottom = np.mod(turning * (theta2 - top), period), np.mod(turning * (bottom - top), 360.0)
-    return Phase(turned, bottom, xr.where(engine.turns_fully, opened.clip(0.0, 1.0), np.nan))
+    return np.clip(opened, 0.0, 1.0)
 
 
-def _pressure(cycle: Cycle, peak: Number, cutoff: Number, at: Phase) -> xr.DataArray:
-    """The module's equations."""
-    volume = 1.0 + (cycle.compression_ratio - 1.0) * at.opened  # over the least
-    expansion = peak * np.minimum(1.0, cutoff / volume) ** cycle.gamma
-    compression = cycle.intake_pressure * (cycle.compression_ratio / volume) ** cycle.gamma
-    opens = at.bottom + (360.0 if cycle.strokes == 4 else 0.0)  # from blow-down to here the valves are open
-    later = xr.where(at.turned < opens, cycle.intake_pressure, compression)
-    later = later.where(at.opened.notnull())
-    return xr.where(at.turned < at.bottom, expansion, later).transpose(..., "theta2")
+def _labelled(cycle: Cycle, engine: SliderCrank, theta2: Any, turning: Number) -> xr.DataArray:
+    """Pressure over crank angles [degree], with all labels."""
+    angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
+    pressure = pressure_over(cycle, engine, angles, turning)
+    arrays = [number for owner in (cycle, engine) for _, number, _ in numbers(owner)] + [turning]
+    labels = {
+        dim: array[dim].variable
+        for array in arrays
+        if isinstance(array, xr.DataArray)
+        for dim in array.dims
+        if dim in array.coords and dim in pressure.dims
+    }
+    return xr.DataArray(pressure, labels | {"theta2": angles})
 
 
 def _compressed(cycle: Cycle) -> Number:

@@ -24,6 +24,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean, name_problems, refuse
+from linksweep.scene.text_file import text_of
 from linksweep.scene.units import accepted_unit, quantity, shown
 
 KEYS = ("csv", "column", "unit")
@@ -86,16 +87,7 @@ def _unit(table: dict[str, Any], kind: str) -> str | None:
 
 def _rows(name: str, folder: Path) -> list[Row]:
     """The lines of the file that hold something, with their numbers."""
-    path = folder / name
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*.csv")])
-        raise ValueError(f"csv: {name}: there is no such file in {folder}{near}; give its place from there") from None
-    except OSError as error:
-        raise ValueError(f"csv: {name}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"csv: {name}: is not a text file in UTF-8; save it as one") from None
+    text = text_of(folder / name, f"csv: {name}", ".csv", f" in {folder}", "; give its place from there")
     header = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(",;\t", key=header.count)
     reader = csv.reader(text.splitlines(), delimiter=delimiter)

@@ -2,14 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
 TABLES = ("status", "arc", "toggle", "equation", "unknown")
 """What results of `sweep`, `check` and `system` bring with them, besides the quantities."""
 
 Arrays = dict[str, xr.DataArray]  # by the path of the parameter that each is
+
+
+def side_by_side(numbers: Iterable[Any]) -> tuple[tuple[str, ...], list[np.ndarray]]:
+    """Numbers as arrays of one shape over all of their dims, in the order in which these are named."""
+    numbers = list(numbers)
+    dims = dims_of(numbers)
+    return dims, list(np.broadcast_arrays(*(np.asarray(laid(number, dims), dtype=float) for number in numbers)))
+
+
+def dims_of(numbers: Iterable[Any]) -> tuple[str, ...]:
+    """The dims of some numbers, in the order in which these are named."""
+    return tuple(dict.fromkeys(str(dim) for number in numbers for dim in getattr(number, "dims", ())))
+
+
+def laid(number: Any, dims: tuple[str, ...]) -> Any:
+    """A number as an array with an axis for each of these dims, of length one where it has none; a float stays one."""
+    if not hasattr(number, "dims"):
+        return number
+    sizes = dict(zip(number.dims, number.values.shape, strict=True))
+    ordered = number.values.transpose([number.dims.index(dim) for dim in dims if dim in sizes])
+    return ordered.reshape([sizes.get(dim, 1) for dim in dims])
 
 
 def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) -> list[str]:

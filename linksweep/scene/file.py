@@ -53,7 +53,7 @@ import xarray as xr
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.mechanisms.spring_forms import GROUND
-from linksweep.mechanisms.validate import choice_problems, did_you_mean
+from linksweep.mechanisms.validate import choice_problems
 from linksweep.scene.actions import ACTIONS
 from linksweep.scene.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.axis import design_axis
@@ -63,6 +63,7 @@ from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
 from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
+from linksweep.scene.text_file import text_of
 from linksweep.scene.units import KINDS, quantity, shown
 
 
@@ -233,19 +234,12 @@ def read_scene(path: str | Path) -> Scene:
 
     Examples
     --------
-    >>> scene = read_scene("press.toml")  # doctest: +SKIP
+    >>> from importlib.resources import files
+    >>> read_scene(files("linksweep.scene.examples") / "press.toml").drive
+    'crank'
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        near = did_you_mean(path.name, [file.name for file in path.parent.glob("*.toml")])
-        raise ValueError(f"{path}: there is no such file{near}") from None
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: is not a text file in UTF-8; save it as one") from None
-    return parse_scene(text, str(path))
+    return parse_scene(text_of(path, str(path), ".toml"), str(path))
 
 
 def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArray] | None = None) -> Scene:

@@ -11,10 +11,10 @@ import numpy as np
 
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
-from linksweep.mechanisms.slider_crank import BRANCH_SIGN
+from linksweep.mechanisms.motion import BRANCH_SIGN
 from linksweep.mechanisms.validate import Number, Rule, is_lazy, parameter, problems
-from linksweep.scene.action import Action, Revolution, with_values
-from linksweep.scene.air_cycle import ATMOSPHERE, Cycle
+from linksweep.scene.action import Action, Revolution, with_sound
+from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, pressure_over
 
 PRESSURE = Rule("pressure", over_angle=True)
 
@@ -95,9 +95,9 @@ class GasPressure(Action):
         crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE)
         if self.cycle is None:
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
-            return with_values(self, pressure=pressure, crankcase=crankcase)
+            return with_sound(self, pressure=pressure, crankcase=crankcase)
         brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
-        pressure = self.cycle.pressure(engine, revolution.grid.angles, _turning(revolution.omega2))
+        pressure = pressure_over(self.cycle, engine, revolution.grid.angles, _turning(revolution.omega2))
         object.__setattr__(brought, "in_cylinder", pressure)
         return brought
 

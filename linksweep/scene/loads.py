@@ -34,7 +34,7 @@ class Load(Action):
     point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline (scipy's
     CubicSpline, bc_type="periodic") at angles that it does not hold, and reproduced exactly at those that it holds. Its
     period is 360 degrees, or 720 where its angles span more (four-stroke engines): then theta2 of the whole scene runs
-    to 720, and what has a period of 360 repeats. Values are checked by the scene that takes the load.
+    to 720, and what has a period of 360 repeats. Values are checked by the scene that takes the load: ValueError there.
 
     Examples
     --------

@@ -97,20 +97,22 @@ def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
 def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.DataArray:
     from scipy.interpolate import CubicSpline
 
-    value = value.sortby("theta2").transpose("theta2", ...)
-    known, values = value["theta2"].values.astype(float), value.values
+    order = np.argsort(value["theta2"].values, kind="stable")
+    known = value["theta2"].values[order].astype(float)
+    values = np.moveaxis(value.values, value.dims.index("theta2"), 0)[order]
     span, period = known[-1] - known[0], period_of(value, period)
     knots, at_knots = known, values
     if span < period:
         knots, at_knots = np.append(known, known[0] + period), np.concatenate([values, values[:1]])
     refuse(_period_problems(path, known, knots, at_knots, period))
     spline = CubicSpline(knots, at_knots, bc_type="periodic")
-    found = value.isel(theta2=0, drop=True).expand_dims(theta2=grid.angles)
-    found = found.copy(data=spline(known[0] + np.mod(grid.angles - known[0], period)))
-    place = {angle: k for k, angle in enumerate(np.mod(known, period))}
-    held = np.array([place.get(angle, -1) for angle in np.mod(grid.angles, period)])
-    found.values[held >= 0] = values[held[held >= 0]]
-    return found
+    found = spline(known[0] + np.mod(grid.angles - known[0], period))
+    place = {angle: k for k, angle in enumerate(np.mod(known, period).tolist())}
+    held = np.array([place.get(angle, -1) for angle in np.mod(grid.angles, period).tolist()])
+    found[held >= 0] = values[held[held >= 0]]
+    others = [dim for dim in value.dims if dim != "theta2"]
+    labels = {dim: value[dim].variable for dim in others if dim in value.coords}
+    return xr.DataArray(found, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=value.attrs)
 
 
 def _period_problems(path: str, known: np.ndarray, knots: np.ndarray, at_knots: np.ndarray, period: float) -> list[str]:

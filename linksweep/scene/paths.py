@@ -5,11 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from linksweep.scene.action import Owner, with_values
+from linksweep.mechanisms.validate import is_array
+from linksweep.scene.action import Owner, with_sound, with_values
+from linksweep.scene.dimensions import laid
 
 PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
 """Kinds of the numbers that come in pairs."""
@@ -46,6 +48,24 @@ def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner
     parts = {item.name: getattr(owner, item.name) for item in fields(owner)}  # type: ignore[arg-type]
     below = {name: prefix if name == "mechanism" else prefix + name for name in parts}
     return with_values(owner, **{name: _replaced(part, below[name], values) for name, part in parts.items()})
+
+
+def bare(value: Any) -> Any:
+    """A number, or a part of a scene, without labels: its arrays as xarray's Variables, far quicker to reckon with."""
+    return _with_arrays(value, lambda array: array.variable)
+
+
+def along(value: Any, dims: tuple[str, ...]) -> Any:
+    """The same with an axis for each of these dims, by numpy; arrays that have others stay as they are."""
+    return _with_arrays(value, lambda array: laid(array, dims) if {*array.dims} <= {*dims} else array)
+
+
+def _with_arrays(value: Any, made: Callable[[Any], Any]) -> Any:
+    if _has_parts(value):
+        return with_sound(value, **{item.name: _with_arrays(getattr(value, item.name), made) for item in fields(value)})
+    if isinstance(value, tuple | list):
+        return tuple(_with_arrays(item, made) for item in value)
+    return made(value) if is_array(value) else value
 
 
 def _replaced(value: Any, path: str, values: Mapping[str, Any]) -> Any:

@@ -14,7 +14,7 @@ from linksweep.engine.plan import InputForms
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
-from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.content import ByContent, content
 from linksweep.mechanisms.motion import OverDesigns
 from linksweep.mechanisms.validate import (
     UNITS,
@@ -29,12 +29,12 @@ from linksweep.mechanisms.validate import (
     refuse,
     said,
 )
-from linksweep.scene.action import Action, Revolution, with_values
-from linksweep.scene.dimensions import dimension_problems
+from linksweep.scene.action import Action, Revolution, with_sound
+from linksweep.scene.dimensions import dimension_problems, side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.over_angle import at_angles, period_of, period_of_function
-from linksweep.scene.paths import numbers
+from linksweep.scene.paths import bare, numbers
 from linksweep.scene.units import unit_problems
 
 ACCELERATION = Rule("acceleration")
@@ -204,27 +204,35 @@ class Scene(ByContent):
         """Crank angles [degree] at which forces jump: friction where a slider turns round, pressure at dead centres,
         a torsion spring at 180."""
         with np.errstate(invalid="ignore"):  # designs that do not turn fully may have none: NaN
-            return (*self.mechanism.jumps(), *(angle for load in self.loads for angle in load.jumps(self.mechanism)))
+            of_loads = (angle for load in self.loads for angle in load.jumps(self.mechanism))
+            every = (*self.mechanism.jumps(), *of_loads)
+        return tuple({content(angle): angle for angle in every}.values())  # friction and gas share dead centres
 
     @cached_property
     def at_one_angle(self) -> Scene:
         """The scene at one angle, for what does not depend on it; the scene itself where nothing changes with it."""
-        return self.at(crank_grid([0.0], self.period, self.mechanism.index))
+        return self.at(crank_grid(1, self.period, self.mechanism.index))
 
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""
         omega2 = self._sampled("omega2", grid)
         revolution = Revolution(self.mechanism, grid, omega2)
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
-        return with_values(self, omega2=omega2, alpha2=self._sampled("alpha2", grid), loads=loads)
+        return with_sound(self, omega2=omega2, alpha2=self._sampled("alpha2", grid), loads=loads)
 
     def _sampled(self, word: str, grid: Grid) -> Number:
         return at_angles(word, getattr(self, word), _rule(word), grid, self.mechanism.period)
 
     @cached_property
+    def bare(self) -> Scene:
+        """The same scene without labels, which have been compared, but for its loads."""
+        parts = ("mechanism", "omega2", "alpha2", "gravity", "speed", "thrust")
+        return with_sound(self, **{part: bare(getattr(self, part)) for part in parts})
+
+    @cached_property
     def inputs(self) -> Inputs:
         """The scene as the engine takes it; what changes over the revolution must have been brought `at` a grid."""
-        named = self._named_values()
+        named = self.bare._named_values()
         fields = {name: _field(value) for name, value in named.items()}
         grid_rows = tuple((name, (self.mechanism.index,)) for name in GRID_ROWS)
         forms = (*((name, _form(field)) for name, field in fields.items()), *grid_rows)
@@ -261,9 +269,9 @@ def over_designs(functions: OverDesigns) -> dict[str, Any]:
     """What functions of numbers return, with the dims of their numbers."""
     found: dict[str, Any] = {}
     for function, given in functions:
-        arrays = xr.broadcast(*(xr.DataArray(number).astype(float) for number in given))
-        returned: Mapping[str, Any] = function(*(array.values for array in arrays))
-        found |= {name: xr.DataArray(values, dims=arrays[0].dims) for name, values in returned.items()}
+        dims, arrays = side_by_side(given)
+        returned: Mapping[str, Any] = function(*arrays)
+        found |= {name: Field(dims, values) for name, values in returned.items()}
     return found
 
 
@@ -278,7 +286,7 @@ def _rule(word: str) -> Rule:
 def _field(value: Any) -> Field:
     if isinstance(value, Field):
         return value
-    if isinstance(value, xr.DataArray):
+    if hasattr(value, "dims"):
         return Field(tuple(map(str, value.dims)), np.asarray(value.values, dtype=float))
     return Field((), np.asarray(float(value)))
 

@@ -36,7 +36,7 @@ class Normal:
     deviation : standard deviation, likewise
     within : at most so many deviations from the mean; what lies beyond is not drawn. None beyond by default
 
-    Values are checked by the `sample` that takes it.
+    Values are checked by the `sample` that takes it: ValueError there.
 
     Examples
     --------
@@ -71,6 +71,8 @@ class Tolerance:
     Parameters
     ----------
     lower, upper : limit deviations from the scene's own value, in the parameter's unit, or text with a unit
+
+    Values are checked by the `sample` that takes it: ValueError there.
 
     Examples
     --------

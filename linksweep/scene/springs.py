@@ -47,8 +47,8 @@ class Spring(_Line):
     free_length : its length without force [m]; a longer one pulls, a shorter one pushes
 
     Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load checks it, and can then
-    be asked for loadk_length, loadk_tension and loadk_power. With its ends in one point a spring has no direction: its
-    force is 0 there.
+    be asked for loadk_length, loadk_tension and loadk_power. What is wrong with it is a ValueError of that scene. With
+    its ends in one point a spring has no direction: its force is 0 there.
 
     Examples
     --------
@@ -78,7 +78,8 @@ class Damper(_Line):
     coefficient : [N s/m]
 
     Numbers may be DataArrays of design dims. The scene that takes the damper as its k-th load can be asked for
-    loadk_length, loadk_tension and loadk_power. With its ends in one point its force is 0.
+    loadk_length, loadk_tension and loadk_power. With its ends in one point its force is 0. What is wrong with it is a
+    ValueError of that scene.
 
     Examples
     --------
@@ -126,7 +127,7 @@ class TorsionSpring(_Turning):
     looks at both sides of the jump of a spring between crank and ground, of others only at the samples.
 
     Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load can be asked for
-    loadk_twist [degree], loadk_to_torque and loadk_power.
+    loadk_twist [degree], loadk_to_torque and loadk_power. What is wrong with it is a ValueError of that scene.
 
     Examples
     --------
@@ -161,7 +162,8 @@ class TorsionDamper(_Turning):
     from_, to : two links by name; one may be "ground"
     coefficient : [N m s/rad], DataArray of design dims allowed
 
-    The scene that takes it as its k-th load can be asked for loadk_to_torque and loadk_power.
+    The scene that takes it as its k-th load can be asked for loadk_to_torque and loadk_power. What is wrong with it is
+    a ValueError of that scene.
 
     Examples
     --------
