@@ -11,13 +11,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from . import exact, latency, mechanisms, missed, peaks, skipping, threads, unknowns
+from . import exact, grids, growth, latency, mechanisms, missed, peaks, plots, skipping, solves, threads, unknowns
 from .cases import FULL, QUICK, Size
 from .report import Groups, as_json, machine, markdown
 from .timing import Row, can_pin, one_core
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
-AGREEMENT = 1e-10
 
 
 class Group(NamedTuple):
@@ -29,6 +28,8 @@ class Group(NamedTuple):
 
 
 GROUPS = {
+    "solves": Group("Run time against error: unknowns of one design, {angles:,} angles, one core", solves.rows),
+    "grids": Group("Run time against error: peaks of {population:,} random crank-rockers, one core", grids.rows),
     "unknowns": Group("All nine unknowns, {angles:,} angles, one core", unknowns.rows),
     "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
     "exact": Group("Exact peaks of many designs, one core", exact.rows),
@@ -38,6 +39,7 @@ GROUPS = {
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
     "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),
     "threads": Group("Two threads against one", threads.rows, one_core=False),
+    "growth": Group("How cost grows, in fresh processes", growth.rows, one_core=False),
 }
 
 
@@ -51,6 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         rows = measured(name, size)
         groups[title] = [replace(row, goal=None) for row in rows] if options.quick else rows
         print(markdown({title: groups[title]}), end="\n\n", flush=True)
+        if options.write:
+            plots.draw(name, groups[title], RESULTS.parent)
     print(_footer(size))
     if options.json:
         options.json.write_text(json.dumps(as_json(groups), indent=1) + "\n")
@@ -66,7 +70,7 @@ def measured(name: str, size: Size) -> list[Row]:
 
 
 def _disagree(groups: Groups) -> bool:
-    return any(row.error is not None and not row.error <= AGREEMENT for rows in groups.values() for row in rows)
+    return any(not row.agrees for rows in groups.values() for row in rows)
 
 
 def _results(groups: Groups, size: Size) -> str:
@@ -88,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--quick", action="store_true", help="tiny sizes, once: to see that all works, not how fast")
     parser.add_argument("--only", action="append", choices=GROUPS, help="this group; may be given more than once")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write the rows and the machine to FILE")
-    parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/RESULTS.md")
+    parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/RESULTS.md, and draw")
     return parser
 
 

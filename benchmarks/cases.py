@@ -34,20 +34,45 @@ ALL = (*LENGTHS, *MASSES, "s", "p", "u", "delta2", "delta3", "delta4", "omega2",
 
 @dataclass(frozen=True)
 class Size:
-    """How much of everything: angles of one long sweep, of one turn, designs, and how often to time."""
+    """How much of everything: angles of one long sweep, of one turn, designs, and how often to time; how many angles
+    and random designs are judged in 50 digits; how far growth is followed, and for how many requests."""
 
     angles: int = 72_000
     turn: int = 720
     designs: int = 1000
     batch: int = 100
-    machines: int = 250_000
+    machines: int = 200_000
     rounds: int = 15
     burst: float = 0.03
     processes: int = 5
+    judged: int = 180
+    population: int = 1000
+    largest_angles: int = 10_000_000
+    largest_designs: int = 1_000_000
+    requests: int = 4
 
 
 FULL = Size()
-QUICK = Size(angles=200, turn=72, designs=6, batch=3, machines=20, rounds=1, burst=0.0, processes=1)
+QUICK = Size(
+    angles=200,
+    turn=72,
+    designs=6,
+    batch=3,
+    machines=20,
+    rounds=1,
+    burst=0.0,
+    processes=1,
+    judged=6,
+    population=4,
+    largest_angles=100,
+    largest_designs=1,
+    requests=1,
+)
+
+
+def few(size: Size) -> Size:
+    """For many rivals: fewer rounds."""
+    return replace(size, rounds=min(size.rounds, 5))
 
 
 def batch(n_designs: int, *names: str) -> Design:

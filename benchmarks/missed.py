@@ -2,7 +2,8 @@
 
 The samples are the same for all designs of a kind: a dense even grid, and others graded geometrically about both
 pinches, from a radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than
-`ALLOWED`, relative to the peak. Half of the designs come near to a toggle, at margins of 1e-7 to 1e-1 of their lengths.
+`ALLOWED`, relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1
+of their lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
 """
 
 from __future__ import annotations
@@ -90,14 +91,18 @@ def angles(pinch: float) -> Array:
 
 
 def shortfall(found: xr.Dataset, dense: xr.Dataset) -> Array:
-    """By how much the largest samples of each design exceed its peaks, relative to the peaks; 0 where by nothing."""
-    scale = {name: abs(found[f"{name.rsplit('_', 1)[0]}_peak"]) for name in _peaks_of(found)}
-    short = [
-        (1.0 if name.endswith(("_peak", "_max")) else -1.0) * (dense[name] - found[name]) / scale[name]
-        for name in scale
-    ]
-    worst = xr.concat(short, "signal").max("signal").values
-    return np.maximum(np.where(np.isnan(worst), np.inf, worst), 0.0)
+    """By how much the largest samples of each design exceed its peaks, relative to the peaks; 0 where by nothing,
+    infinite where there are samples and no peak."""
+    return np.max([_short(found, dense, name) for name in _peaks_of(found)], axis=0)
+
+
+def _short(found: xr.Dataset, dense: xr.Dataset, name: str) -> Array:
+    sign = -1.0 if name.endswith("_min") else 1.0
+    peak, sample = sign * found[name].values, sign * dense[name].values
+    scale = np.abs(found[f"{name.rsplit('_', 1)[0]}_peak"].values)
+    with np.errstate(invalid="ignore"):
+        short = np.where(sample > peak, (sample - peak) / scale, 0.0)
+    return np.where(np.isnan(peak) & ~np.isnan(sample), np.inf, short)
 
 
 def _peaks_of(found: xr.Dataset) -> list[str]:
@@ -118,6 +123,16 @@ def _four_bar(random: Random, n: int) -> ls.Scene:
     branch = str(random.choice(["open", "crossed"]))
     loads = [ls.Load("coupler", _pair(random, n, 50.0), at=(_number(0.7 * b), 20.0)), ls.Load("rocker", torque=3.0)]
     return _scene(random, n, ls.FourBar(*links, _number(d), branch), loads)
+
+
+def _any_four_bar(random: Random, n: int) -> ls.Scene:
+    """Any lengths that close."""
+    lengths = np.exp(random.uniform(-1.5, 1.5, (4, n)))
+    longest = lengths.max(axis=0)
+    lengths = np.minimum(lengths, 0.98 * (lengths.sum(axis=0) - longest))
+    *links, d = lengths
+    branch = str(random.choice(["open", "crossed"]))
+    return _scene(random, n, ls.FourBar(*(_link(random, length) for length in links), _number(d), branch), [])
 
 
 def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
@@ -181,6 +196,7 @@ def _number(values: Array) -> xr.DataArray:
 
 FAMILIES = {
     "four-bar": Family(_four_bar),
+    "four-bar of any lengths": Family(_any_four_bar),
     "slider-crank": Family(_slider_crank(friction=False), 90.0),
     "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
     "inverted slider-crank": Family(_inverted_slider_crank),

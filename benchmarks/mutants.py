@@ -61,6 +61,7 @@ class Copy:
         command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--tb=no", "-rfE", *options, *left_out]
         # no .pyc: a source planted and restored within a second would be taken for the same
         surroundings = os.environ | {"LINKSWEEP_CACHE_DIR": str(self.folder / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+        surroundings.pop("PYTEST_ADDOPTS", None)  # one after the other: -x is to name the first
         try:
             ran = subprocess.run(
                 [*command, *(f"tests/{name}" for name in tests)],

@@ -7,6 +7,7 @@ Fij is the force of link i on link j. In order: F12x F12y F32x F32y F43x F43y F1
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -62,7 +63,7 @@ def _polar(radius: Number, angle: Array) -> tuple[Array, Array]:
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def _position(q: Design, t2: Array) -> tuple[Array, Array]:
+def position(q: Design, t2: Array) -> tuple[Array, Array]:
     """theta3 and theta4 [rad]; arctan2 instead of document 2's quotient, whose denominators can vanish."""
     cos2, sin2 = np.cos(t2), np.sin(t2)
     k1, k2, k4 = q.d / q.a, q.d / q.c, q.d / q.b
@@ -75,7 +76,7 @@ def _position(q: Design, t2: Array) -> tuple[Array, Array]:
     return t3, t4
 
 
-def _rates(q: Design, t2: Array, t3: Array, t4: Array) -> tuple[Array, Array]:
+def rates(q: Design, t2: Array, t3: Array, t4: Array) -> tuple[Array, Array]:
     """omega3 and omega4 [rad/s]."""
     omega3 = q.a * q.omega2 * np.sin(t4 - t2) / (q.b * np.sin(t3 - t4))
     omega4 = q.a * q.omega2 * np.sin(t2 - t3) / (q.c * np.sin(t4 - t3))
@@ -84,9 +85,9 @@ def _rates(q: Design, t2: Array, t3: Array, t4: Array) -> tuple[Array, Array]:
 
 def _system(q: Design, t2: Array) -> tuple[Array, Array]:
     """Document 2 from theta2 [rad] to the matrix (..., 9, 9) and right-hand side (..., 9)."""
-    t3, t4 = _position(q, t2)
+    t3, t4 = position(q, t2)
     w2, al2 = q.omega2, q.alpha2
-    w3, w4 = _rates(q, t2, t3, t4)
+    w3, w4 = rates(q, t2, t3, t4)
 
     (ax, ay), (bx, by), (cx, cy) = _polar(q.a, t2), _polar(q.b, t3), _polar(q.c, t4)
     C = al2 * ay + w2**2 * ax + w3**2 * bx - w4**2 * cx
@@ -121,7 +122,7 @@ def _system(q: Design, t2: Array) -> tuple[Array, Array]:
 def numpy_rates(design: Design, theta2: Array) -> Array:
     """omega3 and omega4 [rad/s] (2, n) at theta2 [degree]."""
     t2 = np.radians(theta2)
-    return np.stack(_rates(design, t2, *_position(design, t2)))
+    return np.stack(rates(design, t2, *position(design, t2)))
 
 
 def numpy_lapack(design: Design, theta2: Array) -> Array:
@@ -130,15 +131,22 @@ def numpy_lapack(design: Design, theta2: Array) -> Array:
     return np.moveaxis(np.linalg.solve(matrix, rhs[..., None])[..., 0], -1, 0)
 
 
-def numpy_lapack_peaks(designs: Design, n_angles: int, chunk: int = 10) -> tuple[Array, Array]:
+def numpy_peaks(
+    designs: Design, n_angles: int, nine: Callable[[Design, Array], Array], chunk: int = 10
+) -> tuple[Array, Array]:
     """Largest F12, F32, F43, F14, largest and smallest T12 over the grid, and the samples they are at.
 
     Both results are (n_designs, 6). A few designs at a time: all matrices at once would not fit the memory.
     """
     theta2 = grid(n_angles)
     chunks = (designs[i : i + chunk] for i in range(0, len(designs.a), chunk))
-    values, at = zip(*(_grid_peaks(numpy_lapack(part, theta2)) for part in chunks), strict=True)
+    values, at = zip(*(_grid_peaks(nine(part, theta2)) for part in chunks), strict=True)
     return np.concatenate(values), np.concatenate(at)
+
+
+def numpy_lapack_peaks(designs: Design, n_angles: int, chunk: int = 10) -> tuple[Array, Array]:
+    """The same by dense solves."""
+    return numpy_peaks(designs, n_angles, numpy_lapack, chunk)
 
 
 def _grid_peaks(nine: Array) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ from . import limit
 from .timing import FASTER, WALL, Row
 
 HEADER = ("ours", "against", "figure", "goal", "met", "ours takes", "the other takes", "error", "note")
+UNITS = {"s": 1.0, "ms": 1e3, "µs": 1e6, "ns": 1e9}
 Groups = Mapping[str, list[Row]]
 
 
@@ -33,7 +34,12 @@ def _cells(row: Row) -> tuple[str, ...]:
     met = {None: "", True: "yes", False: "no"}[row.met]
     times = (_time(seconds, row.samples) for seconds in (row.seconds, row.against_seconds))
     error = "" if row.error is None else f"{row.error:.0e}"
-    return (row.job, row.against, _figure(row), _goal(row), met, *times, error, row.note)
+    return (row.job, row.against, _figure(row), _goal(row), met, *times, error, _note(row))
+
+
+def _note(row: Row) -> str:
+    figures = (f"{name} {value:.0e}" for name, value in row.figures.items())
+    return "; ".join(filter(None, (row.note, *figures)))
 
 
 def _figure(row: Row) -> str:
@@ -52,12 +58,11 @@ def _goal(row: Row) -> str:
 
 
 def _time(seconds: float | None, samples: int | None = None) -> str:
-    """A time per sample in ns, or a time."""
+    """A time, per sample if there are samples."""
     if seconds is None:
         return ""
-    if samples:
-        return f"{seconds / samples * 1e9:.3g} ns"
-    unit, scale = ("s", 1.0) if seconds >= 1 else ("ms", 1e3)
+    seconds /= samples or 1
+    unit, scale = next((unit, scale) for unit, scale in UNITS.items() if seconds * scale >= 1.0 or unit == "ns")
     return f"{seconds * scale:.3g} {unit}"
 
 

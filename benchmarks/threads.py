@@ -10,28 +10,32 @@ import xarray as xr
 
 import linksweep as ls
 
-from .cases import ALL, GENERAL, NINE, Size, batch, scene
+from .cases import ALL, GENERAL, NINE, Size, batch, few, scene
+from .exact import crank_rockers
 from .kernel import way
 from .timing import FASTER, Call, Row, cores, race
 
 
 def rows(size: Size) -> list[Row]:
     many, one = scene(batch(size.designs, *ALL)), scene(GENERAL)
+    number = 100 * size.designs
+    rockers = crank_rockers(number, 0.0)
     return [
+        _row(f"ls.peaks, exact, {number:,} crank-rockers", partial(ls.peaks, rockers), few(size), goal=1.7),
         _row("ls.peaks", partial(ls.peaks, many, theta2=size.turn), size, size.designs * size.turn),
         _row("ls.sweep, many designs", partial(ls.sweep, many, size.turn, NINE), size, size.designs * size.turn),
         _row("ls.sweep, one design", partial(ls.sweep, one, size.angles, NINE), size, size.angles),
     ]
 
 
-def _row(job: str, call: Call, size: Size, samples: int) -> Row:
+def _row(job: str, call: Call, size: Size, samples: int | None = None, goal: float | None = None) -> Row:
     alone, both = f"{job}, 1 thread", f"{job}, 2 threads"
     if cores() < 2:
-        return Row(both, alone, FASTER, note="not measured: one core only")
+        return Row(both, alone, FASTER, goal=goal, note="not measured: one core only")
     calls = {alone: partial(call, threads=1), both: partial(call, threads=2)}
     with way("compiled"):
         error = _difference(calls[both](), calls[alone]())
-        return race(calls, size, samples, perf_counter).row(FASTER, both, alone, error=error)
+        return race(calls, size, samples, perf_counter).row(FASTER, both, alone, goal, error=error)
 
 
 def _difference(found: xr.Dataset, expected: xr.Dataset) -> float:

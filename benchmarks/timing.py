@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import median
 from time import get_clock_info, perf_counter, thread_time
 
@@ -16,13 +16,19 @@ Clock = Callable[[], float]
 FASTER, SHARE, WALL = "times as fast", "of the time", "s"
 """What a row's figure is: their time over ours, ours over theirs, or ours as it is."""
 
+AGREEMENT = 1e-10
+"""The error up to which rivals agree, unless a row allows more."""
+
 OWN = thread_time if get_clock_info("thread_time").resolution < 1e-6 else perf_counter
 """Time that this thread itself has had: a long call that others interrupt is not made to look slow."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table: a job, its rival, and how they compare. No ratio: not measured, `note` says why."""
+    """One line of the table: a job, its rival, and how they compare. No ratio: not measured, `note` says why.
+
+    `error` is one that is `allowed`, or rivals disagree; `figures` are others, told by their names in the note.
+    """
 
     job: str
     against: str
@@ -34,6 +40,8 @@ class Row:
     goal: float | None = None
     error: float | None = None
     note: str = ""
+    allowed: float = AGREEMENT
+    figures: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def figure(self) -> float | None:
@@ -45,6 +53,10 @@ class Row:
         if self.goal is None or self.figure is None:
             return None
         return self.figure >= self.goal if self.kind == FASTER else self.figure <= self.goal
+
+    @property
+    def agrees(self) -> bool:
+        return self.error is None or self.error <= self.allowed
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,93 @@
+"""python -m benchmarks.stress [--mechanisms N] [--seed S] [--only WORD] [--minutes M] [--write]."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from . import bits, conservative
+from .families import FAMILIES, Family, chunks
+from .judge import verdict
+from .tally import Tally, table
+
+RESULTS = Path(__file__).parents[1] / "STRESS.md"
+AT_ONE_ANGLE = 500
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Judge random mechanisms of every family and print their figures; 1 where a goal is missed."""
+    options = _parser().parse_args(arguments)
+    families = {name: family for name, family in FAMILIES.items() if options.only in name}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        changed = unchanged(families, min(options.mechanisms // len(families), AT_ONE_ANGLE), options.seed)
+        mean = conservative.means(max(min(options.mechanisms // 100, 1000), 50), options.seed)
+        tallies = judged(families, options.mechanisms, options.seed, options.minutes)
+    missed = sum(tallies.values(), Tally()).missed() + [f"another bit by {name}" for name, n in changed.items() if n]
+    page = "\n\n".join(
+        [
+            table(tallies),
+            f"Bits changed: {', '.join(f'{name} {count}' for name, count in changed.items())}.",
+            f"Mean torque of {len(mean):,} conservative machines over a turn: at most {mean.max():.2g} ε of its peak.",
+            "Goals missed: " + ("; ".join(missed) or "none") + ".",
+        ]
+    )
+    print(page)
+    if options.write:
+        RESULTS.write_text(f"{_head(options)}\n\n{page}\n")
+    return int(bool(missed))
+
+
+def judged(families: dict[str, Family], mechanisms: int, seed: int, minutes: float = np.inf) -> dict[str, Tally]:
+    """Tallies of so many designs in all, the families in turn, so that each has its share when time is up."""
+    until = perf_counter() + 60.0 * minutes
+    each = -(-mechanisms // len(families))
+    size = min(AT_ONE_ANGLE, each)
+    tallies = {name: Tally() for name in families}
+    for name, designs in _in_turn(families, each, size, seed):
+        if perf_counter() > until and tallies[name].samples:
+            break
+        tallies[name].add(verdict(designs))
+    return tallies
+
+
+def unchanged(families: dict[str, Family], designs: int, seed: int) -> dict[str, int]:
+    """How many designs of all families have another bit, by what was done to them."""
+    found: dict[str, int] = {}
+    for family in families.values():
+        for what, count in bits.changed(next(chunks(family, designs, designs, [seed]))).items():
+            found[what] = found.get(what, 0) + count
+    return found
+
+
+def _in_turn(families: dict[str, Family], each: int, size: int, seed: int) -> Iterator[tuple]:
+    streams = {name: chunks(family, each, size, [seed]) for name, family in families.items()}
+    for _ in range(0, each, size):
+        for name, stream in streams.items():
+            yield name, next(stream)
+
+
+def _head(options: argparse.Namespace) -> str:
+    limit = f" --minutes {options.minutes:g}" if np.isfinite(options.minutes) else ""
+    command = f"python -m benchmarks.stress --mechanisms {options.mechanisms} --seed {options.seed}{limit} --write"
+    return f"# Stress\n\nWritten by `{command}`; README.md says what each column is."
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.stress", description="Random and hard mechanisms.")
+    parser.add_argument("--mechanisms", type=int, default=22_000, metavar="N", help="in all families together")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="", metavar="WORD", help="families with this word in their name")
+    parser.add_argument("--minutes", type=float, default=np.inf, help="stop after so many")
+    parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/STRESS.md")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

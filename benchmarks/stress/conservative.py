@@ -1,0 +1,48 @@
+"""Machines that no energy leaves: at constant speed, under weight alone, the drive's torque has no mean over a turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import linksweep as ls
+
+from .decimals import Array
+from .designs import Designs
+from .families import Random, decades, four_bar_of, slider_crank_of
+from .judge import EPS
+
+ANGLES = 1440
+"""Samples a turn: the mean over them is that over the turn, to less than rounding, for machines far from toggles."""
+BATCH = 50
+
+
+def means(machines: int, seed: int) -> Array:
+    """|mean torque| of random machines in ε of the largest torque of each."""
+    found = []
+    for k in range(0, machines, BATCH):
+        random = np.random.default_rng([seed, k])
+        for designs in (_crank_rocker(random, BATCH // 2), _engine(random, BATCH // 2)):
+            torque = ls.sweep(designs.scene(), ANGLES, ["T12"]).T12.transpose("design", "theta2").values
+            found.append(np.abs(torque.mean(axis=1)) / np.abs(torque).max(axis=1) / EPS)
+    return np.concatenate(found)
+
+
+def _conservative(designs: Designs) -> Designs:
+    loads = [name for name in designs.numbers if "_force_" in name or name in ("rocker_torque", "slider_push")]
+    return designs.changed(alpha2=np.zeros(len(designs)), **{name: np.zeros(len(designs)) for name in loads})
+
+
+def _crank_rocker(random: Random, n: int) -> Designs:
+    """The crank turns with a margin of a tenth of the lengths and more."""
+    a, d = np.ones(n), 1.0 + decades(random, n, -0.3, 0.5)
+    difference, total = (d - a) * random.uniform(-0.7, 0.7, n), (d + a) * random.uniform(1.2, 2.0, n)
+    lengths = a, 0.5 * (total + difference), 0.5 * (total - difference), d
+    return _conservative(four_bar_of(random, lengths, 0.0, 0.0))
+
+
+def _engine(random: Random, n: int) -> Designs:
+    a = np.ones(n)
+    offset = random.uniform(-0.5, 0.5, n)
+    rod = (a + np.abs(offset)) * random.uniform(1.3, 4.0, n)
+    psi = random.uniform(0.0, 2.0 * np.pi, n)
+    return _conservative(slider_crank_of(random, a, rod, offset, psi, 0.0, friction=False))
