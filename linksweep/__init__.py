@@ -34,6 +34,7 @@ from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
 from linksweep.surface import accessor as _accessor  # noqa: F401  (registers Dataset.linksweep)
 from linksweep.surface import plot
 from linksweep.surface.checked import open_study
+from linksweep.surface.page import report
 from linksweep.surface.scene_at import scene_at
 from linksweep.surface.storage import load_scene, save
 from linksweep.surface.study import study
@@ -83,6 +84,7 @@ __all__ = [
     "pin_friction",
     "plot",
     "regressor",
+    "report",
     "sample",
     "save",
     "scene_at",

@@ -1,5 +1,6 @@
 """Scenes of many designs, studies stopped half way, and how they are compared and spoiled."""
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -102,6 +103,19 @@ def stop_after(count: int, patch) -> list[object]:
 
     patch.setattr(Job, "compute", watched)
     return computed
+
+
+def hang_after(count: int) -> None:
+    """This process computes so many more chunks, then waits to be stopped: it does not finish by itself."""
+    compute, left = Job.compute, [count]
+
+    def hanging(job, block, threads):
+        left[0] -= block != {"speed": slice(0, 1)}  # not the one that is tried out
+        if left[0] < 0:
+            time.sleep(3600)
+        return compute(job, block, threads)
+
+    Job.compute = hanging
 
 
 def refused(call, *arguments, **options) -> str:

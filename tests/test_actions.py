@@ -85,6 +85,9 @@ def test_jumps_of_all_loads_are_those_of_the_scene():
     engine = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), 0.5)
     loads = [ls.TorsionSpring("crank", "ground", 2.0, 30.0), ls.GasPressure(0.09, ls.OttoCycle(9.0, 5e6))]
     assert ls.Scene(engine, omega2=100.0, loads=loads).jumps() == (150.0, 0.0, 180.0)
+    rubbing = replace(engine, friction=0.1, rod=ls.Link(WIDTHS + 1.0, 1.0, 0.0), offset=0.01)
+    both = ls.Scene(rubbing, omega2=100.0, loads=loads[1:]).jumps()
+    assert len(both) == len(rubbing.jumps()) == 2  # friction and gas jump at the same dead centres
 
 
 @pytest.mark.parametrize(

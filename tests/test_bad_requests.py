@@ -183,7 +183,15 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.sweep(SCENE, 8, [5]), "outputs = 5: must be names of quantities"),
         (lambda: ls.sweep(SCENE, 8, [""]), "outputs: nothing is named ''; there are theta3, theta4, "),
         (lambda: ls.peaks(SCENE, ["F23y", "F32_maen"]), "of: nothing is named 'F32_maen'; there are theta3, theta4, "),
-        (lambda: ls.peaks(SCENE, "T13"), "of: nothing is named 'T13'; did you mean \"T12\"?"),
+        (lambda: ls.peaks(SCENE, "T13"), 'of: T13 belongs to drive="coupler"; with drive="crank" give T12'),
+        (
+            lambda: ls.sweep(replace(SCENE, drive="rocker"), 8, ["T12"]),
+            'outputs: T12 belongs to drive="crank"; with drive="rocker" give T14',
+        ),
+        (
+            lambda: ls.peaks(replace(SCENE, drive="coupler"), ["T12_rms"]),
+            'of: T12_rms belongs to drive="crank"; with drive="coupler" give T13',
+        ),
         (lambda: ls.peaks(SCENE, ["status"]), "of: nothing is named 'status'; there are theta3, theta4, "),
         (
             lambda: ls.sweep(SCENE, 8, solver="dens"),

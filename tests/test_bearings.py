@@ -32,14 +32,15 @@ def test_a_constant_load_is_its_own_equivalent():
     ("ratio", "factor"), [(0.0, 1.0), (0.2, 1.02), (0.4, 1.07), (0.6, 1.15), (0.8, 1.25), (1.0, 1.36)]
 )
 def test_shigleys_rotary_pump(ratio, factor):
-    """Example 11-6 of Shigley, 10th ed.: F = F̄ + A sin θ on a ball bearing, the factors of its table."""
+    """Shigley, Rolling-Contact Bearings, variable loads: F = F̄ + A sin θ on a ball bearing, its table of factors."""
     found = loaded(lambda theta2: 1000.0 * (1.0 + ratio * np.sin(np.radians(theta2))))
     assert float(found.equivalent_load) == pytest.approx(1000.0 * (1.0 + 1.5 * ratio**2) ** (1.0 / 3.0), rel=1e-13)
     assert float(found.equivalent_load) / 1000.0 == pytest.approx(factor, abs=0.005)
 
 
 def test_shigleys_roller_bearing():
-    """Solution of problem 11-3 of Shigley: 10.279 kN for 50 000 h at 480 rev/min takes a C10 of 91.1 kN."""
+    """Shigley, 8th ed., problem 11-3 as its manual solves it: 1.4 × 1650 lbf = 10.279 kN for 50 000 h at 480 rev/min,
+    1440 million revolutions, take a straight roller bearing with a C10 of 91.1 kN."""
     speed = 480.0 * 2.0 * np.pi / 60.0
     found = loaded(10_279.0, omega2=speed, capacity=91_100.0, kind="roller")
     assert float(found.L10) == pytest.approx(1440.0, rel=2e-3)
@@ -57,6 +58,19 @@ def test_what_swings_counts_with_the_angle_that_it_turns():
     np.testing.assert_allclose(found.rotation.sel(pin="C"), turned, rtol=1e-6)
     np.testing.assert_allclose(found.rotation.sel(pin="A"), 360.0, rtol=1e-13)
     np.testing.assert_allclose(found.rotation_share.sum("theta2"), 1.0, rtol=1e-13)
+
+
+def test_a_swing_to_and_fro_is_that_part_of_a_revolution():
+    """The oscillation factor that O. Menck and M. Stammler review: (C/F)^p·180°/swing million swings to and fro. The
+    swing is that of a four-bar's rocker by the law of cosines; a load at D is borne there alone."""
+    a, b, c, d = 0.1, 0.3, 0.25, 0.35
+    light = [ls.Link(length, 0.0, 0.0) for length in (a, b, c)]
+    scene = ls.Scene(ls.FourBar(*light, ground=d), omega2=30.0, loads=[ls.Load("rocker", force=(600.0, -800.0))])
+    found = ls.bearings(scene, {"D": ls.Bearing(capacity=8e3)}, theta2=7200).sel(pin="D")
+    ends = [np.degrees(np.arccos((c**2 + d**2 - f**2) / (2.0 * c * d))) for f in (b + a, b - a)]
+    swings = 8.0**3 * 180.0 / (ends[0] - ends[1])  # million
+    assert float(found.equivalent_load) == pytest.approx(1000.0, rel=1e-12)
+    assert float(found.L10h) == pytest.approx(swings * 1e6 * 2.0 * np.pi / 30.0 / 3600.0, rel=1e-6)
 
 
 def test_the_life_of_a_swinging_pin():

@@ -5,9 +5,10 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import KINDS, Unassemblable, close_loop, log_uniform, mp, random_lengths, turn
+from judges import LinkData as Bar
+from judges import Unassemblable, log_uniform, mp, turn
+from oracle import KINDS, close_loop, random_lengths
 from oracle import FourBarData as Data
-from oracle import LinkData as Bar
 
 import linksweep as ls
 from linksweep.mechanisms.four_bar_limits import ASSEMBLY, GRASHOF, TOGGLES

@@ -9,7 +9,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from oracle import FORCES, FourBarData, LinkData, largest_force, largest_torque, mp, solve
+from documents import PAGE_MATRIX, PAGE_RHS
+from judges import FORCES, LinkData, largest_force, mp
+from oracle import FourBarData, largest_torque, solve
 
 import linksweep as ls
 
@@ -103,19 +105,6 @@ def test_default_sweep_has_the_kinematics_and_the_nine_unknowns():
 
 # ---- the 9×9 beside the page -----
 
-# the page's numeric matrix and right side, in F12, F23, F34, F14, T12 [N, cm]
-PAGE_MATRIX = [
-    [1, 0, -1, 0, 0, 0, 0, 0, 0],
-    [0, 1, 0, -1, 0, 0, 0, 0, 0],
-    [2.828, -2.828, 2.828, -2.828, 0, 0, 0, 0, 1],
-    [0, 0, 1, 0, -1, 0, 0, 0, 0],
-    [0, 0, 0, 1, 0, -1, 0, 0, 0],
-    [0, 0, 2.052, -5.638, 2.052, -5.638, 0, 0, 0],
-    [0, 0, 0, 0, 1, 0, 1, 0, 0],
-    [0, 0, 0, 0, 0, 1, 0, 1, 0],
-    [0, 0, 0, 0, -4.883, -2.531, 4.883, 2.531, 0],
-]
-PAGE_RHS = [-3.507, 0.329, 1.405, -13.662, -4.762, -1.817, -7.715, -1.471, 17.138]
 MOMENT_ROWS = [2, 5, 8]
 
 

@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 
+import judges
 import numpy as np
 import oracle
 import pytest
 import xarray as xr
 from drawn import closed_figures, line, plt, texts  # noqa: F401
-from oracle import mp
+from judges import mp
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
@@ -105,13 +106,13 @@ def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_i
 
 @pytest.mark.parametrize("theta2", [20.0, 145.0, 290.0])
 def test_of_the_four_bar_by_60_digits(theta2):
-    links = [oracle.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
+    links = [judges.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
     data = oracle.FourBarData(*links, ground=0.2)
 
     def centre(k, link, angle):
         corners = oracle.close_loop(data, angle)
         first, second = corners["ABD"[k]], corners["BCC"[k]]
-        return first + link.cg_distance * (second - first) / link.length * oracle.turn(link.cg_angle)
+        return first + link.cg_distance * (second - first) / link.length * judges.turn(link.cg_angle)
 
     def line_of_pins(k, angle):
         corners = oracle.close_loop(data, angle)
@@ -176,7 +177,7 @@ def test_the_reduced_torque_is_the_drives_power_per_crank_speed_whatever_drives(
 
 
 def test_a_torque_of_second_order_on_a_crank_without_mass_by_hand():
-    """T = 4 + 6 sin 2θ: the energy swings by 6 J, J = 6/(δ ω²) (R. L. Norton, section 11.11)."""
+    """T = 4 + 6 sin 2θ: the energy swings by 6 J, J = 6/(δ ω²) (R. L. Norton, Dynamic Force Analysis)."""
     load = ls.Load("crank", torque=lambda theta2: -4.0 - 6.0 * np.sin(np.radians(2.0 * theta2)))
     found = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[load]), fluctuation=0.03)
     np.testing.assert_allclose(found.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=1e-7)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES, FORCES, LinkData, LoadData, Unassemblable, largest_force
+from judges import BRANCHES, FORCES, LinkData, LoadData, Unassemblable, largest_force
 from oracle_inverted_slider_crank import (
     DRIVES,
     KINDS,

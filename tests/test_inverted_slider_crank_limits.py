@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES
+from judges import BRANCHES
 from oracle_inverted_slider_crank import random_data, to_scene
 
 import linksweep as ls

@@ -92,6 +92,8 @@ def test_bars_are_the_amplitudes():
     ax = ls.plot.orders(found)
     heights = [bar.get_height() for bar in ax.patches]
     assert heights == [*found.Fsx_amplitude.values, *found.Fsy_amplitude.values]
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["$F_{sx}$", "$F_{sy}$"]
+    said = [text.get_text() for text in ax.get_legend().get_texts()]
+    size = f"{float(found.Fsx_amplitude.sel(order=1)):#.4g}".rstrip(".")  # that of order 1 is the largest
+    assert said == [f"$F_{{sx}}$, largest {size} N at order 1", "$F_{sy}$"]
     with pytest.raises(ValueError, match="there are no orders of T12; there are Fsx, Fsy"):
         ls.plot.orders(found, ["T12"])

@@ -29,7 +29,7 @@ def test_the_main_bearing_alone():
 
 
 def test_the_force_in_a_massless_rod_touches_both_friction_circles():
-    """Mabie and Reinholtz: with circles of μ·r its line crosses, or runs beside, the line of pins by the angle δ."""
+    """Tangent to circles of μ·r its line crosses the line of pins, or runs beside it."""
     radius = {"B": 0.1 * 0.015, "C": 0.2 * 0.010}
     pins = {"B": ls.Bearing(diameter=0.03, friction=0.1), "C": ls.Bearing(diameter=0.02, friction=0.2)}
     scene = massless(ls.Load("slider", force=-1000.0))

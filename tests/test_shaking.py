@@ -78,6 +78,18 @@ def test_it_is_minus_the_rate_of_momentum_by_finite_differences_of_positions(mec
 
 
 @MACHINES
+def test_it_is_minus_the_sum_of_mass_times_acceleration(mechanism):
+    """Of the centres of gravity, whose accelerations a sweep gives by name."""
+    numbers = [2, 3, 4][: len(bodies(mechanism, np.array([0.0])))]
+    named = [f"aG{k}{axis}" for k in numbers for axis in "xy"]
+    ds = ls.sweep(ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81)), outputs=[*named, *SHAKING])
+    masses = [mass for mass, *_ in bodies(mechanism, np.array([0.0]))]
+    for axis in "xy":
+        expected = -sum(mass * ds[f"aG{k}{axis}"] for mass, k in zip(masses, numbers, strict=True))
+        np.testing.assert_allclose(ds[f"Fs{axis}"], expected, rtol=0, atol=1e-13 * float(abs(expected).max()))
+
+
+@MACHINES
 def test_the_ground_bears_it_and_weights_and_loads(mechanism):
     push = ls.Load("crank", force=(30.0, -80.0), at=(0.05, 10.0))
     scene = ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81), loads=[push])

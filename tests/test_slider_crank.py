@@ -3,7 +3,7 @@
 Errors are relative to the largest of their kind at the same position, as in `test_accuracy`.
 """
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 from itertools import product
 from typing import NamedTuple
@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES, DeadPoint, LinkData, LoadData, Unassemblable, largest_force, mp, torque_name
+from judges import BRANCHES, DeadPoint, LinkData, LoadData, Unassemblable, largest_force, mp
+from oracle import torque_name
 from oracle_slider_crank import (
     DRIVES,
     KINDS,
@@ -24,6 +25,7 @@ from oracle_slider_crank import (
     to_scene,
     toggle_margin,
 )
+from stacked import assert_each_is_as_alone, stacked
 
 import linksweep as ls
 from linksweep.engine import run
@@ -225,48 +227,14 @@ def loaded(data: SliderCrankData, rng: np.random.Generator) -> SliderCrankData:
     return replace(data, loads=loads, friction=float(rng.uniform(0.2, 1.5)))
 
 
-def over_designs(owners: list, name: str) -> xr.DataArray:
-    return xr.DataArray([getattr(owner, name) for owner in owners], dims="design")
-
-
-def pairs_over_designs(owners: list, name: str) -> tuple[xr.DataArray, xr.DataArray]:
-    pairs = np.array([getattr(owner, name) for owner in owners]).T
-    return tuple(xr.DataArray(values, dims="design") for values in pairs)
-
-
-def stacked_load(loads: list[LoadData]) -> ls.Load:
-    words = {name: getattr(loads[0], name) for name in ("link", "frame", "origin")}
-    numbers = {"at": pairs_over_designs(loads, "at")}
-    if any(loads[0].force):
-        numbers["force"] = pairs_over_designs(loads, "force")
-    if loads[0].torque:
-        numbers["torque"] = over_designs(loads, "torque")
-    return ls.Load(**words, **numbers)
-
-
-def stacked(designs: list[SliderCrankData]) -> ls.Scene:
-    """All designs in one scene, along the dim "design", each on both branches."""
-    numbers = [field.name for field in fields(LinkData)]
-    bars = {
-        link: ls.Link(**{name: over_designs([getattr(d, link) for d in designs], name) for name in numbers})
-        for link in ("crank", "rod")
-    }
-    frame = {name: over_designs(designs, name) for name in ("slider_mass", "offset", "friction", "slide_angle")}
-    return ls.Scene(
-        ls.SliderCrank(**bars, **frame, branch="both"),
-        omega2=over_designs(designs, "omega2"),
-        alpha2=over_designs(designs, "alpha2"),
-        gravity=pairs_over_designs(designs, "gravity"),
-        loads=[stacked_load(list(loads)) for loads in zip(*(d.loads for d in designs), strict=True)],
-        drive=designs[0].drive,
-    )
+BATCH = (ls.SliderCrank, ("crank", "rod"), "slider_mass", "offset", "friction", "slide_angle")
 
 
 @pytest.mark.parametrize("drive", DRIVES)
 def test_status_is_right_at_every_sample(drive):
     """Alone and in a batch, where a jammed sample spoils no other."""
     designs, theta2 = jamming()[drive], np.random.default_rng(2).uniform(-180, 540, 9)
-    batch = ls.sweep(stacked(designs), theta2, outputs=["F14x", "status"])
+    batch = ls.sweep(stacked(designs, *BATCH), theta2, outputs=["F14x", "status"])
     seen = set()
     for k, data in enumerate(designs):
         expected = [judged_status(data, angle) for angle in theta2]
@@ -285,15 +253,10 @@ def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkey
     designs, theta2 = jamming()[drive][:6], np.random.default_rng(2).uniform(-180, 540, 11)
     names = (*KINEMATICS, *unknowns(designs[0]), *GUIDE, "F32", "Bx", "aG4x", "power_residual")
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
-    batch = ls.sweep(stacked(designs), theta2, outputs=names)
+    batch = ls.sweep(stacked(designs, *BATCH), theta2, outputs=names)
     monkeypatch.setattr(run, "COMPILE_AFTER", np.inf)
     assert {0, 1, 4} <= set(batch.status.values.flat)
-    for (k, design), branch in product(enumerate(designs), BRANCHES):
-        single = ls.sweep(to_scene(replace(design, branch=branch)), theta2, outputs=names)
-        for name in (*names, "status"):
-            chosen = batch[name].isel(design=k, drop=True) if "design" in batch[name].dims else batch[name]
-            chosen = chosen.sel(branch=branch, drop=True) if "branch" in chosen.dims else chosen
-            np.testing.assert_array_equal(chosen.values, single[name].values, err_msg=f"{name} of {design}")
+    assert_each_is_as_alone(batch, designs, to_scene, names)
 
 
 def plain(rod=5.0, **changes) -> ls.Scene:

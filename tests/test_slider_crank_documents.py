@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from oracle import mp
+from judges import mp
 
 import linksweep as ls
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES, LinkData, LoadData, torque_name
+from judges import BRANCHES, LinkData, LoadData
+from oracle import torque_name
 from oracle_slider_crank import DRIVES, SliderCrankData, mirrored, random_data, random_theta2, to_scene
 
 import linksweep as ls

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from oracle import BRANCHES, log_uniform, mp
+from judges import BRANCHES, log_uniform, mp
 from oracle_slider_crank import KINDS, random_lengths
 
 import linksweep as ls

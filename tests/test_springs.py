@@ -4,12 +4,13 @@ import re
 from dataclasses import replace
 from functools import cache
 
+import judges
 import numpy as np
 import oracle
 import oracle_slider_crank
 import pytest
 import xarray as xr
-from oracle import log_uniform, mp, polar, turn
+from judges import largest_force, log_uniform, mp, polar, turn
 
 import linksweep as ls
 from linksweep.engine import run
@@ -106,7 +107,7 @@ def place(judge, move, end):
     if end[0] == "ground":
         return mp.mpc(*end[1:]), mp.mpc(0)
     link = end[0]
-    point = move.pin[judge.FIRST_PIN[link]] + polar(end[1:]) * move.line[link]
+    point = move.first[link] + polar(end[1:]) * move.line[link]
     return point, move.vG[link] + 1j * move.omega[link] * (point - move.G[link])
 
 
@@ -120,7 +121,7 @@ def as_loads(judge, move, action):
         else:
             pull = mp.mpf(action.coefficient) * ((vq - vp) * unit.conjugate()).real * unit
         ends = ((action.from_, pull), (action.to, -pull))
-        return [oracle.LoadData(end[0], (F.real, F.imag), at=end[1:]) for end, F in ends if end[0] != "ground"]
+        return [judges.LoadData(end[0], (F.real, F.imag), at=end[1:]) for end, F in ends if end[0] != "ground"]
     line, omega = {"ground": mp.mpc(1)} | move.line, {"ground": mp.mpf(0)} | move.omega
     if isinstance(action, ls.TorsionSpring):
         wound = mp.arg(line[action.to] / line[action.from_] / turn(action.free_angle))
@@ -128,7 +129,7 @@ def as_loads(judge, move, action):
     else:
         torque = mp.mpf(action.coefficient) * (omega[action.to] - omega[action.from_])
     ends = ((action.from_, torque), (action.to, -torque))
-    return [oracle.LoadData(link, torque=M) for link, M in ends if link != "ground"]
+    return [judges.LoadData(link, torque=M) for link, M in ends if link != "ground"]
 
 
 def random_actions(rng, judge, data):
@@ -178,7 +179,7 @@ def with_actions(judge, data, actions):
 
 
 def unknowns(judge, data):
-    return (*(force + axis for force in oracle.FORCES for axis in "xy"), judge.torque_name(data))
+    return (*(force + axis for force in judges.FORCES for axis in "xy"), judge.torque_name(data))
 
 
 def judged(judge, data, actions, theta2):
@@ -196,7 +197,7 @@ def test_agrees_with_the_judge():
         assert not cycle.status.any()
         for k, theta2 in enumerate(angles):
             result = judged(judge, data, actions, theta2)
-            force, torque = judge.largest_force(result), judge.largest_torque(result, data)
+            force, torque = largest_force(result), judge.largest_torque(result, data)
             for name in names:
                 error = abs(float(cycle[name][k]) - result[name]) / (torque if name[0] == "T" else force)
                 assert error < 1e-11, (name, theta2, data, actions)

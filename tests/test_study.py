@@ -190,10 +190,23 @@ def test_the_command_refuses_what_cannot_be(folder, arguments, message, capsys):
     assert os.listdir() == ["scene.toml"]
 
 
+INTERRUPTED = """
+import sys
+from linksweep.surface.cli import main
+from studies import hang_after
+hang_after(20)
+sys.exit(main())
+"""
+
+
 def test_ctrl_c_says_how_to_go_on(folder, capsys):
     words = ["study", "scene.toml", "-o", "study.nc", "--chunk", "2"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "linksweep", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", INTERRUPTED, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        text=True,
     )
     while process.poll() is None and not list(folder.glob("study.nc.partial/000002*.npz")):
         time.sleep(0.005)
@@ -203,7 +216,7 @@ def test_ctrl_c_says_how_to_go_on(folder, capsys):
     said = re.fullmatch(
         r"linksweep: stopped; (\d+) of 60 chunks are done: to go on from there, run the same again\n", err
     )
-    assert 2 <= int(said[1]) < 60  # the signal may come before the last file counts
+    assert 2 <= int(said[1]) <= 20  # the signal may come before the last file counts
     assert main(words) == 0
     assert main([*words[:3], "whole.nc", *words[4:]]) == 0
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()

@@ -108,9 +108,9 @@ def test_words_and_positions_along_the_axes():
 
 def test_designs_that_are_not_ok_are_hatched_by_their_status():
     values = VALUES.copy()
-    values[0, :2] = 1.0  # better than any, if only it turned
-    values[1, 3], values[2, 1], values[2, 3] = np.nan, np.inf, np.nan
-    status = [[1, 1, 0, 1], [0, 0, 0, 2], [0, 3, 0, 0]]
+    values[0, :2] = 1.0  # better than any, if only it could be assembled
+    values[0, 3], values[1, 3], values[2, 1], values[2, 3] = np.nan, np.nan, np.inf, np.nan
+    status = [[2, 2, 1, 1], [0, 0, 0, 2], [0, 3, 0, 0]]
     ax = ls.plot.heat_map(grid(values, status), "F32_peak")
     shown = mesh(ax).get_array().reshape(3, 4)
     ok = np.array([[0, 0, 1, 0], [1, 1, 1, 0], [1, 0, 1, 0]], dtype=bool)
@@ -123,7 +123,7 @@ def test_designs_that_are_not_ok_are_hatched_by_their_status():
     codes = {"_partial_revolution": 1, "_cannot_assemble": 2, "_unbounded": 3}
     for label, patch in patches.items():
         covered = patch.get_path().contains_points(cells.reshape(-1, 2)).reshape(3, 4)
-        wanted = np.array(status) == codes[label] if label in codes else ~ok & (np.array(status) == 0)
+        wanted = ~ok & (np.array(status) == codes.get(label, 0))
         np.testing.assert_array_equal(covered, wanted)
         assert (label == "_no value") == (not patch.get_hatch())
     assert len({patch.get_hatch() for patch in patches.values()}) == 4
@@ -134,7 +134,7 @@ def test_designs_that_are_not_ok_are_hatched_by_their_status():
 def test_a_status_of_more_dims_and_none_at_all():
     ds = grid(VALUES)
     worst = xr.zeros_like(ds.status).expand_dims(rpm2=2).copy()
-    worst[1, 0, 0] = 1
+    worst[0, 0, 0], worst[1, 0, 0] = 1, 2
     ax = ls.plot.heat_map(ds.assign(status=worst.assign_attrs(FLAGS)), "F32_peak")
     assert np.ma.getmaskarray(mesh(ax).get_array()).reshape(3, 4).tolist() == (VALUES == 28.0).tolist()
     assert not np.ma.getmaskarray(mesh(ls.plot.heat_map(ds.drop_vars("status"), "F32_peak")).get_array()).any()
@@ -198,7 +198,7 @@ def test_more_can_be_better_in_a_scatter():
 
 def test_colours_and_what_is_left_out_of_a_scatter():
     ds = sample(30)
-    ds["status"][:4] = [1, 2, 3, 1]
+    ds["status"][:5] = [2, 2, 3, 2, 1]
     ds["T12_peak"][4] = np.nan
     ds["F32_peak"][5] = np.inf
     ax = ls.plot.scatter(ds, "F32_peak", "T12_peak", color="crank.length")

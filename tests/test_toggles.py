@@ -12,7 +12,8 @@ import numpy as np
 import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
-from oracle import FourBarData, LinkData, largest_force, mp, random_data, solve, to_scene
+from judges import LinkData, largest_force, mp
+from oracle import FourBarData, random_data, solve, to_scene
 
 import linksweep as ls
 from linksweep.mechanisms.degrees import cos_sin_rests

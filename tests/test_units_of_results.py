@@ -56,10 +56,15 @@ QUANTITIES = [
 ]
 
 
+@pytest.fixture(scope="module")
+def units():
+    return pint.UnitRegistry()
+
+
 @pytest.mark.parametrize(("machine", "name"), QUANTITIES)
-def test_scales_as_its_unit_says(machine, name):
+def test_scales_as_its_unit_says(machine, name, units):
     one, other = (ls.sweep(s, theta2=24, outputs=[name])[name] for s in (machine(), machine(LENGTH, MASS, TIME)))
-    dimension = pint.UnitRegistry().parse_units(_pint(one.attrs["units"])).dimensionality
+    dimension = units.parse_units(_pint(one.attrs["units"])).dimensionality
     factor = LENGTH ** dimension["[length]"] * MASS ** dimension["[mass]"] * TIME ** dimension["[time]"]
     np.testing.assert_array_equal(other.values, one.values * factor)
     assert np.abs(one.values).max() > 0.0

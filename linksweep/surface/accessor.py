@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from linksweep.surface.film import Film
+
 
 @xr.register_dataset_accessor("linksweep")
 class Cycle:
@@ -63,6 +65,10 @@ class Cycle:
     ) -> Axes:
         """Draw the mechanism at a crank angle [degree]: see `linksweep.surface.plot.mechanism`."""
         return plot.mechanism(self._ds, theta2, ax, point, forces)
+
+    def animate(self, frames: int = 72, point: tuple[float, float] | None = None) -> Film:
+        """Make a film of the mechanism and its forces: see `linksweep.surface.animation.animate`."""
+        return plot.animate(self._ds, frames, point)
 
     def loop(self) -> Figure:
         """Plot the track of a car in a loop and the force on it [N]: see `linksweep.surface.plot.loop`."""

@@ -11,7 +11,7 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.surface import signals
 from linksweep.surface.drawings import drawing_of
-from linksweep.surface.style import BLUE, GREY, VERMILION, grid
+from linksweep.surface.style import BLUE, GREY, VERMILION, crank_angles, grid, small_type
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +21,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "before": {"color": BLUE, "linewidth": 3.0, "alpha": 0.45},  # broad: seen where the other lies on it
     "after": {"color": VERMILION},
 }
+ROUNDING = 1e-9  # N or N m
 SHAKING = ("Fsx", "Fsy", "Ms")
 
 
@@ -62,7 +63,7 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
         name: sweep(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in (("before", before), ("after", after))
     }
     worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
-    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+    with small_type():
         figure, panels = plt.subplots(2, 2, figsize=(7.1, 6.0), layout="constrained")
         _hodograph(panels[0, 0], cycles)
         _over_angle(panels[0, 1], cycles, "Ms", "Shaking moment about A", "$M_s$ [N m]")
@@ -74,15 +75,14 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
 
 
 def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
-    """The shaking force's components against each other, with its largest size in the legend."""
+    """The shaking force's components against each other."""
     grid(ax)
     ax.set_aspect("equal", adjustable="datalim")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     ax.axvline(0.0, color=GREY, linewidth=0.8)
     for name, cycle in cycles.items():
         _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
-        largest = signals.number(float(np.nanmax(np.hypot(x, y))))
-        ax.plot(x, y, label=f"{name}, up to {largest} N", **STYLES[name])
+        ax.plot(x, y, label=_said(name, np.hypot(x, y)), **STYLES[name])
     ax.plot([0.0], [0.0], "+", color="black", markersize=9.0)
     ax.set_xlabel("$F_{sx}$ [N]")
     ax.set_ylabel("$F_{sy}$ [N]")
@@ -94,19 +94,22 @@ def _over_angle(ax: Axes, cycles: dict[str, xr.Dataset], name: str, title: str, 
     grid(ax)
     for when, cycle in cycles.items():
         angles, values = signals.revolution(cycle, cycle[name])
-        largest = signals.number(float(np.nanmax(np.abs(values))))
-        units = cycle[name].attrs["units"]
-        ax.plot(angles, values, label=f"{when}, up to {largest} {units}", **STYLES[when])
-    ax.set_xlim(angles[0], angles[-1])
-    ax.set_xticks(np.arange(angles[0], angles[-1] + 1.0, 90.0 if np.ptp(angles) < 400.0 else 180.0))
-    ax.set_xlabel("crank angle $\\theta_2$ [°]")
+        ax.plot(angles, values, label=_said(when, values), **STYLES[when])
+    crank_angles(ax, angles)
     ax.set_ylabel(label)
     ax.set_title(title, loc="left")
     _legend(ax)
+
+
+def _said(when: str, values: np.ndarray) -> str:
+    """When, and how large: a force that is balanced away leaves its rounding."""
+    largest = float(np.nanmax(np.abs(values)))
+    return f"{when}, up to {signals.number(largest if largest > ROUNDING else 0.0)}"
 
 
 def _legend(ax: Axes) -> None:
     """Above the curves, in room made for it."""
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.16 * (high - low), auto=True)
-    ax.legend(loc="upper center", ncols=2, fontsize="small", frameon=False, handlelength=1.8, columnspacing=1.0)
+    style: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "handlelength": 1.8, "columnspacing": 1.0}
+    ax.legend(loc="upper center", ncols=2, fontsize="small", **style)

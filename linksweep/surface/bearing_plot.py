@@ -13,7 +13,7 @@ from linksweep.results.sweep import sweep
 from linksweep.surface import signals
 from linksweep.surface.drawings import Drawing, drawing_of_results
 from linksweep.surface.storage import scene_of
-from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, grid
+from linksweep.surface.style import BLUE, FORCE_COLORS, GREY, VERMILION, axes_or_new, grid, small_type
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,19 +58,15 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     """
     refuse(choice_problems("frame", frame, (*FRAMES, "link")))
     signals.require_angles(ds)
-    pair = signals.components(ds, pin)
-    angles, x, y = signals.revolution(ds, *pair)
-    link = {"ground": 1, "bearing": int(pin[1])}.get(frame, int(pin[2]))
-    drawing = drawing_of_results(ds)
-    if link != 1:
-        x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
+    angles, x, y = _locus(ds, pin, frame)
+    drawing, link = drawing_of_results(ds), _link_of(pin, frame)
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
     shown = signals.scale([size], [largest])
     _cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
-    units = signals.unit(pair[0], "N")
+    units = signals.unit(signals.components(ds, pin)[0], "N")
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
         at = int(np.nanargmax(size))
@@ -96,7 +92,8 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
     Returns
     -------
     matplotlib Figure
-        7.1 inches wide, two panels in a row; scales differ from pin to pin.
+        7.1 inches wide, two panels in a row; scales differ from pin to pin. Of three pins, a fourth panel has all to
+        one scale.
 
     Raises
     ------
@@ -117,14 +114,45 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
     forces = [force for force in drawing.forces if drawing.at_pin(force) and signals.has_pin(ds, force)]
     refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
     rows = (len(forces) + 1) // 2
-    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+    with small_type():
         figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
         for force, panel in zip(forces, panels.flat, strict=False):
             bearing(ds, force, frame, panel)
             panel.set_title(f"Load of {drawing.said(force)}: {signals.symbol(force)}", loc="left")
-        for panel in panels.flat[len(forces) :]:
-            panel.remove()
+        if len(forces) % 2:
+            _to_one_scale(panels[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
     return figure
+
+
+def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ...]]) -> None:
+    """The loci of all pins side by side, so that they can be compared."""
+    sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
+    shown = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
+    _cross(ax)
+    for force, (_, x, y) in loci.items():
+        ax.plot(
+            x, y, color=FORCE_COLORS[force], label=f"{signals.symbol(force)} ({drawing_of_results(ds).said(force)})"
+        )
+    near = [np.hypot(x, y) <= BEYOND * shown for _, x, y in loci.values()]
+    _limits(
+        ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))
+    )
+    ax.set_title("All to one scale [N]", loc="left")
+    ax.legend(fontsize="small", frameon=False)
+
+
+def _link_of(pin: str, frame: str) -> int:
+    """The link in whose axes a force is shown."""
+    return {"ground": 1, "bearing": int(pin[1])}.get(frame, int(pin[2]))
+
+
+def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
+    """Crank angles [degree] and the components of a force in the axes of a frame."""
+    angles, x, y = signals.revolution(ds, *signals.components(ds, pin))
+    link = _link_of(pin, frame)
+    if link != 1:
+        x, y = _in_link_axes(ds, drawing_of_results(ds).frames[link].angle, x, y)
+    return angles, x, y
 
 
 def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -39,8 +39,14 @@ def open_study(path: str | os.PathLike) -> xr.Dataset:
 
     Examples
     --------
+    >>> import os, tempfile
     >>> import linksweep as ls
-    >>> best = ls.open_study("study.nc").F32_peak.min()  # doctest: +SKIP
+    >>> scene = ls.sample(ls.example("press"), {"coupler.length": ("20 cm", "24 cm")}, n=8)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = ls.study(scene, os.path.join(folder, "study.nc"), of=["F32"])
+    ...     again = ls.open_study(os.path.join(folder, "study.nc")).load()
+    >>> dict(again.sizes), float(again.F32_peak.min()) > 0.0
+    ({'design': 8}, True)
     """
     path = Path(path)
     if not path.is_file():

@@ -1,4 +1,4 @@
-"""The command line: demo, sweep, peaks, study, check."""
+"""The command line: demo, sweep, peaks, study, check, report; `commands` has the rest."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
+from linksweep.surface.commands import PICTURES, a_file, add_commands, write_figure
+from linksweep.surface.page import report
 from linksweep.surface.report import check_lines, peak_table, study_report
-from linksweep.surface.storage import load_scene, save, whole
+from linksweep.surface.storage import load_scene, save
 from linksweep.surface.study import CHUNK, study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PICTURES = (".png", ".pdf", ".svg")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -54,7 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     cycle.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
     cycle.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
-    cycle.add_argument("--plot", type=_picture, help="figure to write: .png, .pdf or .svg")
+    cycle.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
     cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
     cycle.set_defaults(run=_sweep)
 
@@ -76,6 +76,15 @@ def _parser() -> argparse.ArgumentParser:
     sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
     sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     sound.set_defaults(run=_check)
+
+    page = commands.add_parser("report", help="a page to print: inputs, checks, peaks, drive, figures")
+    page.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
+    page.add_argument("--title", help="its heading (name of the scene file)")
+    part = "crank angles of a machine that moves over part of a turn"
+    page.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
+    page.set_defaults(run=_report)
+    add_commands(commands)
     return parser
 
 
@@ -86,7 +95,7 @@ def _demo(options: argparse.Namespace) -> None:
     print(peak_table(peaks(scene), scene.mechanism.index))
     data, picture = (options.output.with_name(options.output.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
-    _write(_figure(cycle), picture)
+    write_figure(_figure(cycle), picture)
     print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")
 
 
@@ -99,7 +108,7 @@ def _sweep(options: argparse.Namespace) -> None:
     save(cycle, options.output)
     print(f"written: {options.output}")
     if figure is not None:
-        _write(figure, options.plot)
+        write_figure(figure, options.plot)
         print(f"written: {options.plot}")
 
 
@@ -126,18 +135,17 @@ def _check(options: argparse.Namespace) -> None:
     print("\n".join(check_lines(check(scene))))
 
 
+def _report(options: argparse.Namespace) -> None:
+    part = tuple(options.theta2) if options.theta2 else None
+    report(load_scene(options.scene), options.output, options.title or options.scene.stem, part)
+    print(f"written: {options.output}")
+
+
 def _names(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
     if not names:
         raise argparse.ArgumentTypeError("must be names, separated by commas")
     return names
-
-
-def _picture(text: str) -> Path:
-    path = Path(text)
-    if path.suffix.lower() not in PICTURES:
-        raise argparse.ArgumentTypeError(f"{text}: its ending must be one of {', '.join(PICTURES)}")
-    return path
 
 
 def _figure(cycle: xr.Dataset) -> Figure:
@@ -148,8 +156,3 @@ def _figure(cycle: xr.Dataset) -> Figure:
     from linksweep.surface import plot
 
     return plot.cycle(cycle)
-
-
-def _write(figure: Figure, path: Path) -> None:
-    with whole(path) as temporary:
-        figure.savefig(temporary, format=path.suffix[1:].lower(), dpi=150)

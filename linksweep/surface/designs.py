@@ -10,6 +10,7 @@ import xarray as xr
 
 from linksweep.mechanisms import INDICES
 from linksweep.mechanisms.validate import name_problems, refuse, said
+from linksweep.results.pareto import has_peaks
 from linksweep.surface.signals import symbol
 
 if TYPE_CHECKING:
@@ -56,19 +57,15 @@ class Designs(NamedTuple):
 
 
 def designs_of(ds: xr.Dataset, names: Iterable[str]) -> Designs:
-    """The designs whose status is ok and that have a finite number for each of the names.
+    """The designs whose status is ok or partial_revolution and that have a finite number for each of the names.
 
     Raises ValueError where a name does not hold one number for each design, and where no design is ok.
     """
     names = list(dict.fromkeys(names))
-    with_status = [*names, "status"] if "status" in ds.variables else names
-    together = dict(zip(with_status, xr.broadcast(*(ds[name] for name in with_status)), strict=True))
-    first = together[names[0]]
+    *together, first = xr.broadcast(*(ds[name] for name in names), has_peaks(ds))
     refuse([] if first.dims else ["ds holds one design: give it a dimension of designs"])
-    columns = {name: column(ds[name], together[name].values.reshape(-1)) for name in names}
-    sound = np.all([np.isfinite(item.values) for item in columns.values()], axis=0)
-    if "status" in together:
-        sound &= together["status"].values.reshape(-1) == 0
+    columns = {name: column(ds[name], item.values.reshape(-1)) for name, item in zip(names, together, strict=True)}
+    sound = np.all([np.isfinite(item.values) for item in columns.values()], axis=0) & first.values.reshape(-1)
     refuse([] if sound.any() else [none_ok(ds, names)])
     at = np.unravel_index(np.flatnonzero(sound), first.shape)
     labels = {str(dim): ds[dim].values[k] if dim in ds.coords else k for dim, k in zip(first.dims, at, strict=True)}

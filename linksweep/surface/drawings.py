@@ -142,7 +142,7 @@ FOUR_BAR = Drawing(
     fixed=_ground_pins,
 )
 SLIDER_CRANK = Drawing(
-    joints={**slider_crank.PINS, "guide": (1, 4)},
+    joints=slider_crank.PINS,
     drives=SliderCrank.drives,
     frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: Frame("guide", "slide_angle")},
     bars={2: ("A", "B"), 3: ("B", "C")},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,12 +10,27 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import refuse
 from linksweep.results.motor import Motor
+from linksweep.results.sweep import sweep
 from linksweep.surface import signals
-from linksweep.surface.style import BLUE, GREY, SHADE, VERMILION, axes_or_new, crank_angles, grid
+from linksweep.surface.storage import scene_of
+from linksweep.surface.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    SHADE,
+    SKY,
+    VERMILION,
+    axes_or_new,
+    crank_angles,
+    grid,
+    small_type,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+ROUNDING = 1e-9  # of the largest torque: the mean of one that does no work
 TICK = 90.0  # degrees of the crank between named points
 
 
@@ -35,7 +51,7 @@ def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        For a Dataset without speed, and more than one design.
+        For a Dataset without speed at every angle, and more than one design.
 
     Examples
     --------
@@ -46,6 +62,7 @@ def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
     refuse([] if "speed" in found else ["found has no speed: take what ls.flywheel returns"])
     signals.require_angles(found)
     angles, speed = signals.revolution(found, found["speed"])
+    refuse([] if np.isfinite(speed).all() else ["found has no speed at some angle: it stalls, or does not turn fully"])
     ax = axes_or_new(ax)
     grid(ax)
     middle = 0.5 * (np.max(speed) + np.min(speed))
@@ -60,12 +77,68 @@ def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
+def torque_with_flywheel(found: xr.Dataset) -> Figure:
+    """Plot the drive's torque without and with a flywheel, and the speed of the crank with it.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.flywheel`, of one design.
+
+    Returns
+    -------
+    matplotlib Figure
+        Above the torque on the crank that keeps its speed constant, and the constant one that is enough with the
+        flywheel: where that gives more, the crank gains speed. Below that speed, as in `flywheel`.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without speed at every angle, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> figure = ls.plot.torque_with_flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05))
+    >>> [ax.get_ylabel() for ax in figure.axes]
+    ['torque on the crank [N m]', 'crank speed $\\\\omega_2$ [rad/s]']
+    """
+    import matplotlib.pyplot as plt
+
+    with small_type():
+        figure, (above, below) = plt.subplots(2, 1, figsize=(7.1, 5.4), layout="constrained")
+        flywheel(found, below)
+        _torques(above, found)
+    return figure
+
+
+def _torques(ax: Axes, found: xr.Dataset) -> None:
+    """The torque at constant speed around the constant torque, what is given too much and too little shaded."""
+    steady = replace(scene_of(found), alpha2=0.0)
+    cycle = sweep(steady, found[signals.INDEX].values, ["reduced_torque"])
+    angles, without = signals.revolution(cycle, cycle["reduced_torque"])
+    constant = float(found["drive_torque"])
+    grid(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    more = (constant - without) * np.sign(float(found["speed"].mean())) > 0.0
+    for where, color, said in ((more, SKY, "gains speed"), (~more, ORANGE, "loses speed")):
+        ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=said)
+    ax.plot(angles, without, color=BLUE, label="without flywheel")
+    size = constant if abs(constant) > ROUNDING * np.max(np.abs(without)) else 0.0
+    said = f"with it, constant: {signals.number(size)} N m"
+    ax.axhline(constant, color=VERMILION, linestyle="--", label=said)
+    crank_angles(ax, angles)
+    ax.margins(y=0.12)
+    ax.set_ylabel("torque on the crank [N m]")
+    ax.legend(fontsize="small", frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2)
+
+
 def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
     from linksweep.surface.labels import label
 
     for said, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
         ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{said}")
-        label(ax, angles[k], speed[k], (f"{said} {speed[k]:.5g} rad/s", BLUE))
+        label(ax, angles[k], speed[k], (f"{said} {speed[k]:#.5g} rad/s", BLUE))
 
 
 def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
@@ -107,7 +180,7 @@ def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
     grid(ax)
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
     curve = side * np.asarray(motor.speeds, dtype=float), np.asarray(motor.torques, dtype=float)
-    ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can")
+    ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can give")
     ax.plot(np.r_[curve[0], curve[0][::-1]], np.r_[curve[1], -curve[1][::-1]], color=GREY, linewidth=1.0)
     ax.plot(speed, torque, color=BLUE, linewidth=1.6, label="what the machine takes")
     if (margin < 0.0).any():

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import name_problems, refuse, said
+from linksweep.results.pareto import has_peaks
 from linksweep.surface import signals
 from linksweep.surface.designs import (
     color_bar,
@@ -56,7 +57,7 @@ def heat_map(
     contours: bool | str = False,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot a result over two design dims in colours, the best design marked, those that are not ok hatched.
+    """Plot a result over two design dims in colours, the best design marked, those that have no peaks hatched.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def heat_map(
     _require_on_map(ds, contours, across, up)
     values = _field(ds[name], across, up)
     status = _status(ds, across, up)
-    ok = np.isfinite(values) & (status == 0.0)
+    ok = np.isfinite(values) & _kept(ds, across, up)
     refuse([] if ok.any() else [none_ok(ds, [name])])
     ax = axes_or_new(ax)
     limits = span(values[ok])
@@ -182,10 +183,16 @@ def _status(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
     return _field(status.max([dim for dim in status.dims if dim not in (across.dim, up.dim)]), across, up)
 
 
+def _kept(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
+    """Whether all designs of a cell have peaks to choose by."""
+    sound = has_peaks(ds)
+    return _field(sound.all([dim for dim in sound.dims if dim not in (across.dim, up.dim)]), across, up) > 0.0
+
+
 def _reasons(ds: xr.Dataset, status: np.ndarray, ok: np.ndarray) -> dict[str, np.ndarray]:
     """Which cells have no colour, by the word of their status."""
     words = str(ds["status"].attrs.get("flag_meanings", "")).split() if "status" in ds.variables else []
-    found = {word: status == code for code, word in enumerate(words) if code}
+    found = {word: (status == code) & ~ok for code, word in enumerate(words) if code}
     found[LEFT_OUT] = ~ok & ~np.any([np.zeros(ok.shape, dtype=bool), *found.values()], axis=0)
     return {word: cells for word, cells in found.items() if cells.any()}
 

@@ -13,12 +13,14 @@ from linksweep.results.peaks import peaks
 from linksweep.results.speed_limit import speed_limit
 from linksweep.scene.scene import Scene
 from linksweep.surface import signals, style
+from linksweep.surface.force_plot import shade_gaps
 from linksweep.surface.style import BLUE, GREY, VERMILION, axes_or_new, crank_angles, grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLORS = (BLUE, style.ORANGE, style.GREEN, style.SKY, VERMILION, style.PURPLE, "#F0E442")
+ROOM = 1.3  # of the largest value, for the legend
 HATCHES = ("", "///", "\\\\\\", "...")
 
 
@@ -37,7 +39,8 @@ def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = Non
     Returns
     -------
     matplotlib Axes
-        Shares that load are stacked upwards from 0, those that relieve (or turn backwards) downwards.
+        Shares that load are stacked upwards from 0, those that relieve (or turn backwards) downwards. Where they grow
+        without bound beside angles that have no result, the axis ends at a usual size.
 
     Raises
     ------
@@ -71,9 +74,24 @@ def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = Non
     ax.plot(angles, whole, color=style.BLACK, linewidth=1.6, label="sum")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     crank_angles(ax, angles)
+    _usual_size(ax, angles, whole, {sign: np.asarray(base) for sign, base in bases.items()})
+    shade_gaps(ax, shares, shares[name].sum("source", skipna=False))
     ax.set_ylabel(f"share in {signals.symbol(name) or name} [{signals.unit(shares[name], 'N')}]")
     ax.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
+
+
+def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[float, np.ndarray]) -> None:
+    """Limits for what is usual, where the sum runs off beside a gap."""
+    size = np.abs(whole)
+    largest = signals.peak(angles, size)
+    shown = signals.scale([size], [largest])
+    if largest is None or largest.value <= shown:
+        return
+    tops = [float(np.max(np.abs(stack[size <= shown]), initial=0.0)) for stack in stacks.values()]
+    ax.set_ylim(-1.1 * tops[1], 1.1 * tops[0])
+    said = f"off scale: up to {signals.number(largest.value)} at {signals.angle_text(largest.angle)}"
+    ax.set_title(said, loc="left", fontsize="small", color=GREY)
 
 
 def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, ax: Axes | None = None) -> Axes:
@@ -112,6 +130,7 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
     at_rest = replace(scene, omega2=0.0)
     name = f"{of}_peak"
     found = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
+    refuse([] if np.isfinite(found).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
     rest = float(peaks(at_rest, of=[of])[name])
     limit = None if below is None else float(speed_limit(scene, of, below).omega2_limit)
     ax = axes_or_new(ax)
@@ -119,10 +138,10 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
     symbol, units = signals.symbol(of) or of, signals.unit(found, "N")
     ax.plot(omega2.values, found.values, color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
+    ax.set_xlim(float(omega2.min()), float(omega2.max()))
+    ax.set_ylim(0.0, ROOM * max(float(found.max()), below or 0.0) or 1.0)
     if limit is not None:
         _mark_limit(ax, limit, float(below or 0.0), units)
-    ax.set_xlim(float(omega2.min()), float(omega2.max()))
-    ax.set_ylim(bottom=0.0)
     ax.set_xlabel("crank speed $\\omega_2$ [rad/s]")
     ax.set_ylabel(f"largest {symbol} in the cycle [{units}]")
     ax.legend(fontsize="small", frameon=False, loc="upper left")
@@ -132,7 +151,8 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
 def _mark_limit(ax: Axes, limit: float, below: float, units: str) -> None:
     from linksweep.surface.labels import label
 
-    ax.axhline(below, color=VERMILION, linewidth=1.0, label=f"limit, {signals.number(below)} {units}")
-    if np.isfinite(limit):
+    said = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {limit:.5g} rad/s")
+    ax.axhline(below, color=VERMILION, linewidth=1.0, label=f"limit, {signals.number(below)} {units}: kept {said}")
+    if ax.get_xlim()[0] <= limit <= ax.get_xlim()[1]:
         ax.plot([limit], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
         label(ax, limit, below, (f"{limit:.5g} rad/s = {limit * 30.0 / np.pi:.5g} rpm", VERMILION))

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.surface import signals
 from linksweep.surface.storage import scene_of
-from linksweep.surface.style import BLACK, BLUE, GREY, SHADE, VERMILION, grid
+from linksweep.surface.style import BLACK, BLUE, GREY, SHADE, VERMILION, grid, small_type
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,10 +52,12 @@ def loop(ds: xr.Dataset) -> Figure:
         raise ValueError("the Dataset has no normal_force over theta: give what ls.sweep returns for a LoopTrack")
     ds = ds.rename({INDEX: signals.INDEX})
     signals.require_one_design([ds["normal_force"]])
-    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+    with small_type():
         figure, (track, force) = plt.subplots(1, 2, figsize=PAGE, layout="constrained", width_ratios=(1.0, 1.15))
-        _track(track, ds)
-        _force(force, ds)
+        outer = draw_track(track, ds)
+        _arrows(track, _rows(ds)[0], outer, _radius(ds))
+        draw_car(track, _radius(ds))
+        draw_force(force, ds)
     return figure
 
 
@@ -66,7 +68,7 @@ def _rows(ds: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     return angles[order], np.broadcast_to(ds["normal_force"].values, angles.shape)[order]
 
 
-def _force(ax: Axes, ds: xr.Dataset) -> None:
+def draw_force(ax: Axes, ds: xr.Dataset) -> None:
     """The force over the position, its extremes marked."""
     from matplotlib.ticker import MultipleLocator
 
@@ -97,27 +99,30 @@ def _force(ax: Axes, ds: xr.Dataset) -> None:
     ax.set_ylabel("force of the track $F_N$ [N]")
 
 
-def _track(ax: Axes, ds: xr.Dataset) -> None:
-    """The track; outside it the force, as long arrows as it is large, that press the car inwards."""
-    machine: Any = scene_of(ds.rename({signals.INDEX: INDEX})).mechanism
-    radius = float(machine.radius)
+def draw_track(ax: Axes, ds: xr.Dataset) -> np.ndarray:
+    """The track, and outside it the force as far away as it is large: these distances from the centre come back [m]."""
+    radius = _radius(ds)
     angles, force = _rows(ds)
     largest = float(np.max(force, initial=0.0, where=np.isfinite(force))) or 1.0
     outer = radius * (1.0 + BAND * force / largest)
     everywhere = np.linspace(0.0, 360.0, 361)
     grid(ax)
-    ax.plot(*_place(radius, everywhere), color=GREY, linewidth=1.0, linestyle="--", zorder=2.0, label="_loop")
-    ax.plot(*_place(np.where(np.isfinite(force), radius, np.nan), angles), color=BLACK, linewidth=2.0, label="_driven")
-    ax.plot(*_place(outer, angles), color=BLUE, linewidth=1.0, label="_force")
-    _arrows(ax, angles, outer, radius)
-    _car(ax, radius)
+    ax.plot(*place(radius, everywhere), color=GREY, linewidth=1.0, linestyle="--", zorder=2.0, label="_loop")
+    ax.plot(*place(np.where(np.isfinite(force), radius, np.nan), angles), color=BLACK, linewidth=2.0, label="_driven")
+    ax.plot(*place(outer, angles), color=BLUE, linewidth=1.0, label="_force")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
+    return outer
 
 
-def _place(radius: float | np.ndarray, degrees: np.ndarray) -> np.ndarray:
+def _radius(ds: xr.Dataset) -> float:
+    machine: Any = scene_of(ds.rename({signals.INDEX: INDEX})).mechanism
+    return float(machine.radius)
+
+
+def place(radius: float | np.ndarray, degrees: np.ndarray) -> np.ndarray:
     """Points at a distance from the loop's centre, at positions from the bottom."""
     angle = np.radians(degrees)
     return np.array([radius * np.sin(angle), -radius * np.cos(angle)])
@@ -127,17 +132,25 @@ def _arrows(ax: Axes, angles: np.ndarray, outer: np.ndarray, radius: float) -> N
     """Arrows onto the track at round positions."""
     for position in np.arange(ARROWS) * (360.0 / ARROWS):
         k = int(np.argmin(np.abs(angles - position)))
-        if abs(angles[k] - position) < 180.0 / ARROWS and outer[k] > 1.06 * radius:  # a shorter one is all head
-            ends = _place(np.array([outer[k], radius]), angles[[k, k]]).T
-            style = {"arrowstyle": "-|>", "color": BLUE, "linewidth": 0.8, "shrinkA": 0.0, "shrinkB": 0.0}
-            ax.annotate("", tuple(ends[1]), tuple(ends[0]), arrowprops=style | {"mutation_scale": 7.0})
+        if abs(angles[k] - position) < 180.0 / ARROWS:
+            press(ax, angles[k], outer[k], radius, linewidth=0.8, mutation_scale=7.0)
 
 
-def _car(ax: Axes, radius: float) -> None:
-    """The car as it enters at the bottom, and which way it goes."""
+def press(ax: Axes, angle: float, outer: float, radius: float, **style: Any) -> None:
+    """An arrow of the force from outside onto the track; a very short one would be all head."""
+    if outer > 1.06 * radius:
+        start, end = place(np.array([outer, radius]), np.array([angle, angle])).T
+        style = {"arrowstyle": "-|>", "color": BLUE, "shrinkA": 0.0, "shrinkB": 0.0} | style
+        ax.annotate("", tuple(end), tuple(start), arrowprops=style)
+
+
+def draw_car(ax: Axes, radius: float, angle: float = 0.0) -> None:
+    """The car at a position from the bottom [degree], where it enters, and which way it goes."""
     half, height = 0.09 * radius, 0.08 * radius
     x = np.array([-half, half, half, -half])
     y = -radius + height * np.array([0.3, 0.3, 1.3, 1.3])
-    ax.fill(x, y, facecolor=VERMILION, edgecolor=BLACK, linewidth=0.6, zorder=2.5)
-    start, end = (half, -radius + 0.8 * height), (half + 0.22 * radius, -radius + 0.8 * height)
+    (c, s) = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    turn = np.array([(c, -s), (s, c)])
+    ax.fill(*(turn @ [x, y]), facecolor=VERMILION, edgecolor=BLACK, linewidth=0.6, zorder=2.5)
+    start, end = (turn @ np.array([(half, half + 0.22 * radius), (-radius + 0.8 * height,) * 2])).T
     ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": VERMILION, "shrinkA": 0.0, "shrinkB": 0.0})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -77,13 +78,14 @@ def mechanism(
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
     drawing = drawing_of(scene.mechanism)
     angle = _angle(theta2)
-    shape = _shape(scene, drawing, _positions(scene, drawing, angle), point)
+    places = positions(scene, drawing, [angle])
+    _require_assembled(places, angle)
+    shape = shape_of(scene, drawing, places, point)
     acting = _joint_forces(scene, drawing, angle) if forces else {}
     ax = axes_or_new(ax)
-    grid(ax)
-    _ground(ax, scene, drawing, shape)
-    ax.plot(*shape.curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
-    _links(ax, drawing, shape)
+    draw_ground(ax, scene, drawing, shape)
+    _offset(ax, scene, drawing)
+    draw_links(ax, drawing, shape)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.2)
     _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting})
@@ -101,23 +103,27 @@ def _angle(theta2: Any) -> float:
         raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
 
 
-def _positions(scene: Scene, drawing: Drawing, angle: float) -> xr.Dataset:
-    """Positions of the pins over the revolution and, last, at the angle. Raises ValueError where it has none."""
+def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
+    """Positions of the pins over the revolution and, behind them, at these angles; the status says where none."""
     set_aside: dict[str, Any] = dict(drawing.ideal)
     machine = replace(scene.mechanism, **set_aside)
     geometry = Scene(machine, omega2=0.0, drive="crank")
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     turn = np.arange(CURVE) * (360.0 / CURVE)
-    cycle = sweep(geometry, theta2=[*turn, angle], outputs=outputs)
+    cycle = sweep(geometry, theta2=[*turn, *angles], outputs=outputs)
     signals.require_one_design(cycle.values())
+    return cycle
+
+
+def _require_assembled(cycle: xr.Dataset, angle: float) -> None:
+    """Raise ValueError where the mechanism has no position at the last angle of a cycle."""
     status, angles = cycle.status.values, cycle[signals.INDEX].values
     if status[-1]:
         possible = angles[:-1][status[:-1] == 0]
         off = np.abs((possible - angle + 180.0) % 360.0 - 180.0)
         nearest = f"choose another, such as {possible[np.argmin(off)]:.5g}" if possible.size else "nor at any other"
         raise ValueError(f"theta2 = {angle:.6g} degree: the mechanism {_meaning(cycle)} there; {nearest}")
-    return cycle
 
 
 def _meaning(cycle: xr.Dataset) -> str:
@@ -140,8 +146,8 @@ def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.
     }
 
 
-def _shape(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
-    """Where everything is, and the curves that it moves on."""
+def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
+    """Where everything is at the last angle of a cycle, and the curves that it moves on over the others."""
     machine, carrier = scene.mechanism, drawing.carrier
     moving = {pin: np.array([cycle[f"{pin}x"].values, cycle[f"{pin}y"].values]) for pin in drawing.moving}
     fixed = drawing.fixed(machine)
@@ -172,9 +178,10 @@ def _one(number: Any) -> float:
     return float(number)
 
 
-def _ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
-    """The frame's line or the guide, a support under each ground pin, and the circle that pin B runs on."""
+def draw_ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
+    """What stays: the frame's line or the guide, a support under each ground pin, the curves of pin B and the point."""
     machine: Any = scene.mechanism
+    grid(ax)
     standing = np.array([shape.pins[pin] for pin in drawing.fixed(machine)])
     if len(standing) > 1:
         machine_parts.centre_line(ax, standing)
@@ -182,20 +189,26 @@ def _ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
         _guide(ax, drawing.guide(machine), shape, _half_side(drawing, shape))
     machine_parts.supports(ax, standing)
     machine_parts.crank_circle(ax, _one(machine.crank.length))
+    ax.plot(*shape.curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
 
 
 def _guide(ax: Axes, guide: Guide, shape: Shape, half: float) -> None:
-    """The guide's centre line, its sides along the block's travel, and its offset from the crank's bearing."""
-    from linksweep.surface.labels import label
-
+    """The guide's centre line, and its sides along the block's travel."""
     low, high = _travel(shape, guide.foot)
     ends = min(low - 2.0 * half, 0.0), max(high + 2.0 * half, 0.0)
     machine_parts.centre_line(ax, np.array([guide.foot + end * guide.along for end in ends]))
     machine_parts.rails(ax, guide.foot + low * guide.along, guide.foot + high * guide.along, guide.along, half)
-    offset = float(np.hypot(*guide.foot))
+
+
+def _offset(ax: Axes, scene: Scene, drawing: Drawing) -> None:
+    """How far a guide lies off the crank's bearing."""
+    from linksweep.surface.labels import label
+
+    foot = np.zeros(2) if drawing.guide is None else drawing.guide(scene.mechanism).foot
+    offset = float(np.hypot(*foot))
     if offset > 0.0:
-        ax.plot(*np.array([np.zeros(2), guide.foot]).T, color=GREY, linewidth=0.8, zorder=2.0, label="_offset")
-        label(ax, *(0.5 * guide.foot), (f"offset {offset:.4g} m", GREY))
+        ax.plot(*np.array([np.zeros(2), foot]).T, color=GREY, linewidth=0.8, zorder=2.0, label="_offset")
+        label(ax, *(0.5 * foot), (f"offset {offset:.4g} m", GREY))
 
 
 def _travel(shape: Shape, origin: np.ndarray) -> tuple[float, float]:
@@ -210,8 +223,8 @@ def _half_side(drawing: Drawing, shape: Shape) -> float:
     return BLOCK * sum(float(np.hypot(*length)) for length in [*lengths, shape.pins.get("D", np.zeros(2))])
 
 
-def _links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
-    """The block, bars from pin to pin with their numbers, the point tied to its link, and the pins on top."""
+def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
+    """What moves: the block, bars from pin to pin with their numbers, the point tied to its link, the pins on top."""
     ends = {number: np.array([shape.pins[pin] for pin in pair]) for number, pair in drawing.bars.items()}
     covered = [shape.point]
     if drawing.block is not None:

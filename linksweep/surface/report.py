@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Container, Hashable, Iterable, Iterator, Sequence
 from math import prod
 
 import numpy as np
@@ -15,7 +15,7 @@ def peak_table(found: xr.Dataset, index: str = "theta2") -> str:
     for name in map(str, found.data_vars):
         if f"{name}_at" in found or name.endswith(("_mean", "_rms")):
             rows.append(_row(found, name))
-    return "\n".join([*_aligned(rows), *_remarks(found)])
+    return "\n".join([*aligned(rows), *_remarks(found)])
 
 
 def _row(found: xr.Dataset, name: str) -> tuple[str, ...]:
@@ -45,12 +45,12 @@ def _unit(values: xr.DataArray) -> str:
     return str(values.attrs["units"])
 
 
-def _aligned(rows: list[tuple[str, ...]]) -> Iterator[str]:
-    """Lines of a table, numbers to the right."""
+def aligned(rows: Sequence[tuple[str, ...]], right: Container[int] = (1, 3)) -> Iterator[str]:
+    """Lines of a table, some columns to the right, as numbers are."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = enumerate(zip(row, widths, strict=True))
-        yield "  ".join(cell.rjust(width) if k in (1, 3) else cell.ljust(width) for k, (cell, width) in cells).rstrip()
+        yield "  ".join(cell.rjust(width) if k in right else cell.ljust(width) for k, (cell, width) in cells).rstrip()
 
 
 def _remarks(found: xr.Dataset) -> list[str]:
@@ -80,7 +80,7 @@ def study_report(found: xr.Dataset, index: str = "theta2") -> str:
         return text
     rows = [_best(found, name) for name in map(str, found.data_vars) if name.endswith("_peak")]
     header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in found.sizes))
-    tables = [text, "", *_aligned([header, *filter(None, rows)]), ""] if any(rows) else [text, ""]
+    tables = [text, "", *aligned([header, *filter(None, rows)]), ""] if any(rows) else [text, ""]
     shape = ", ".join(f"{dim} {n}" for dim, n in found.sizes.items())
     designs = prod(found.sizes.values())
     counts = np.bincount(found.status.values.reshape(-1)) * (designs // found.status.size)

@@ -36,8 +36,7 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib Axes
-        With equal scales, a dot every 30 degrees of the crank, an arrow to the largest, and the mean vector: where
-        that is far from 0, the path has a constant part.
+        With equal scales, a dot every 30 degrees of the crank, and an arrow to the largest.
 
     Raises
     ------
@@ -58,7 +57,7 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     ax.set_aspect("equal", adjustable="datalim")
     grid(ax)
     for line in (ax.axhline, ax.axvline):
-        line(0.0, color=GREY, linewidth=0.8, zorder=1.5)
+        line(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     ax.plot(x, y, color=BLUE, label=f"_path {name}")
     _dots(ax, angles, x, y)
     _largest(ax, name, angles, x, y, signals.unit(ds[f"{name}x"], "N"))
@@ -110,7 +109,7 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     Returns
     -------
     matplotlib Axes
-        Order 0 is the mean. The bars of the largest order of each signal have their value.
+        Order 0 is the mean. The legend says the largest order of each signal.
 
     Raises
     ------
@@ -133,14 +132,17 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     refuse([f"names = {wanted}: {several}"] if len(units) > 1 else [])
     refuse([] if 0 < len(wanted) <= len(COLORS) else [f"names: one to {len(COLORS)} signals, not {len(wanted)}"])
     refuse([f"{a.name} is over {a.dims}: plot one design, as found.isel(...)" for a in chosen if a.ndim > 1])
+    from matplotlib.ticker import MaxNLocator
+
     ax = axes_or_new(ax)
     grid(ax)
     order = found["order"].values
     step = order[1] - order[0] if len(order) > 1 else 1.0
     width = 0.8 * step / len(wanted)
     for k, (name, amplitude) in enumerate(zip(wanted, chosen, strict=True)):
-        _bars(ax, order + (k - 0.5 * (len(wanted) - 1)) * width, amplitude.values, width, name, COLORS[k])
-    ax.set_xticks(order[:: max(1, len(order) // 13)])
+        place = order + (k - 0.5 * (len(wanted) - 1)) * width
+        ax.bar(place, amplitude.values, width, color=COLORS[k], label=_said(name, amplitude))
+    ax.xaxis.set_major_locator(MaxNLocator(16, integer=True))
     ax.set_xlabel("order [turns per turn of the crank]")
     ax.set_ylabel(f"amplitude [{units.pop()}]")
     ax.margins(y=0.12)
@@ -149,19 +151,10 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     return ax
 
 
-def _bars(ax: Axes, at: np.ndarray, values: np.ndarray, width: float, name: str, color: str) -> None:
+def _said(name: str, amplitude: xr.DataArray) -> str:
+    """A signal, and its largest order."""
     text = f"$F_{{{name[1:]}}}$" if name[0] == "F" else signals.symbol(name) or name.replace("_", " ")
-    ax.bar(at, values, width, color=color, label=text)
-    if np.isfinite(values).any():
-        k = int(np.nanargmax(values))
-        ax.annotate(
-            signals.number(float(values[k])),
-            (at[k], values[k]),
-            (0.0, 2.0),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize="small",
-            color=color,
-            bbox={"facecolor": "white", "linewidth": 0.0, "pad": 0.5},
-        )
+    if not np.nansum(amplitude.values) > 0.0:
+        return text
+    largest = amplitude.isel(order=int(np.nanargmax(amplitude.values)))
+    return f"{text}, largest {signals.number(float(largest))} {amplitude.units} at order {float(largest.order):g}"

@@ -105,8 +105,13 @@ def load_scene(path: str | os.PathLike) -> Scene:
 
     Examples
     --------
+    >>> import os, tempfile
     >>> import linksweep as ls
-    >>> scene = ls.load_scene("press.toml")  # doctest: +SKIP
+    >>> press = ls.example("press")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     ls.save(ls.sweep(press), os.path.join(folder, "cycle.nc"))
+    ...     ls.load_scene(os.path.join(folder, "cycle.nc")) == press
+    True
     """
     path = Path(path)
     if path.suffix == ".toml":

@@ -71,8 +71,8 @@ def scatter(
     Returns
     -------
     matplotlib Axes
-        With the designs that are ok; of more than 20 000 so many, chosen by chance. A few designs far from the rest
-        are off the scale.
+        With the designs that are ok, be it over part of a revolution; of more than 20 000 so many, chosen by chance.
+        A few designs far from the rest are off the scale.
 
     Raises
     ------
@@ -184,8 +184,8 @@ def parallel_coordinates(
     Returns
     -------
     matplotlib Axes
-        With the designs that are ok; of more than 1500 so many, chosen by chance, better ones on top. Where a few
-        designs lie far from the rest, their lines leave the axis at an arrow.
+        With the designs that are ok, be it over part of a revolution; of more than 1500 so many, chosen by chance,
+        better ones on top. Where a few designs lie far from the rest, their lines leave the axis at an arrow.
 
     Raises
     ------

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,13 +26,26 @@ def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
     return plt.subplots(layout="constrained", **figure)[1]
 
 
+@contextmanager
+def small_type() -> Iterator[None]:
+    """The look of figures of several panels."""
+    import matplotlib.pyplot as plt
+
+    plt.draw_if_interactive()  # wakes a notebook's backend, which turns on display; rc_context would turn it off again
+    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+        yield
+
+
 def crank_angles(ax: Axes, angles: np.ndarray) -> None:
-    """An axis of crank angles [degree] from the first to the last, with round ticks."""
+    """An axis of crank angles [degree] from the first to the last, with round ticks, as many as there is room for."""
     from matplotlib.ticker import MultipleLocator
 
     span = float(angles[-1] - angles[0])
     if span >= 180.0:
-        ax.xaxis.set_major_locator(MultipleLocator(90.0 if span <= 400.0 else 180.0))
+        wide = ax.get_window_extent().width / ax.figure.dpi > 4.0
+        step = (45.0 if wide else 90.0) * (2.0 if span > 400.0 else 1.0)
+        ax.xaxis.set_major_locator(MultipleLocator(step))
+        ax.xaxis.set_minor_locator(MultipleLocator(step / 3.0))
     if span > 0.0:
         ax.set_xlim(angles[0], angles[-1])
     ax.set_xlabel("crank angle $\\theta_2$ [°]")
