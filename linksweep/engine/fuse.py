@@ -99,16 +99,22 @@ class Writer:
         self.lines.append("    " * depth + line)
 
     def kernel(self) -> str:
-        self.write(0, f"def kernel({ARGUMENTS}):")
-        self.write(1, "pass" if self.plan.loops else "samples = last - first")
+        self._begin()
         for level in range(len(self.plan.loops) + 1):
             if level:
                 bounds = "first, last" if level == 1 else f"sizes[{level - 1}]"
                 self.write(level, f"for i{level - 1} in range({bounds}):")
-            self._single_values(level)
-            self._sample_loop(level)
-            self._reductions(level)
+            self._body(level)
         return "\n".join(self.lines) + "\n"
+
+    def _begin(self) -> None:
+        self.write(0, f"def kernel({ARGUMENTS}):")
+        self.write(1, "pass" if self.plan.loops else "samples = last - first")
+
+    def _body(self, level: int) -> None:
+        self._single_values(level)
+        self._sample_loop(level)
+        self._reductions(level)
 
     def _work(self, level: int, per_sample: bool) -> list[Node]:
         return [

@@ -36,19 +36,16 @@ class SearchWriter(Writer):
         self.place = {node.value: node for node in self.placed}
         self.scratch_size = (len(self.scratch) + 2) * search.SAMPLES
 
-    def kernel(self) -> str:
+    def _begin(self) -> None:
         self.write(0, f"def kernel({ARGUMENTS}):")
         self.write(1, f"samples = {search.SAMPLES}")
         self.write(1, f"place_halves({self._row(self.place[FAR])})")
-        for level in range(len(self.plan.loops) + 1):
-            if level:
-                bounds = "first, last" if level == 1 else f"sizes[{level - 1}]"
-                self.write(level, f"for i{level - 1} in range({bounds}):")
-            self._single_values(level)
-            self._place_samples(level)
-            self._sample_loop(level)
-            self._search(level)
-        return "\n".join(self.lines) + "\n"
+
+    def _body(self, level: int) -> None:
+        self._single_values(level)
+        self._place_samples(level)
+        self._sample_loop(level)
+        self._search(level)
 
     def _late(self, plan: Plan) -> tuple[Node, ...]:
         """Nothing: a signal must be known between the samples."""
