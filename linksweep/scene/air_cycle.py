@@ -42,8 +42,9 @@ class OttoCycle(ByContent):
     gamma : ratio of the specific heats [1]
     strokes : 4 (the cycle takes 720 degrees) or 2 (360)
 
-    Numbers may be DataArrays of design dims. It fires at the top dead centre of the first revolution, where the crank
-    points along the guide to the head. A crank with omega2 < 0 runs through the same strokes, clockwise.
+    Numbers may be DataArrays of design dims; a ValueError of the scene that takes it says what is wrong with them. It
+    fires at the top dead centre of the first revolution, where the crank points along the guide to the head. A crank
+    with omega2 < 0 runs through the same strokes, clockwise.
 
     Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
 
@@ -92,6 +93,8 @@ class DieselCycle(ByContent):
     peak_pressure : during combustion [Pa]; default: that at the end of compression. Where given it is larger, and part
         of the heat comes at constant volume (mixed, or Seiliger cycle).
     intake_pressure, gamma, strokes : as `OttoCycle`
+
+    It fires, and its numbers are checked, as those of an `OttoCycle`. Source: textbook air-standard analysis.
 
     Examples
     --------
