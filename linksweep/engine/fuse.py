@@ -4,7 +4,8 @@ Design dimensions become nested loops, the index the inner loop. An operation is
 dimensions: what depends on no angle once per design, what depends on angle in the inner loop, and what
 is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views are taken before a
 plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart that the source
-says, so that they are known not to overlap: that is what vectorises.
+says, so that they are known not to overlap: that is what vectorises. Results that are too many to be told apart when
+the loop begins are written to `scratch` too, and copied from there.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, work)
@@ -30,6 +31,10 @@ ARGUMENTS = (
     "block, block_at, single, single_at, scratch, angles, work"
 )
 INFIX = {"+", "-", "*", "/", "<"}
+COMPARISONS = 128
+"""Pairs of rows, at most, that the compiler lets a vectorised loop compare before it begins, lest they overlap."""
+TILE = 1024
+"""Samples that a kernel without design loops does at a time where it copies: the rows of a tile stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,7 @@ class Writer:
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
         self.placed = frozenset(node for node in inputs if node.value in self.PLACED)
         self.profiles = tuple(node for node in inputs if self.per_sample(node) and node not in self.placed)
+        self.copied = self._copied()
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
         self.named = {*self.rows, *self.singles, *self.scratch}
         self.uses = Counter(x for node in self.nodes for x in node.operands)
@@ -86,14 +92,29 @@ class Writer:
         """Number of design loops around a node's work."""
         return max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
 
+    def _copied(self) -> frozenset[Node]:
+        """Results that are copied from scratch: those that deeper loops read, and all of a loop that has too many."""
+        copied = set(self.rows) & self._read_back()
+        for level in range(len(self.plan.loops) + 1):
+            rows = {node for node in self.rows if self.level(node) == level}
+            if len(rows) * (len(rows) - 1) // 2 + len(rows) * len(self.profiles) > COMPARISONS:
+                copied |= rows
+        return frozenset(copied)
+
+    def _read_back(self) -> set[Node]:
+        """Rows that deeper loops read back."""
+        return {
+            x
+            for node in self.nodes
+            for x in node.operands
+            if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node)
+        }
+
     def _kept_in_scratch(self) -> list[Node]:
-        """Rows that deeper loops read back, the signals to be reduced, and what is placed."""
-        kept = {self.plan.outputs[reduction.name] for reduction in self.reductions} | self.placed
-        for node in self.nodes:
-            for x in node.operands:
-                if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node):
-                    kept.add(x)
-        return sorted(kept - set(self.rows), key=lambda node: node.position)
+        """Rows that deeper loops read back, the signals to be reduced, what is placed, and what is copied."""
+        signals = {self.plan.outputs[reduction.name] for reduction in self.reductions}
+        kept = self._read_back() | signals | self.placed | self.copied
+        return sorted(kept, key=lambda node: node.position)
 
     def write(self, depth: int, line: str) -> None:
         self.lines.append("    " * depth + line)
@@ -109,7 +130,7 @@ class Writer:
 
     def _begin(self) -> None:
         self.write(0, f"def kernel({ARGUMENTS}):")
-        self.write(1, "pass" if self.plan.loops else "samples = last - first")
+        self.write(1, "pass" if self.plan.loops else "start, samples = first, last - first")
 
     def _body(self, level: int) -> None:
         self._single_values(level)
@@ -138,12 +159,13 @@ class Writer:
 
     def _sample_loop(self, level: int) -> None:
         """The inner loop over the samples, with the rows that it reads and writes."""
-        depth = level + 1
-        work = self._work(level, per_sample=True)
-        written = [node for node in (*self.rows, *self.scratch) if self.level(node) == level]
+        written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         written = [node for node in written if node not in self.placed]
         if not written:
             return
+        copied = [node for node in written if node in self.copied]
+        depth = self._tiles(level + 1) if copied and not self.plan.loops else level + 1
+        work = self._work(level, per_sample=True)
         met = {*written, *(x for node in work for x in node.operands)}
         read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
         cells = self._cells(depth, read, written)
@@ -153,6 +175,19 @@ class Writer:
         self._assign(work, depth + 1)
         for node in written:
             self.write(depth + 1, f"{cells[node, 'written']} = {name(node)}")
+        self._copies(depth, copied)
+
+    def _tiles(self, depth: int) -> int:
+        """Take the samples tile by tile; the depth inside."""
+        self.write(depth, f"for start in range(first, last, {TILE}):")
+        self.write(depth + 1, f"samples = min({TILE}, last - start)")
+        return depth + 1
+
+    def _copies(self, depth: int, copied: list[Node]) -> None:
+        for node in copied:
+            self.write(depth, f"row = {self._block_row(node)}")
+            self.write(depth, "for j in range(samples):")
+            self.write(depth + 1, f"row[j] = {self._scratch_cell(node)}")
 
     def _cells(self, depth: int, read: list[Node], written: list[Node]) -> dict[tuple[Node, str], str]:
         """Where sample j of each row is read and written: in scratch, or in views of rows that are taken before the
@@ -166,12 +201,24 @@ class Writer:
     def _cell(self, depth: int, node: Node, how: str) -> str:
         given = how == "read" and node.operator == "input" and node not in self.placed
         if node in self.scratch and not given:
-            return f"scratch[{self.scratch[node] * self.room} + j]"
-        rows, k = ("profile", self.profiles.index(node)) if given else ("block", self.rows.index(node))
-        view, table = f"{how}{node.position}", "profiles" if given else "block"
-        part = "" if self.plan.loops else "[first:last]"  # without design loops, what this call is to do
-        self.write(depth, f"{view} = {table}[{self._at(rows, k, node)}]{part}")
+            return self._scratch_cell(node)
+        view = f"{how}{node.position}"
+        self.write(depth, f"{view} = {self._profile(node) if given else self._block_row(node)}")
         return f"{view}[j]"
+
+    def _scratch_cell(self, node: Node) -> str:
+        return f"scratch[{self.scratch[node] * self.room} + j]"
+
+    def _profile(self, node: Node) -> str:
+        return f"profiles[{self._at('profile', self.profiles.index(node), node)}]{self._part}"
+
+    def _block_row(self, node: Node) -> str:
+        return f"block[{self._at('block', self.rows.index(node), node)}]{self._part}"
+
+    @property
+    def _part(self) -> str:
+        """Which samples of a row: without design loops, what this call is to do."""
+        return "" if self.plan.loops else "[start:start + samples]"
 
     def _row(self, node: Node) -> str:
         """A node's row of scratch."""

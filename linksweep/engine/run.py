@@ -18,7 +18,7 @@ import numpy as np
 
 from linksweep.engine import reduce
 from linksweep.engine.compile import compiled
-from linksweep.engine.fuse import Fused, Reduction, fuse, reductions_source
+from linksweep.engine.fuse import TILE, Fused, Reduction, fuse, reductions_source
 from linksweep.engine.plan import Plan
 from linksweep.engine.trace import Node
 
@@ -135,7 +135,7 @@ def evaluate(
     plan: Plan, inputs: Mapping[str, Field], grid: Grid, sizes: Mapping[str, int], threads: int | None = None
 ) -> dict[str, Field]:
     """Every output of the plan over its own dims."""
-    ready = runner(plan, (), room_for(len(grid.angles)))
+    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else TILE))
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
