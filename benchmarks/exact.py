@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 
 import numpy as np
@@ -13,8 +13,8 @@ import xarray as xr
 import linksweep as ls
 
 from . import peers
-from .cases import ALL, Size, batch, scene
-from .kernel import way
+from .cases import ALL, LENGTHS, Size, batch, scene
+from .kernel import kernel_of, way
 from .timing import FASTER, SHARE, Race, Row, race
 
 EXACT = "ls.peaks, exact"
@@ -107,28 +107,36 @@ def _lapack(size: Size) -> Row:
 
 
 def _shared(size: Size) -> list[Row]:
-    """A thousand masses, or speeds, of one geometry against a thousand geometries."""
-    geometries = scene(batch(size.designs, "a", "b", "c", "d"))
-    jobs = {
-        "geometries": geometries,
-        "masses": scene(batch(size.designs, "m3")),
-        "speeds": scene(batch(size.designs, "omega2")),
+    """A thousand masses, or speeds, of one geometry against a thousand geometries: exact peaks, which share the
+    kinematics of the samples; and the largest of samples, by sums of a few cycles."""
+    jobs = {name: scene(batch(size.designs, *numbers)) for name, numbers in SHARED.items()}
+    exact = {f"{size.designs} {name}": partial(ls.peaks, job, threads=1) for name, job in jobs.items()}
+    sums = {
+        f"{size.designs} {name}, {_grid(size.turn)}, superposed": partial(
+            ls.peaks, job, theta2=size.turn, threads=1, solver="superposed"
+        )
+        for name, job in jobs.items()
     }
-    calls = {f"{size.designs} {name}": partial(ls.peaks, job, threads=1) for name, job in jobs.items()}
-    timed = race(calls, size)
-    theirs = f"{size.designs} geometries"
-    return [
-        timed.row(SHARE, f"{size.designs} {name}", theirs, goal) for name, goal in (("masses", 0.7), ("speeds", 0.35))
-    ]
+    kernels = {f"{name}: kernel": kernel_of(call).call for name, call in sums.items()}
+    goals = ((exact, (0.7, 0.35)), (sums, (0.35, 0.35)), (kernels, (0.35, 0.35)))
+    return [row for calls, goal in goals for row in _against_first(race(calls, size), goal)]
+
+
+SHARED = {"geometries": LENGTHS, "masses": ("m3",), "speeds": ("omega2",)}
+"""What is different in each design."""
+
+
+def _against_first(timed: Race, goals: Iterable[float | None]) -> list[Row]:
+    theirs, *ours = timed.seconds
+    return [timed.row(SHARE, name, theirs, goal) for name, goal in zip(ours, goals, strict=True)]
 
 
 MILLION = """
-import resource
-import benchmarks.exact as exact
 import linksweep as ls
+from benchmarks import exact, growth
 scene = exact.crank_rockers({designs}, 0.0)
 ls.peaks(scene)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
+print(growth.peak_memory())
 """
 
 

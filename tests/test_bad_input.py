@@ -385,3 +385,10 @@ def test_all_that_is_wrong_with_a_scene_is_said_at_once():
         f"loads[2].at[1] = -1 m: must be at least 0{TURNED}",
         "loads[2].at[2] = nan degree: must be finite",
     ]
+
+
+def test_an_array_is_no_link():
+    load = ls.Load(xr.DataArray([0.1, 0.2], dims="n"), force=(0.0, 1.0))
+    (line,) = refusal(ls.Scene, FOUR_BAR, omega2=1.0, loads=[load])
+    assert line.startswith("loads[1].link = <xarray.DataArray")
+    assert line.endswith(": must be one of crank, coupler, rocker")

@@ -87,6 +87,22 @@ def test_attributes_are_those_of_the_eager_result():
         assert ls.peaks(lazy(scene), theta2=8).attrs == ls.peaks(scene, theta2=8).attrs
 
 
+AWAKE = """
+import sys
+import linksweep as ls
+bars = [ls.Bar(length=length, width=0.02, thickness=0.02, density=7750) for length in (0.08, 0.22, 0.18)]
+scene = ls.Scene(ls.FourBar(*bars, ground=0.20), omega2=30.0)
+ls.sweep(scene)
+ls.peaks(scene)
+print(*{"dask.array", "distributed", "pint"}.intersection(sys.modules))
+"""
+
+
+def test_a_scene_of_plain_numbers_wakes_neither_dask_nor_pint():
+    """They take longer to import than a sweep does; xarray imports them to see whether numbers are theirs."""
+    assert subprocess.run([sys.executable, "-c", AWAKE], capture_output=True, text=True, check=True).stdout == "\n"
+
+
 def test_nothing_is_computed_before_it_is_asked_for():
     length = xr.DataArray(never(4), dims="a")
     torque = xr.DataArray(never(4, 6), {"theta2": np.arange(6) * 60.0}, ("a", "theta2"))

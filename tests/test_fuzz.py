@@ -167,6 +167,13 @@ def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, conte
         ("omega2 = " + "9" * 5000, "1: not TOML of a scene: a number has too many digits"),
         ('omega2 = {csv = "\\u0000"}', '1: omega2.csv = "\\u0000": must be the name of a file'),
         ('omega2 = {csv = "a\\nb"}', '1: omega2.csv = "a\\nb": must be the name of a file'),
+        ('omega2 = {"8 cm\\n" = 0}', '1: omega2."8 cm\\n": unknown key'),
+        ('omega2 = {dim = "n", values = ["\\u0085"]}', '1: omega2.values[1] = "\\u0085": must be a number'),
+        ('omega2 = {dim = "a\\nb", values = [1]}', '1: omega2.dim = "a\\nb": must be a name'),
+        (
+            'omega2 = {dim = "n", values = [1], coords = {"a\\nb" = [1]}}',
+            '1: omega2.coords: "a\\nb" is no dim of these values',
+        ),
         ('omega2 = {dim = "n", start = 1, stop = 2, num = 1000000000000}', "1: omega2.num = 1000000000000: must be at"),
     ],
 )

@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from linksweep.scene import units
 from linksweep.scene.axis import design_axis
 from linksweep.scene.units import KINDS, accepted_unit, quantity
 
@@ -257,3 +258,55 @@ def test_design_axis_says_all_that_is_wrong_with_it(table, problems):
     assert len(lines) == len(problems)
     for line, problem in zip(lines, problems, strict=True):
         assert line.startswith(problem)
+
+
+# ------------------------------------------------------------------------------- what pint says, kept
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A cache folder in which the factors of all units are kept, and a process that has not looked there yet."""
+    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(tmp_path / "cache"))
+    units._factors_kept.cache_clear()
+    quantity("8 cm", "length")
+    units._factors_kept.cache_clear()
+    yield tmp_path / "cache"
+    units._factors_kept.cache_clear()
+
+
+def asked_again(monkeypatch):
+    """Whether pint is asked for what a unit is worth; the numbers must be right either way."""
+    asked = []
+    monkeypatch.setattr(units, "_pint", lambda pint=units._pint: asked.append(1) or pint())
+    for text, kind, expected in EXACT:
+        assert quantity(text, kind) == float(expected)
+    return bool(asked)
+
+
+def test_a_second_process_need_not_ask_pint(folder, monkeypatch):
+    assert not asked_again(monkeypatch)
+
+
+@pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b.replace(b"127", b"128"), lambda b: b"\xff" + b])
+def test_a_damaged_file_is_written_again(folder, monkeypatch, damage):
+    (file,) = folder.glob("units_*")
+    whole = file.read_bytes()
+    file.write_bytes(damage(whole))
+    assert asked_again(monkeypatch)
+    assert file.read_bytes() == whole
+
+
+@pytest.mark.parametrize("change", ["another pint", "another list"])
+def test_what_was_kept_for_another_list_or_pint_is_not_believed(folder, monkeypatch, change):
+    if change == "another pint":
+        monkeypatch.setattr(units, "version", lambda _: "0.0")
+    else:
+        monkeypatch.setattr(units, "_NOT_IN_PINT", (*units._NOT_IN_PINT, "furlong = 660 * foot"))
+    assert asked_again(monkeypatch)
+    assert len(list(folder.glob("units_*"))) == 2
+
+
+def test_without_a_folder_pint_is_asked(folder, monkeypatch):
+    (folder.parent / "file").write_text("not a folder")
+    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(folder.parent / "file"))
+    assert asked_again(monkeypatch)

@@ -67,8 +67,8 @@ def _helpers(source: str) -> str:
 def _namespace(text: str, given: Mapping[str, Callable]) -> Mapping[str, Any]:
     """What a module of this text defines: kept in the user's cache folder if that can be, else made afresh."""
     folder = cache_folder()
-    path = folder and _stored(folder, text)
-    if path:
+    path = folder and folder / f"kernel_{_digest(text)}.py"
+    if path and stored(path, text):
         return vars(_imported(path, given))
     namespace = {"__spec__": None, **given}
     exec(text, namespace)
@@ -82,7 +82,7 @@ def _digest(text: str) -> str:
 
 
 def cache_folder() -> Path | None:
-    """Where compiled kernels are kept: LINKSWEEP_CACHE_DIR, or the user's cache folder; None if it can't be made."""
+    """Where what took long is kept: LINKSWEEP_CACHE_DIR, or the user's cache folder; None if it can't be made."""
     import platformdirs
 
     folder = Path(os.environ.get("LINKSWEEP_CACHE_DIR") or platformdirs.user_cache_path("linksweep"))
@@ -93,18 +93,18 @@ def cache_folder() -> Path | None:
     return folder if os.access(folder, os.W_OK) else None
 
 
-def _stored(folder: Path, text: str) -> Path | None:
-    """The module's file, written whole unless it is there as it should be; None if it can't be."""
-    path = folder / f"kernel_{_digest(text)}.py"
+def stored(path: Path, text: str) -> bool:
+    """Whether a file of the cache holds this text: it is written, whole, unless it is there as it should be."""
+    content = text.encode()
     try:
-        if not path.exists() or path.read_text() != text:
-            handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
-            with os.fdopen(handle, "w") as file:
-                file.write(text)
+        if not path.exists() or path.read_bytes() != content:
+            handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+            with os.fdopen(handle, "wb") as file:
+                file.write(content)
             os.replace(temporary, path)
     except OSError:
-        return None
-    return path
+        return False
+    return True
 
 
 def _imported(path: Path, given: Mapping[str, Callable]):

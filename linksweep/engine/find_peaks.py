@@ -112,7 +112,7 @@ def find_peaks(
 
     with np.errstate(all="ignore"):
         over_threads(work, int(layout.sizes[0]), 1 + designs // DESIGNS_PER_THREAD if plan.loops else 1, threads)
-    fields = iter(single_of(slot, single, sizes) for slot in layout.singles)
+    fields = iter(single_of(slot, single) for slot in layout.singles)
     return {signal: Peak(*(next(fields) for _ in FOUND)) for signal in signals}
 
 

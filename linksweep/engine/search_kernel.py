@@ -10,9 +10,9 @@ depends on the index anew at their trials.
 from __future__ import annotations
 
 from linksweep.engine import search
-from linksweep.engine.fuse import Reduction, Writer, name
 from linksweep.engine.plan import Plan
 from linksweep.engine.trace import Node
+from linksweep.engine.writer import Reduction, Writer
 
 ARGUMENTS = (
     "first, last, sizes, parameters, parameter_at, single, single_at, scratch, grades, lanes, trials, best, flags"
@@ -54,7 +54,7 @@ class SearchWriter(Writer):
     def _place_samples(self, level: int) -> None:
         tangent = self.place[TANGENT]
         if self.level(tangent) == level:
-            widths = ", ".join(name(self.plan.outputs[width]) for width in (NEAR_WIDTH, FAR_WIDTH))
+            widths = ", ".join(self.name(self.plan.outputs[width]) for width in (NEAR_WIDTH, FAR_WIDTH))
             self.write(level + 1, f"place_samples({self._row(tangent)}, {self._neighbours}, {widths}, grades)")
 
     @property
@@ -89,9 +89,9 @@ class SearchWriter(Writer):
         self.write(depth, f"for j in range({search.TRIALS} * in_blocks(count)):")
         self.write(depth + 1, f"{TANGENT}, {FAR}, tag = at[j], side[j], of[j]")
         self._assign(self._needed([self.signals[k] for k in tags]), depth + 1)
-        chosen = name(self.signals[tags[-1]])
+        chosen = self.name(self.signals[tags[-1]])
         for k in reversed(tags[:-1]):
-            chosen = f"{name(self.signals[k])} if tag == {float(k)} else ({chosen})"
+            chosen = f"{self.name(self.signals[k])} if tag == {float(k)} else ({chosen})"
         self.write(depth + 1, f"value[j] = {chosen}")
         self.write(depth, f"evaluations += {search.TRIALS} * count")
         self.write(depth, "count = advance(lanes, trials, count, best)")

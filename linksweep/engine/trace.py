@@ -110,6 +110,10 @@ class Graph:
                 return operands[1] if operands[0].value else operands[2]
         return self._make(operator, operands, frozenset().union(*(x.dims for x in operands)), None)
 
+    def copy(self, node: Node, operands: tuple[Node, ...]) -> Node:
+        """A node of another graph, with operands of this one."""
+        return self._make(node.operator, operands, node.dims, node.value)
+
     def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
         positions = tuple(x.position for x in operands)
         key = Key(operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value)

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.engine.plan import plan
+from linksweep.engine.plan import InputForms, Plan, plan
 from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.engine.superpose import superposed
 from linksweep.mechanisms.validate import name_problems, refuse
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
@@ -42,13 +44,26 @@ def compute(
     names: tuple[str, ...],
     threads: int | None = None,
     given: Mapping[str, Field] | None = None,
+    solver: str = "fast",
 ) -> dict[str, Field]:
     """The named quantities of a scene that has been brought to the grid's angles; what is `given` is not computed."""
     given = given or {}
     inputs = scene.inputs
     forms = (*inputs.forms, *((name, field.dims) for name, field in given.items()))
-    request = plan(scene.table, names, forms)
+    request = planned(scene, names, forms, solver)
     return evaluate(request, {**inputs.fields, **given}, grid, inputs.sizes, threads)
+
+
+def planned(scene: Scene, names: tuple[str, ...], forms: InputForms, solver: str) -> Plan:
+    """The plan of a request, superposed where the solver says so."""
+    request = plan(scene.table, names, forms)
+    return superposed(request) if solver == "superposed" else request
+
+
+def assembly_of(scene: Scene, threads: int | None = None) -> Field:
+    """Whether each design can be assembled at every angle (0), at some (1) or at none (2)."""
+    at_one = crank_grid(1, scene.period, scene.mechanism.index)
+    return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
 
 
 def surely_ok(scene: Scene) -> bool:

@@ -17,7 +17,7 @@ from linksweep.engine.find_peaks import Peak, find_peaks, search_functions
 from linksweep.engine.plan import plan
 from linksweep.engine.run import Field
 from linksweep.engine.search_kernel import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
-from linksweep.results.between import Array, Group, Places, empty, groups, in_period, places_of
+from linksweep.results.between import Array, Group, Places, empty, groups, in_period
 from linksweep.results.compute import compute, only_where
 from linksweep.results.paths import QUARTER, Paths, about_breaks, arcs, limits, turns
 from linksweep.scene.dimensions import laid
@@ -43,18 +43,19 @@ class Found(NamedTuple):
     samples: Field
 
 
-def exact_peaks(scene: Scene, signals: tuple[str, ...], threads: int | None = None) -> dict[str, Found]:
+def exact_peaks(
+    scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
+) -> dict[str, Found]:
     """The largest value of each signal over the continuous revolution, for every design; NaN where it has none."""
     names = (*signals, "assembly")
     if scene.at_one_angle is not scene:
         found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
         for group in groups(scene, names):
-            (assembly,) = group.constants("assembly")
+            (kinds,) = group.constants("assembly")
             for kind, paths_of in ((0.0, turns), (1.0, arcs)):
-                if np.any(assembly == kind):
-                    _follow(group.some(assembly == kind), found, paths_of, threads)
+                if np.any(kinds == kind):
+                    _follow(group.some(kinds == kind), found, paths_of, threads)
         return found
-    assembly = compute(scene, crank_grid(1, scene.period, scene.mechanism.index), ("assembly",))["assembly"]
     partly = _with_arcs(scene, names, _designs_where(scene, assembly, 1.0))
     found = _fused(scene, signals, threads)
     sound = assembly.values < (1.0 if len(partly) else 2.0)
@@ -82,9 +83,7 @@ def _with_arcs(scene: Scene, names: tuple[str, ...], designs: Array) -> Array:
 def _designs_where(scene: Scene, field: Field, value: float) -> Array:
     """The designs at which a field has a value."""
     sizes = scene.inputs.sizes
-    designs = np.arange(math.prod(sizes.values()))
-    places = places_of(sizes, designs)
-    return designs[np.broadcast_to(field.values[tuple(places[dim] for dim in field.dims)] == value, designs.shape)]
+    return np.flatnonzero(np.broadcast_to(laid(field, tuple(sizes)) == value, tuple(sizes.values())))
 
 
 def peaks_where(good: Field, found: dict[str, Found]) -> dict[str, Found]:

@@ -65,8 +65,10 @@ def by_blocks(function: Callable, scene: Scene, of_samples: bool, **options: Any
         dims along which they share something are not cut; and the dims of `status` depend on the numbers: lazy, it has
         all that it could have
     """
-    scene = in_memory(scene, [path for path in lazy_paths(scene) if scene.arrays[path].dims in ((), (path,))])
-    if not lazy_paths(scene):
+    lazy = lazy_paths(scene)
+    at_once = [path for path in lazy if scene.arrays[path].dims in ((), (path,))]
+    scene = in_memory(scene, at_once)
+    if lazy == at_once:
         return function(scene, **options)
     options["threads"] = options["threads"] or 1
     one, order, judged = _looks(function, scene, options)

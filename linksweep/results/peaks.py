@@ -8,19 +8,28 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.fuse import Reduction
 from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, Grid, reduce_rows
-from linksweep.mechanisms.validate import count_problems, refuse
-from linksweep.results.compute import compute, only_where, quantity_problems, requested, require_scene, surely_ok
+from linksweep.engine.writer import Reduction
+from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
+from linksweep.results.compute import (
+    assembly_of,
+    only_where,
+    planned,
+    quantity_problems,
+    requested,
+    require_scene,
+    surely_ok,
+)
 from linksweep.results.exact import Found, exact_peaks, peaks_where
 from linksweep.results.lazy import by_blocks
 from linksweep.results.quadrature import Power, means
-from linksweep.results.record import design_coordinates, flags, provenance, variable
+from linksweep.results.record import design_coordinates, flags, plain, provenance, variable
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
+SOLVERS = ("fast", "superposed")
 SUMMARIES = ("mean", "rms", "bound", "samples")
 STATUS_ANGLES = 720
 """Angles at which a scene is looked at for jams, dead centres and the like, where its numbers alone do not tell."""
@@ -36,7 +45,13 @@ class Wanted(NamedTuple):
     powers: tuple[Power, ...] = ()
 
 
-def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, threads: int | None = None) -> xr.Dataset:
+def peaks(
+    scene: Scene,
+    of: Iterable[str] | None = None,
+    theta2: Any = None,
+    threads: int | None = None,
+    solver: str = "fast",
+) -> xr.Dataset:
     """Worst case of each quantity over the continuous revolution.
 
     Exact: samples that are dense where a mechanism comes near a toggle find every rise, and between them the plan is
@@ -51,6 +66,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, thr
         all pins and the torque
     theta2 : None; or a count of angles, or any array of angles [degree], for the largest of these samples instead
     threads : at most so many (default: all cores); the numbers do not depend on it
+    solver : "fast" or, with theta2, "superposed", as in `linksweep.sweep`
 
     Returns
     -------
@@ -61,7 +77,7 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, thr
     Raises
     ------
     ValueError
-        For an unknown name or angles that are no angles.
+        For an unknown name or angles that are no angles; for exact peaks that are to be superposed.
 
     Notes
     -----
@@ -76,33 +92,42 @@ def peaks(scene: Scene, of: Iterable[str] | None = None, theta2: Any = None, thr
     ['F32_peak', 'F32_peak_at', 'status']
     """
     require_scene(scene)
-    refuse(count_problems("threads", threads))
+    refuse([*count_problems("threads", threads), *_solver_problems(solver, theta2)])
     names = None if of is None else requested("of", of)
-    return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads)
+    return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads, solver=solver)
 
 
-def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | None) -> xr.Dataset:
+def _solver_problems(solver: Any, theta2: Any) -> list[str]:
+    problems = choice_problems("solver", solver, SOLVERS)
+    said = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
+    return problems or ([said] if solver == "superposed" and theta2 is None else [])
+
+
+def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | None, solver: str) -> xr.Dataset:
     """The same of a scene whose numbers are in memory."""
     wanted = _wanted(scene, names)
     index = scene.mechanism.index
     if theta2 is None:
         refuse(_angles_missing(scene))
         grid, sampled = crank_grid(STATUS_ANGLES, scene.period, index), scene.at_one_angle
-        found, averages = _exact(scene, wanted, threads)
     else:
         grid = in_order(crank_grid(theta2, scene.period, index))
         sampled = scene.at(grid)
-        found, averages = _of_samples(sampled, grid, wanted, threads)
+    assembly = assembly_of(scene, threads)
+    if theta2 is None:
+        found, averages = _exact(scene, wanted, assembly, threads)
+    else:
+        found, averages = _of_samples(sampled, grid, wanted, threads, solver)
     order = tuple(sampled.inputs.sizes)
-    status = _status(scene, sampled, grid, found, averages, threads)
+    status = _status(scene, sampled, grid, assembly, found, averages, threads)
     variables: dict[str, xr.Variable] = {}
     for item in wanted:
         for name, field, units, said in _named(item, found, averages, scene.mechanism.spot):
             variables[name] = variable(field, units, said, order)
-    attributes = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
-    variables["status"] = xr.Variable(status.dims, status.values, attributes)
+    variables["status"] = status
     angles = "" if theta2 is None else f", theta2={np.size(grid.angles)}"
-    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles})"
+    by = "" if solver == "fast" else f", solver={solver!r}"
+    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles}{by})"
     coordinates = design_coordinates(sampled)
     return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
@@ -134,15 +159,17 @@ def _takes(quantity: Quantity, summary: str) -> Wanted:
 Averages = dict[Power, Field]
 
 
-def _exact(scene: Scene, wanted: list[Wanted], threads: int | None) -> tuple[dict[str, Found], Averages]:
+def _exact(
+    scene: Scene, wanted: list[Wanted], assembly: Field, threads: int | None
+) -> tuple[dict[str, Found], Averages]:
     signals = tuple(dict.fromkeys(signal for item in wanted for signal in item.signals))
     powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
-    found = exact_peaks(scene, signals, threads) if signals else {}
+    found = exact_peaks(scene, signals, assembly, threads) if signals else {}
     return found, means(scene, powers, threads) if powers else {}
 
 
 def _of_samples(
-    sampled: Scene, grid: Grid, wanted: list[Wanted], threads: int | None
+    sampled: Scene, grid: Grid, wanted: list[Wanted], threads: int | None, solver: str
 ) -> tuple[dict[str, Found], Averages]:
     """The largest of a grid's samples, as they stand."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in wanted if item.summary in ("bound", "samples")]
@@ -150,7 +177,7 @@ def _of_samples(
     largest = {s: Reduction("largest_sample", s) for item in wanted for s in item.signals}
     averages = {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for item in wanted for p in item.powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
-    request = plan(sampled.table, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms)
+    request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
     reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
     found = {}
     for signal, reduction in largest.items():
@@ -171,14 +198,19 @@ def _angles_missing(scene: Scene) -> list[str]:
 
 
 def _status(
-    scene: Scene, sampled: Scene, grid: Grid, found: dict[str, Found], averages: Averages, threads: int | None
+    scene: Scene,
+    sampled: Scene,
+    grid: Grid,
+    assembly: Field,
+    found: dict[str, Found],
+    averages: Averages,
+    threads: int | None,
 ) -> xr.Variable:
     """The assembly's 0, 1 or 2; 1 also where some sample is not ok, and 3 where a peak or a mean is without bound.
 
     Where no sample is ok, there are no peaks either: they are made NaN.
     """
-    order, at_one = tuple(sampled.inputs.sizes), crank_grid(1, scene.period, scene.mechanism.index)
-    assembly = compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
+    order = tuple(sampled.inputs.sizes)
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
@@ -191,7 +223,8 @@ def _status(
             there = variable(Field(dims, infinite), "1", "", order)
             status = xr.where(there, float(UNBOUNDED), status)
     dims = tuple(dim for dim in order if dim in status.dims)
-    return status.transpose(*dims).astype(np.int8)
+    words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
+    return plain(Field(dims, status.transpose(*dims).values.astype(np.int8)), words)
 
 
 def _extremes_of_status(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from linksweep.engine.run import Field, Grid
@@ -23,7 +25,7 @@ def described(
     variables = {
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
-    variables["status"] = xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings))
+    variables["status"] = plain(status, status_attributes(scene.mechanism.status_meanings))
     coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
     others = quantity.keys() - scene.motion.keys()  # results that have the name of a parameter, but are not it
     coordinates = {name: values for name, values in coordinates.items() if name not in others}
@@ -33,12 +35,18 @@ def described(
 
 def index_coordinate(scene: Scene, grid: Grid) -> dict[str, xr.Variable]:
     said = {"units": "degree", "long_name": scene.mechanism.position}
-    return {grid.dim: xr.Variable(grid.dim, grid.angles, said)}
+    # already pandas' own: xarray would wake dask and pint to see whether the angles are theirs
+    return {grid.dim: xr.IndexVariable(grid.dim, pd.Index(grid.angles), said, fastpath=True)}
+
+
+def plain(field: Field, attributes: Mapping[str, Any]) -> xr.Variable:
+    """A field as a variable. xarray need not look at its numbers, nor wake dask to see whether they are dask's."""
+    return xr.Variable(field.dims, field.values, attributes, fastpath=True)
 
 
 def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:
     """A field with its unit, and its dims in the order in which the scene names them."""
-    made = xr.Variable(field.dims, field.values, {"units": units, "long_name": long_name})
+    made = plain(field, {"units": units, "long_name": long_name})
     if len(field.dims) < 2:
         return made
     return made.transpose(*(dim for dim in dict.fromkeys(order) if dim in field.dims))

@@ -16,7 +16,7 @@ from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
-SOLVERS = ("fast", "dense")
+SOLVERS = ("fast", "superposed", "dense")
 
 
 def sweep(
@@ -35,7 +35,9 @@ def sweep(
         in a four-stroke engine, the grid is arange(N)·720/N. For a car in a loop these are positions, `theta`
     outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine
         unknowns
-    solver : "fast" (the 9×9 eliminated by hand) or "dense" (the full 9×9 by LAPACK with partial pivoting, as a check)
+    solver : "fast" (the 9×9 eliminated by hand), "superposed" (the same; along a design dim that carries masses, loads,
+        speeds … over one geometry it adds up a few cycles, which is faster and rounds a little otherwise) or "dense"
+        (the full 9×9 by LAPACK with partial pivoting, as a check)
     threads : at most so many (default: all cores); the numbers do not depend on it
 
     Returns
@@ -46,7 +48,7 @@ def sweep(
     Raises
     ------
     ValueError
-        For an unknown name or angles that are no angles.
+        For an unknown name or angles that are no angles; for an `error_bound` of what is superposed.
 
     Notes
     -----
@@ -71,13 +73,14 @@ def _sweep(scene: Scene, theta2: Any, outputs: list[str] | None, solver: str, th
     """The same of a scene whose numbers are in memory."""
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     names = _names(scene, outputs)
+    refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
     given = {}
     if solver == "dense" or "cond" in names:
         solution = dense_solution(sampled, grid, status, threads)
         given = solution if solver == "dense" else {"cond": solution["cond"]}
-    fields = compute(sampled, grid, names, threads, given)
+    fields = compute(sampled, grid, names, threads, given, solver)
     blank(fields, status)
     command = _command(theta2, None if outputs is None else names, solver)
     return described(scene, sampled, grid, fields, status, command)
@@ -89,6 +92,11 @@ def _names(scene: Scene, names: list[str] | None) -> tuple[str, ...]:
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in quantity_problems("outputs", name, known, scene)])
     return tuple(name for name in names if name != "status")
+
+
+def _bound_missing(names: Iterable[str], solver: str) -> list[str]:
+    said = 'outputs: error_bound is of what solver="fast" does, not of superposed sums: leave one of the two out'
+    return [said] if solver == "superposed" and "error_bound" in names else []
 
 
 def _command(theta2: Any, names: Iterable[str] | None, solver: str) -> str:

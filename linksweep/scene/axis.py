@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
-from linksweep.scene.units import accepted_unit, quantity, shown
+from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 MOST = 1_000_000
 """Numbers of an axis that is given by its ends."""
@@ -47,7 +47,7 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     """
     listed = f"; a design axis has {', '.join(KEYS)}"
     unknown = [key for key in table if key not in KEYS]
-    problems = [f"{key}: unknown key{did_you_mean(key, KEYS) or listed}" for key in unknown]
+    problems = [f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in unknown]
     dims = _dims(table, problems)
     values = _values(table, kind, problems)
     if not problems and values.ndim != len(dims):
@@ -65,10 +65,14 @@ def _dims(table: dict[str, Any], problems: list[str]) -> list[str]:
     dims = table.get("dims", [table.get("dim")])
     if key not in table:
         problems.append('dim: missing; write dim = "name of the design axis"')
-    elif not isinstance(dims, list) or len({dim for dim in dims if isinstance(dim, str)}) < len(dims):
+    elif not isinstance(dims, list) or len({*filter(_is_name, dims)}) < len(dims):
         must = "a list of different names" if key == "dims" else "a name"
         problems.append(f"{key} = {shown(table[key])}: must be {must}")
     return dims
+
+
+def _is_name(dim: Any) -> bool:
+    return isinstance(dim, str) and dim.isprintable()
 
 
 def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
@@ -136,7 +140,7 @@ def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, pr
         coords["theta2"] = _read_nested(angles, "theta2", "angle", None, problems)
     for dim, labels in coords.items():
         if dim not in sizes:
-            problems.append(f"coords: {dim} is no dim of these values; they have {', '.join(dims)}")
+            problems.append(f"coords: {shown_key(dim)} is no dim of these values; they have {', '.join(dims)}")
         elif not isinstance(labels, list) or [type(label) is list for label in labels] != [False] * sizes[dim]:
             problems.append(f"coords: {dim} must be a list of {sizes[dim]} labels, one for each position")
     return coords

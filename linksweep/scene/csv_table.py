@@ -25,7 +25,7 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean, name_problems, refuse
 from linksweep.scene.text_file import text_of
-from linksweep.scene.units import accepted_unit, quantity, shown
+from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 KEYS = ("csv", "column", "unit")
 MOST_SHOWN = 5
@@ -66,7 +66,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
         One problem a line, each starting with its key in the table; those of the file with its name and line.
     """
     listed = f"; a CSV column has {', '.join(KEYS)}"
-    refuse([f"{key}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
+    refuse([f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
     unit = _unit(table, kind)
     if not isinstance(table["csv"], str) or not table["csv"].isprintable():
         raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')

@@ -14,7 +14,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
-from linksweep.scene.units import shown
+from linksweep.scene.units import shown, shown_key
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
 
@@ -25,8 +25,7 @@ UNREAD: Any = "(not read)"
 def path_of(where: Where) -> str:
     """Return the path as the constructors name it: without "mechanism", lists counted from one."""
     keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
-    path = "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in keys).lstrip(".")
-    return path.replace("\n", "\\n")  # a quoted key may have any character, a message one line
+    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{shown_key(key)}" for key in keys).lstrip(".")
 
 
 class Log:
@@ -83,12 +82,12 @@ class Log:
     def refused(self, error: ValueError, where: Where) -> Any:
         """Log what a constructor says, one problem a line with its path first, but for what was not read."""
         known = [*self.misplaced, *(place for place, _ in self.problems)]
-        for line in str(error).splitlines():
+        for line in str(error).split("\n"):
             path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
             keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
             place = (*where, *keys) if where or {*keys[:1]} <= {*self.top} else ("mechanism", *keys)
             if not any(place[: len(other)] == other[: len(place)] for other in known):
-                self.problem(place, line[len(path) :])
+                self.problem(place, ("." if line.startswith('"') else "") + line[len(path) :])
         return UNREAD
 
     def report(self, text: str, name: str) -> str:

@@ -53,7 +53,8 @@ class Load(Action):
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", as_pair(self.force))
         object.__setattr__(self, "at", as_pair(self.at))
-        if self.link == "slider" and self.force is not None and not isinstance(self.force, tuple | list | str):
+        on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
+        if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
             object.__setattr__(self, "force", (self.force, 0.0))
             object.__setattr__(self, "frame", "link")
 

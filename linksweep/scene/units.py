@@ -6,11 +6,13 @@ divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors
 pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as number/m,
 "1 1/2 in" as half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity
 takes; all else is an error that tells what to write. The arithmetic is in fractions: where a unit is defined
-exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit).
+exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit). pint takes half a second to wake, so
+what it says of the units on the list is kept in the user's cache folder.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import re
@@ -19,9 +21,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
+from importlib.metadata import version
 from numbers import Real
+from pathlib import Path
 from typing import Any
 
+from linksweep.engine.compile import cache_folder, stored
 from linksweep.mechanisms.validate import UNITS, did_you_mean
 
 
@@ -132,7 +137,13 @@ def unit_problems(path: str, said: Any, kind: str) -> list[str]:
 def shown(value: object) -> str:
     """Return a value as it stands in a file, cut where it is long."""
     text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
+    text = "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text)  # a message is one line
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def shown_key(key: str) -> str:
+    """Return a key as it stands in a file: bare, or in quotes."""
+    return key if re.fullmatch(r"[\w-]+", key) else shown(key)
 
 
 def _parted(text: str, kind: str) -> tuple[str, str]:
@@ -257,17 +268,47 @@ def _finite(number: Any) -> float:
     return float(number)
 
 
-@cache
 def _factor(spelling: str, kind: str) -> Fraction:
     """Return what one such unit is in SI; pint's pi has 50 digits, all else is exact."""
-    si = KINDS[kind].unit
+    return _factors_kept()[f"{spelling} in {KINDS[kind].unit}"]
+
+
+@cache
+def _factors_kept() -> dict[str, Fraction]:
+    """All of them, as pint says, or as it said to an earlier process."""
+    folder = cache_folder()
+    path = folder and folder / f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}.txt"
+    if path and (kept := _read(path)):
+        return kept
+    pairs = [(spelling, kind.unit) for kind in KINDS.values() for spelling in kind.spellings]
+    factors = {f"{spelling} in {si}": _converted(spelling, si) for spelling, si in pairs}
+    if path:
+        text = json.dumps({name: str(factor) for name, factor in factors.items()}, indent=1)
+        stored(path, f"{_digest(text)}\n{text}")
+    return factors
+
+
+def _read(path: Path) -> dict[str, Fraction]:
+    """The factors of a file; none where it is not there, or damaged."""
+    try:
+        digest, _, text = path.read_text().partition("\n")
+    except (OSError, ValueError):
+        return {}
+    return {name: Fraction(factor) for name, factor in json.loads(text).items()} if digest == _digest(text) else {}
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+
+def _converted(spelling: str, si: str) -> Fraction:
     one = _pint().Quantity(Fraction(1), spelling.replace(" ", "*"))
     return Fraction(one.to("dimensionless" if si == "1" else si.replace(" ", "*")).magnitude)
 
 
 @cache
 def _pint() -> Any:
-    import pint  # here, because it takes a third of a second and most scenes have plain numbers
+    import pint  # here, because it takes long and most scenes have plain numbers, or units that are kept
 
     registry: Any = pint.UnitRegistry(non_int_type=Fraction)
     for definition in _NOT_IN_PINT:
