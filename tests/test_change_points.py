@@ -115,18 +115,62 @@ def test_one_that_only_comes_near_a_parallelogram_keeps_to_its_side():
     assert abs(theta3[1]) > 10.0
 
 
+FLAT_AT = {
+    "parallelogram": ((0.2, 0.5, 0.2, 0.5), (0.0, 180.0)),
+    "kite": ((0.2, 0.2, 0.5, 0.5), (0.0, 180.0)),
+    "rhombus": ((0.5, 0.5, 0.5, 0.5), (0.0, 180.0)),
+    "B meets D": ((0.5, 0.3, 0.3, 0.5), (0.0,)),
+    "folded": ((0.2, 0.5, 0.3, 0.4), (0.0,)),
+    "stretched out": ((0.25, 0.5, 0.375, 0.625), (180.0,)),
+}
+"""Lengths, and the angles at which the links lie flat."""
+FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+
+
+def flat(lengths, **motion) -> FourBarData:
+    *links, ground = lengths
+    links = (LinkData(x, 1.0, 0.02, cg_distance=0.3 * x, cg_angle=15.0) for x in links)
+    return FourBarData(*links, ground=ground, omega2=3.0, alpha2=-2.0, gravity=(0.0, -9.81), **motion)
+
+
+def beside(fold: float, away: list[float]) -> list[float]:
+    """Angles [degree] so far [rad] from a fold, towards 90 degrees."""
+    return [float(fold + np.degrees(x) * (1.0 if fold == 0.0 else -1.0)) for x in away]
+
+
+@pytest.mark.parametrize("drive", ["crank", "rocker"])
 @pytest.mark.parametrize("ground_angle", [0.0, 33.3])
-def test_forces_beside_a_fold(ground_angle):
-    """All links lie flat there, and α and forces lose ε/δ: 4e-10 at 1e-6 rad."""
-    links = (LinkData(x, 1.0, 0.02, cg_distance=0.3 * x, cg_angle=15.0) for x in (0.2, 0.5, 0.2))
-    data = FourBarData(*links, ground=0.5, ground_angle=ground_angle, omega2=3.0, gravity=(0.0, -9.81))
-    names = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
-    for away, allowed in ((1e-1, 1e-13), (1e-3, 1e-11), (1e-5, 1e-9), (1e-6, 1e-8), (2e-7, 1e-6)):
-        angle = float(ground_angle + np.degrees(away))
+@pytest.mark.parametrize("shape", FLAT_AT)
+def test_forces_beside_a_fold_keep_their_digits(shape, ground_angle, drive):
+    """Reached: 9e-16 at any distance; with α from a difference of accelerations, 4e-10 at 1e-6 rad."""
+    lengths, folds = FLAT_AT[shape]
+    data = flat(lengths, ground_angle=ground_angle, drive=drive)
+    for fold in folds:
+        for angle in beside(fold, [1e-1, 1e-3, 1e-5, 1e-6, 4e-7]):
+            theta2 = ground_angle + angle
+            cycle, exact = ls.sweep(to_scene(data), [theta2], outputs=(*FORCES, "error_bound")), solve(data, theta2)
+            assert not cycle.status.any()
+            error = max(abs(mp.mpf(cycle[name].item()) - exact[name]) for name in FORCES) / largest_force(exact)
+            assert error < min(1e-13, cycle.error_bound.item()), (angle, float(error))
+
+
+@pytest.mark.parametrize("shape", FLAT_AT)
+def test_accelerations_beside_a_fold_keep_their_digits(shape):
+    lengths, folds = FLAT_AT[shape]
+    data, names = flat(lengths), ("alpha3", "alpha4", "omega3", "omega4")
+    for angle in [angle for fold in folds for angle in beside(fold, [1e-1, 1e-3, 1e-6])]:
         cycle, exact = ls.sweep(to_scene(data), [angle], outputs=names), solve(data, angle)
-        assert not cycle.status.any()
+        size = max(1, *(abs(exact[name]) for name in names))
         for name in names:
-            assert abs(mp.mpf(cycle[name].item()) - exact[name]) < allowed * largest_force(exact), (name, away)
+            assert abs(mp.mpf(cycle[name].item()) - exact[name]) < 1e-14 * size, (angle, name)
+
+
+def test_a_parallelogram_turns_as_its_crank_does():
+    """Its coupler keeps its direction, and its rocker turns with the crank: all the way round, beside the folds too."""
+    theta2 = np.concatenate([[*beside(0.0, [1e-6, 1e-4]), *beside(180.0, [1e-6, 1e-4])], np.arange(1.0, 360.0, 7.0)])
+    cycle = ls.sweep(to_scene(flat((0.2, 0.5, 0.2, 0.5))), np.sort(theta2), ["omega3", "omega4", "alpha3", "alpha4"])
+    for name, expected in (("omega3", 0.0), ("omega4", 3.0), ("alpha3", 0.0), ("alpha4", -2.0)):
+        np.testing.assert_allclose(cycle[name], expected, rtol=0.0, atol=1e-14, err_msg=name)
 
 
 def test_a_batch_of_both_kinds_has_the_bits_of_single_designs():
@@ -134,12 +178,17 @@ def test_a_batch_of_both_kinds_has_the_bits_of_single_designs():
 
     lengths = {"crank": [0.2, 0.2], "coupler": [0.5, 0.5], "rocker": [0.2, 0.3], "ground": [0.5, 0.45]}
     arrays = {name: xr.DataArray(values, dims="design") for name, values in lengths.items()}
-    links = (ls.Link(arrays[name], 1.0, 0.1) for name in LENGTHS[:3])
-    batch = ls.sweep(ls.Scene(ls.FourBar(*links, ground=arrays["ground"]), omega2=3.0), 36, outputs="theta3")
+    names = ("theta3", "alpha3", "F14x", "T12")
+
+    def found(lengths):
+        links = (ls.Link(lengths[name], 1.0, 0.1, 0.07) for name in LENGTHS[:3])
+        return ls.sweep(ls.Scene(ls.FourBar(*links, ground=lengths["ground"]), omega2=3.0), 36, outputs=names)
+
+    batch = found(arrays)
     for k in range(2):
-        links = (ls.Link(lengths[name][k], 1.0, 0.1) for name in LENGTHS[:3])
-        alone = ls.sweep(ls.Scene(ls.FourBar(*links, ground=lengths["ground"][k]), omega2=3.0), 36, outputs="theta3")
-        np.testing.assert_array_equal(batch.theta3.isel(design=k), alone.theta3)
+        alone = found({name: values[k] for name, values in lengths.items()})
+        for name in names:
+            np.testing.assert_array_equal(batch[name].isel(design=k), alone[name])
 
 
 def test_energy_balances_through_both_folds():

@@ -35,9 +35,9 @@ from linksweep.mechanisms.motion import (
     turned,
 )
 from linksweep.mechanisms.pins import Pins, rotating
-from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
-from linksweep.physics import advantage, crank_driven, dyad_rrr, four_bar, inertia, planar
+from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, planar
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
@@ -50,7 +50,14 @@ BODIES = (
 )
 
 
-CHANGE_POINTS = ("folded_miss", "folded_noise", "stretched_miss", "stretched_noise", "parallel")
+CLOSURE: dict[str, str | float] = {
+    **dict.fromkeys(("low", "high", "versine", "vercosine"), 1.0),
+    **dict.fromkeys(("least_low", "least_high"), "sums_unit"),
+}
+CLOSED = (
+    *("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3"),
+    *("along3", "along4", "across", "inverse_2ff", "half_inverse_root"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +146,7 @@ class FourBar(CrankDriven):
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""
-        return _table(drive, loads, turned(self.ground_angle))
+        return _table(drive, loads, turned(self.ground_angle), self._goes_through)
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
@@ -176,20 +183,31 @@ class FourBar(CrankDriven):
         margin = 1e-9 * perimeter * perimeter
         return bool(in_range(perimeter) and np.all(low > margin) and np.all(high > margin))
 
+    @cached_property
+    def _goes_through(self) -> bool:
+        """Whether any design may be a parallelogram or a kite, which change sides; the others keep their bits."""
+        if any(map(is_lazy, self.lengths().values())):
+            return True
+        a, b, c, d = self.lengths().values()
+        near = 1e-9 * (a + b + c + d)
+        opposite, adjacent = abs(a - c) < near, abs(a - b) < near
+        return bool(np.any((abs(a + d - b - c) < near) & (opposite | adjacent)))
+
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("F12", "F32", "F43", "F14", self.drives[drive])
 
 
 @lru_cache(maxsize=64)
-def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool) -> Table:
     rows = [
         *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
         *_position(),
+        Row(four_bar.side_of_diagonal, ("side",)) if goes_through else Row(planar.same, ("side",), ("branch_sign",)),
         *_rates(),
         *_forces(drive),
         *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
     ]
-    rows += machine_rows(BODIES, PINS, loads) + _transmission() + [rounding_error.row(low=1.0, high=1.0)]
+    rows += machine_rows(BODIES, PINS, loads) + _transmission() + [rounding_error.row(**CLOSURE)]
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
@@ -199,18 +217,16 @@ def _position() -> list[Row | Total]:
         Row(four_bar.pinch_widths, ("pinch_near", "pinch_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(four_bar.closure_unit, ("closure_unit",)),
+        Row(four_bar.least_factors, ("least_low", "least_low_rest", "least_high", "least_high_rest")),
+        Row(four_bar.sums_unit, ("sums_unit",)),
         Row(four_bar.toggle_cosines, ("folded_cos", "folded_cos_rest", "stretched_cos", "stretched_cos_rest")),
-        Row(four_bar.change_points, CHANGE_POINTS),
-        Row(four_bar.side_of_diagonal, ("side",)),
-        Row(four_bar.crank_on_diagonal, ("r2_dot_BD", "r2_cross_BD")),
+        Row(four_bar.change_points, ("folded_noise", "stretched_noise", "parallel")),
+        Row(crank_angle.versines, ("versine", "vercosine")),
         Row(four_bar.diagonal, ("BDx", "BDy")),
         Row(four_bar.closure_factors, ("low", "high")),
         Row(four_bar.closure_noise, ("low_noise", "high_noise")),
         Row(four_bar.assembly, ("assembly",)),
-        Row(
-            dyad_rrr.rrr_close,
-            ("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3", "along3", "along4", "across"),
-        ),
+        Row(dyad_rrr.rrr_close, CLOSED),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
@@ -222,23 +238,23 @@ def _position() -> list[Row | Total]:
 
 def _rates() -> list[Row | Total]:
     return [
+        Row(four_bar.crank_on_diagonal, ("crank_along", "crank_across", "crank_per_across")),
         Row(dyad_rrr.rrr_velocity_ratios, ("ratio3", "ratio4")),
         Row(planar.product, ("omega3",), ("omega2", "ratio3")),
         Row(planar.product, ("omega4",), ("omega2", "ratio4")),
         Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
         Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
-        Row(dyad_rrr.rrr_accelerations, ("alpha3", "alpha4")),
+        Row(four_bar.ratio_slopes, ("slope3", "slope4")),
+        Row(crank_driven.angular_acceleration, ("alpha3",), ("omega2", "alpha2", "ratio3", "slope3")),
+        Row(crank_driven.angular_acceleration, ("alpha4",), ("omega2", "alpha2", "ratio4", "slope4")),
     ]
 
 
 def _transmission() -> list[Row | Total]:
-    """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
-    places = ("BDx", "BDy", "r2_cross_BD", "r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3")
-    slopes: tuple[str | float, ...] = ("uBx_slope", "uBy_slope", 1.0, "ratio3", "ratio4", *places)
+    """What the rocker has of the crank's velocity and torque."""
     radii = ("crank_length", "rocker_length")
     return [
         *crank_pin_slope_rows(),
-        Row(dyad_rrr.rrr_accelerations, ("slope3", "slope4"), slopes),
         Row(planar.same, ("velocity_ratio",), ("ratio4",)),
         Row(advantage.torque_ratio, ("torque_ratio",)),
         Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", *radii)),
@@ -248,35 +264,40 @@ def _transmission() -> list[Row | Total]:
 def _forces(drive: str) -> list[Row | Total]:
     """F43 from the two moment equations free of the drive's torque; the rest follows by addition.
 
-    The torque comes from virtual work: it costs no pin force, and is the same number whether forces are asked or not.
+    The crank's torque comes from virtual work, which costs no pin force. That of another link, whose hold may vanish,
+    comes with F43, so that both have the same error.
     """
-    ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3", "rocker": "ratio4"}
     return [
         *(_crank_driven() if drive == "crank" else _driven_beyond_the_crank(drive)),
         Row(crank_driven.coupler_balance, ("F32x", "F32y")),
         Row(crank_driven.rocker_balance, ("F14x", "F14y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(crank_driven.work_on_crank, ("work",)),
-        Row(crank_driven.balancing_drive, (FourBar.drives[drive],), ("work", ratios[drive])),
     ]
 
 
 def _crank_driven() -> list[Row | Total]:
-    return [Row(dyad_rrr.rrr_status, ("status",)), Row(dyad_rrr.rrr_pin_force, ("F43x", "F43y"))]
+    return [
+        Row(dyad_rrr.rrr_status, ("status",)),
+        Row(dyad_rrr.rrr_pin_force, ("F43x", "F43y")),
+        Row(planar.opposite, ("T12",), ("work",)),
+    ]
 
 
 def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
     """The crank's moment equation takes the place of the driven link's."""
-    crank, coupler, rocker = ("r2x", "r2y", "moment_r2"), ("r3x", "r3y", "moment_r3"), ("r4x", "r4y", "N4")
-    other, ratio, length = {
-        "coupler": (rocker, "ratio3", "rocker_length"),
-        "rocker": (coupler, "ratio4", "coupler_length"),
+    free, ratio, torque = {
+        "coupler": (("r4x", "r4y", "N4"), "ratio3", dyad_rrr.rrr_coupler_torque),
+        "rocker": (("r3x", "r3y", "moment_r3"), "ratio4", dyad_rrr.rrr_rocker_torque),
     }[drive]
+    length = {"coupler": "rocker_length", "rocker": "coupler_length"}[drive]
+    crank, inverse = ("r2x", "r2y", "crank_length", "moment_r2"), "inverse_r4_cross_r3"
     return [
         Row(planar.opposite, ("moment_r3",), ("N3",)),
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
-        Row(dyad_rrr.rrr_leverage, ("leverage", "inverse_leverage"), (ratio, "inverse_r4_cross_r3")),
-        Row(inertia.force_from_two_moments, ("F43x", "F43y"), (*crank, "crank_length", *other, "inverse_leverage")),
+        Row(dyad_rrr.rrr_driven_pin_force, ("F43x", "F43y", "pull", "push"), (*crank, *free, ratio, inverse)),
+        Row(torque, (FourBar.drives[drive],)),
+        Row(dyad_rrr.rrr_leverage, ("leverage",), (ratio, inverse)),
         Row(dyad_rrr.rrr_status, ("closure",)),
         Row(crank_driven.drive_status, ("status",), ("closure", "leverage", "crank_length", length)),
     ]

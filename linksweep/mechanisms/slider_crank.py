@@ -315,7 +315,10 @@ def _forces(drive: str) -> list[Row | Total]:
         "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
     }[drive]
     guide = ("guide_cos", "guide_sin")
-    ratios: dict[str, str | float] = {"crank": 1.0, "coupler": "ratio3"}
+    torque = {
+        "crank": Row(planar.opposite, ("T12",), ("work",)),
+        "coupler": Row(slider_crank.torque_on_rod, ("T13",)),
+    }[drive]
     return [
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
         Row(slider_crank.inverse_or_nan, ("inverse_crank_along",), ("crank_along",)),
@@ -332,7 +335,7 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(planar.opposite, ("T14",), ("N4",)),
         Row(slider_crank.work_on_crank, ("work",)),
-        Row(crank_driven.balancing_drive, (SliderCrank.drives[drive],), ("work", ratios[drive])),
+        torque,
         Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
         Total("friction_rhs", ()),
     ]

@@ -15,7 +15,7 @@ from linksweep.physics.double_double import cross, dot
 ULP = 8.0 * 2.0**-52
 """[rad] More than the last digit of an angle of the first turn."""
 FLATTEST = 2.0**-48
-"""1 ± cos ψ where forces keep no more than seven digits: 8e-8 rad from where a change point lies flat."""
+"""1 ± cos ψ nearer than which a change point is told as lying flat: 8e-8 rad, less than lengths are ever known to."""
 END = 2.0**-950
 """What the squares of lengths keep away from the least and the largest number by."""
 
@@ -49,6 +49,11 @@ def angle_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, 
 def angle_from_x(cos: Number, sin: Number, middle_cos: Number, middle_sin: Number) -> tuple[Number, Number]:
     """cos and sin of θ2 = ψ + middle."""
     return cos * middle_cos - sin * middle_sin, sin * middle_cos + cos * middle_sin
+
+
+def versines(pinch_cos: Number, pinch_cos_rest: Number) -> tuple[Number, Number]:
+    """1 − cos ψ and 1 + cos ψ, with all their digits."""
+    return (1.0 - pinch_cos) - pinch_cos_rest, (1.0 + pinch_cos) + pinch_cos_rest
 
 
 def one_turn(cos2: Number, sin2: Number) -> Number:

@@ -20,6 +20,11 @@ def crank_pin_acceleration(omega2: Number, alpha2: Number, r2x: Number, r2y: Num
     return -alpha2 * r2y - centripetal * r2x, alpha2 * r2x - centripetal * r2y
 
 
+def angular_acceleration(omega2: Number, alpha2: Number, ratio: Number, slope: Number) -> Number:
+    """α of what turns `ratio` times as fast as the crank, by the derivative of that to the crank's angle."""
+    return omega2 * omega2 * slope + alpha2 * ratio
+
+
 def coupler_balance(F43x: Number, F43y: Number, Q3x: Number, Q3y: Number) -> tuple[Number, Number]:
     """F32, from −F32 + F43 + Q3 = 0."""
     return F43x + Q3x, F43y + Q3y
@@ -59,6 +64,16 @@ def balancing_drive(work: Number, ratio: Number) -> Number:
     """Torque on what turns `ratio` times as fast as the crank, or force on what slides by `ratio` per radian of it,
     that does the opposite virtual work."""
     return where(abs(ratio) > 0.0, -work / ratio, math.nan)
+
+
+def slower_or_work(by_moments: Number, work: Number, ratio: Number, other_ratio: Number) -> Number:
+    """The drive's torque on a link other than the crank: from its moments while it is slower than the third link, from
+    virtual work while it is faster.
+
+    Near its dead centre the torque is large, and moments are what agrees with the pin forces, whose error it has. Where
+    the third link nearly stands, virtual work leaves out what that gives to the moments and takes back again.
+    """
+    return where(abs(ratio) < abs(other_ratio), by_moments, balancing_drive(work, ratio))
 
 
 def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:

@@ -12,6 +12,7 @@ lose all digits near a toggle. Everything else follows without another subtracti
 import math
 
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.crank_driven import slower_or_work
 from linksweep.physics.planar import cross, dot
 
 
@@ -26,19 +27,21 @@ def rrr_close(
     closure_unit: Number,
 ) -> tuple[Number, ...]:
     """Link vectors r3, r4 and 1/(r4 × r3), by one square root and one division; then their shares along BD, in units
-    of it, and the one across that both have. `side` is 1 with C left of B→D."""
+    of it, and the one across that both have; at last 1/(2f²) and ±1/(2√(low·high)), in the closure's units. `side` is
+    1 with C left of B→D."""
     difference = coupler_length - rocker_length
     ff = low + difference * difference / closure_unit
     root = side * sqrt(low * high)
     half_inverse = 0.5 / (ff * root)
-    inverse_2ff = half_inverse * root
+    inverse_2ff, half_inverse_root = half_inverse * root, half_inverse * ff
     along3 = (low + 2.0 * coupler_length * difference / closure_unit) * inverse_2ff
     along4 = (2.0 * rocker_length * difference / closure_unit - low) * inverse_2ff
     across = root * inverse_2ff
     side_x, side_y = across * BDy, across * BDx
     r3x, r3y = along3 * BDx - side_x, along3 * BDy + side_y
     r4x, r4y = along4 * BDx - side_x, along4 * BDy + side_y
-    return r3x, r3y, r4x, r4y, -4.0 / closure_unit * (half_inverse * ff), along3, along4, across
+    inverse_r4_cross_r3 = -4.0 / closure_unit * half_inverse_root
+    return r3x, r3y, r4x, r4y, inverse_r4_cross_r3, along3, along4, across, inverse_2ff, half_inverse_root
 
 
 def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
@@ -48,56 +51,16 @@ def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number)
 
 
 def rrr_velocity_ratios(
-    r2_dot_BD: Number,
-    r2_cross_BD: Number,
-    along3: Number,
-    along4: Number,
-    across: Number,
-    inverse_r4_cross_r3: Number,
+    along3: Number, along4: Number, crank_along: Number, crank_per_across: Number
 ) -> tuple[Number, Number]:
-    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity): r2 × r4 and r2 × r3."""
-    return (
-        (along4 * r2_cross_BD + across * r2_dot_BD) * inverse_r4_cross_r3,
-        (along3 * r2_cross_BD + across * r2_dot_BD) * inverse_r4_cross_r3,
-    )
+    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity): r2 × r4 and r2 × r3 over
+    r4 × r3, by the crank's shares along BD and, per that of coupler and rocker, across."""
+    return along4 * crank_per_across - crank_along, along3 * crank_per_across - crank_along
 
 
-def rrr_leverage(ratio: Number, inverse_r4_cross_r3: Number) -> tuple[Number, Number]:
-    """r2 × r4 from ω3/ω2, or r2 × r3 from ω4/ω2, and its inverse.
-
-    The drive's unknown, from virtual work, is divided by the same ratio: near a dead centre both have the same error.
-    """
-    inverse = where(abs(ratio) > 0.0, inverse_r4_cross_r3 / ratio, math.nan)
-    return ratio / inverse_r4_cross_r3, inverse
-
-
-def rrr_accelerations(
-    aBx: Number,
-    aBy: Number,
-    omega2: Number,
-    omega3: Number,
-    omega4: Number,
-    BDx: Number,
-    BDy: Number,
-    r2_cross_BD: Number,
-    r3x: Number,
-    r3y: Number,
-    r4x: Number,
-    r4y: Number,
-    inverse_r4_cross_r3: Number,
-) -> tuple[Number, Number]:
-    """α3 and α4, from a_B + α3 × r3 − ω3² r3 = α4 × r4 − ω4² r4 (document 2, ME 470, acceleration).
-
-    The two last terms nearly cancel where both links are long; with r3 = BD + r4 and ω4 − ω3 = ω2 (r2 × BD)/(r4 × r3)
-    they are −ω3² BD + (ω4² − ω3²) r4.
-    """
-    square3, growth = omega3 * omega3, omega2 * (r2_cross_BD * inverse_r4_cross_r3) * (omega3 + omega4)
-    kx = aBx - square3 * BDx + growth * r4x
-    ky = aBy - square3 * BDy + growth * r4y
-    return (
-        dot(kx, ky, r4x, r4y) * inverse_r4_cross_r3,
-        dot(kx, ky, r3x, r3y) * inverse_r4_cross_r3,
-    )
+def rrr_leverage(ratio: Number, inverse_r4_cross_r3: Number) -> Number:
+    """r2 × r4 from ω3/ω2, or r2 × r3 from ω4/ω2."""
+    return ratio / inverse_r4_cross_r3
 
 
 def rrr_pin_force(
@@ -118,6 +81,63 @@ def rrr_pin_force(
     n3, n4 = N3 * inverse_r4_cross_r3, N4 * inverse_r4_cross_r3
     along, aside = n4 * along3 + n3 * along4, (n3 + n4) * across
     return along * BDx - aside * BDy, along * BDy + aside * BDx
+
+
+def rrr_driven_pin_force(
+    r2x: Number,
+    r2y: Number,
+    crank_length: Number,
+    moment_r2: Number,
+    rx: Number,
+    ry: Number,
+    moment: Number,
+    ratio: Number,
+    inverse_r4_cross_r3: Number,
+) -> tuple[Number, Number, Number, Number]:
+    """F43 from r2 × F43 = moment_r2 and r × F43 = moment, where r is the link that bears no drive: by its shares along
+    r2 and across. Then these shares, that along r2 times r4 × r3, which is a moment.
+
+    All is divided by the driven link's ratio to the crank, which vanishes at a dead centre, once: force and torque have
+    the same error.
+    """
+    across = moment_r2 * (1.0 / (crank_length * crank_length))
+    pull = where(abs(ratio) > 0.0, (across * dot(r2x, r2y, rx, ry) - moment) / ratio, math.nan)
+    along = pull * inverse_r4_cross_r3
+    return along * r2x - across * r2y, along * r2y + across * r2x, pull, across
+
+
+def rrr_rocker_torque(
+    pull: Number,
+    push: Number,
+    N4: Number,
+    r2x: Number,
+    r2y: Number,
+    r4x: Number,
+    r4y: Number,
+    work: Number,
+    ratio4: Number,
+    ratio3: Number,
+) -> Number:
+    """T14, from r4 × F43 = N4 + T14 while the rocker is slower than the coupler, then from virtual work."""
+    by_moments = push * dot(r2x, r2y, r4x, r4y) - pull * ratio3 - N4
+    return slower_or_work(by_moments, work, ratio4, ratio3)
+
+
+def rrr_coupler_torque(
+    pull: Number,
+    push: Number,
+    N3: Number,
+    r2x: Number,
+    r2y: Number,
+    r3x: Number,
+    r3y: Number,
+    work: Number,
+    ratio3: Number,
+    ratio4: Number,
+) -> Number:
+    """T13, from r3 × F43 = −N3 − T13 while the coupler is slower than the rocker, then from virtual work."""
+    by_moments = pull * ratio4 - push * dot(r2x, r2y, r3x, r3y) - N3
+    return slower_or_work(by_moments, work, ratio3, ratio4)
 
 
 def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:

@@ -9,6 +9,18 @@ in units of 2ad, so that nothing goes beyond the square of a length. Open or cro
 low·high > 0. All that cancels are the differences of cosines, which are therefore sums of two numbers each, and sums
 of lengths, which are exact.
 
+With p and q the crank's shares along BD and across it, in units of f, and with those of coupler and rocker (see
+`linksweep.physics.dyad_rrr`), k3 = ω3/ω2 = along4·q/across − p, and k4 likewise. Their derivatives to the crank's angle
+are
+
+    k3' = q (1 − k3 − k4) + along4·g    k4' = q (1 − k3 − k4) + along3·g
+    f² (1 − k3 − k4) = d² − a² − (b² − c²)·q/across
+    g = (low₀·high·(1 + cos ψ) − high₀·low·(1 − cos ψ)) / (2·√(low·high)³)
+
+with low₀ = low at ψ = 0 and high₀ = high at 180°. With a change point one of them vanishes, in a parallelogram both and
+with them g: as a difference of accelerations over the sine between r3 and r4, g would have no digit left where the
+links lie nearly flat.
+
 Where ψ_f = 0 or ψ_s = 180° the mechanism has a change point: it passes through its toggle, flat, and can leave it on
 either branch. With both (parallelogram a = c, b = d; kite a = b, c = d) the side of B→D that C is on changes twice a
 turn, and the branch goes through: sin ψ says the side. With one it would take two turns to come round, so C keeps to
@@ -28,34 +40,51 @@ def diagonal(
     ground_length: Number,
     ground_cos: Number,
     ground_sin: Number,
-    r2x: Number,
-    r2y: Number,
+    versine: Number,
+    pinch_sin: Number,
 ) -> tuple[Number, Number]:
-    """The vector B→D."""
-    return ground_length * ground_cos - r2x, ground_length * ground_sin - r2y
+    """The vector B→D, from its shares along the frame line and across, which keep their digits where B is near D."""
+    along, across = (ground_length - crank_length) + crank_length * versine, -(crank_length * pinch_sin)
+    return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
 
 def crank_on_diagonal(
-    crank_length: Number, ground_length: Number, pinch_cos: Number, pinch_sin: Number
-) -> tuple[Number, Number]:
-    """r2 · BD and r2 × BD, which keeps its digits where the links lie flat."""
-    return (
-        crank_length * (ground_length * pinch_cos - crank_length),
-        -(crank_length * ground_length * pinch_sin),
-    )
+    crank_length: Number,
+    ground_length: Number,
+    versine: Number,
+    pinch_sin: Number,
+    inverse_2ff: Number,
+    half_inverse_root: Number,
+) -> tuple[Number, Number, Number]:
+    """p and q, which keep their digits where the links lie flat, and q over the share across of coupler and rocker."""
+    along = (ground_length - crank_length) / ground_length - versine
+    return along * inverse_2ff, pinch_sin * inverse_2ff, 2.0 * pinch_sin * half_inverse_root
+
+
+def least_factors(
+    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
+) -> tuple[Number, Number, Number, Number]:
+    """low at ψ = 0 and high at 180°, each with its rest."""
+    a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
+    c_a, twice_ad = two_sum(c, -a), two_product(2.0 * a, d)
+    low = multiply(add(two_sum(d, -b), c_a), add(two_sum(d, -c), two_sum(b, -a)))
+    high = multiply(add(two_sum(b, -d), c_a), add(two_sum(b, c), two_sum(d, a)))
+    return *divide(low, twice_ad), *divide(high, twice_ad)
+
+
+def sums_unit(
+    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number, closure_unit: Number
+) -> Number:
+    """What rounding leaves of the least factors' sums of lengths, in that of the cosine of an angle: both are pairs."""
+    perimeter = crank_length + coupler_length + rocker_length + ground_length
+    return 2.0**-16 * perimeter * perimeter / closure_unit
 
 
 def toggle_cosines(
-    crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
+    least_low: Number, least_low_rest: Number, least_high: Number, least_high_rest: Number
 ) -> tuple[Number, Number, Number, Number]:
     """cos ψ_f and cos ψ_s, each with its rest."""
-    a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
-    c_a, twice_ad = two_sum(c, -a), two_product(2.0 * a, d)
-    least_low = multiply(add(two_sum(d, -b), c_a), add(two_sum(d, -c), two_sum(b, -a)))
-    least_high = multiply(add(two_sum(d, -b), two_sum(a, -c)), add(two_sum(b, c), two_sum(d, a)))
-    folded = add((1.0, 0.0), divide(least_low, twice_ad))
-    stretched = add((-1.0, 0.0), divide(least_high, twice_ad))
-    return *folded, *stretched
+    return *add((1.0, 0.0), (least_low, least_low_rest)), *add((-1.0, 0.0), (-least_high, -least_high_rest))
 
 
 def closure_unit(crank_length: Number, ground_length: Number) -> Number:
@@ -83,23 +112,18 @@ def change_points(
     rocker_length: Number,
     ground_length: Number,
     closure_unit: Number,
-    folded_cos: Number,
-    folded_cos_rest: Number,
-    stretched_cos: Number,
-    stretched_cos_rest: Number,
-) -> tuple[Number, Number, Number, Number, Number]:
-    """By how much the toggles' cosines miss 1 and −1, what of that may be rounding, and 1 where both are change
-    points as far as the lengths can tell."""
+    least_low: Number,
+    least_high: Number,
+) -> tuple[Number, Number, Number]:
+    """What of the least factors may be rounding, and 1 where both are change points as far as the lengths can tell."""
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
     perimeter = a + b + c + d
     noise = LENGTH_NOISE * perimeter
     folded_noise = noise * (abs(d - a) + abs(b - c) + noise) / closure_unit
     stretched_noise = noise * perimeter / closure_unit
-    folded_miss = difference((folded_cos, folded_cos_rest), (1.0, 0.0))
-    stretched_miss = difference((stretched_cos, stretched_cos_rest), (-1.0, 0.0))
-    also_stretched = where(abs(stretched_miss) < stretched_noise, 1.0, 0.0)
-    parallel = where(abs(folded_miss) < folded_noise, also_stretched, 0.0)
-    return folded_miss, folded_noise, stretched_miss, stretched_noise, parallel
+    also_stretched = where(abs(least_high) < stretched_noise, 1.0, 0.0)
+    parallel = where(abs(least_low) < folded_noise, also_stretched, 0.0)
+    return folded_noise, stretched_noise, parallel
 
 
 def side_of_diagonal(parallel: Number, pinch_sin: Number, branch_sign: Number) -> Number:
@@ -109,18 +133,46 @@ def side_of_diagonal(parallel: Number, pinch_sin: Number, branch_sign: Number) -
 
 def closure_noise(
     closure_unit: Number,
-    folded_miss: Number,
+    least_low: Number,
     folded_noise: Number,
-    stretched_miss: Number,
+    least_high: Number,
     stretched_noise: Number,
     pinch_sin: Number,
 ) -> tuple[Number, Number]:
     """What low and high cannot tell from zero."""
     beyond = beyond_range(closure_unit)
     return (
-        unknown_of_cosine(folded_miss, folded_noise, pinch_sin) + beyond,
-        unknown_of_cosine(stretched_miss, stretched_noise, pinch_sin) + beyond,
+        unknown_of_cosine(least_low, folded_noise, pinch_sin) + beyond,
+        unknown_of_cosine(least_high, stretched_noise, pinch_sin) + beyond,
     )
+
+
+def ratio_slopes(
+    low: Number,
+    high: Number,
+    least_low: Number,
+    least_high: Number,
+    versine: Number,
+    vercosine: Number,
+    half_inverse_root: Number,
+    along3: Number,
+    along4: Number,
+    crank_across: Number,
+    crank_per_across: Number,
+    inverse_2ff: Number,
+    crank_length: Number,
+    coupler_length: Number,
+    rocker_length: Number,
+    ground_length: Number,
+    closure_unit: Number,
+) -> tuple[Number, Number]:
+    """k3' and k4', as the module's equations write them."""
+    numerator = 4.0 * least_low * vercosine * high - 4.0 * least_high * versine * low
+    growth = numerator * (half_inverse_root * half_inverse_root) * half_inverse_root
+    a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
+    of_crank, of_dyad = 2.0 * (d - a) * (d + a) / closure_unit, 2.0 * (b - c) * (b + c) / closure_unit
+    common = crank_across * ((of_crank - of_dyad * crank_per_across) * inverse_2ff)
+    return common + along4 * growth, common + along3 * growth
 
 
 def extremes(

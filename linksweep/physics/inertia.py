@@ -106,27 +106,6 @@ def effective_moment(
     return cross(hx, hy, gravity_x - pin_ax, gravity_y - pin_ay) - J * alpha + M
 
 
-def force_from_two_moments(
-    px: Number,
-    py: Number,
-    moment_p: Number,
-    p_length: Number,
-    qx: Number,
-    qy: Number,
-    moment_q: Number,
-    inverse_p_cross_q: Number,
-) -> tuple[Number, Number]:
-    """The force F with p × F = moment_p and q × F = moment_q, by its shares along p and across.
-
-    F = q·moment_p − p·moment_q, over p × q, would lose digits where p and q nearly lie in one line.
-    """
-    square = p_length * p_length
-    per_square = 1.0 / square
-    along = (dot(px, py, qx, qy) * moment_p - square * moment_q) * inverse_p_cross_q * per_square
-    across = moment_p * per_square
-    return along * px - across * py, along * py + across * px
-
-
 def inertia_power(
     mass: Number,
     inertia: Number,

@@ -13,6 +13,7 @@ import math
 
 from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
 from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
+from linksweep.physics.crank_driven import slower_or_work
 from linksweep.physics.double_double import difference, divide, two_sum
 from linksweep.physics.planar import cross, dot
 
@@ -156,6 +157,22 @@ def inverse_or_nan(x: Number) -> Number:
 def moment_on_rod(N3: Number) -> Number:
     """r3 × F43 where the rod bears no drive: its moments about B."""
     return -N3
+
+
+def torque_on_rod(
+    N3: Number,
+    rod_along: Number,
+    rod_across: Number,
+    rod_force_along: Number,
+    rod_force_across: Number,
+    work: Number,
+    ratio3: Number,
+    rod_length: Number,
+    ratio_slider: Number,
+) -> Number:
+    """T13, from r3 × F43 = −N3 − T13 in the guide's axes while the rod turns slowly, then from virtual work."""
+    by_moments = -N3 - cross(rod_along, rod_across, rod_force_along, rod_force_across)
+    return slower_or_work(by_moments, work, ratio3, ratio_slider / rod_length)
 
 
 def work_on_crank(
