@@ -41,13 +41,20 @@ def place_of_largest(row, work):
         work[k] = value if value > work[k] else work[k]
     peak = largest_lane(work)
     at = n
-    for k in range(64):
-        if work[k] == peak:
-            j = k
-            while j < at and row[j] != peak:
-                j += 64
-            at = min(at, j)
+    for folded in range(16):
+        if work[64 + folded] == peak:
+            for k in range(folded, 64, 16):
+                if work[k] == peak:
+                    at = min(at, first_in_lane(row, k, peak, at))
     return at if at < n and peak > -math.inf else -1
+
+
+def first_in_lane(row, k, peak, end):
+    """The first of samples k, k + 64, … that is the peak, if it comes before the end."""
+    j = k
+    while j < end and row[j] != peak:
+        j += 64
+    return j
 
 
 def largest_lane(work):
