@@ -8,8 +8,7 @@ import pytest
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
-
-from linksweep.surface.labels import labels_of, text_of
+from matplotlib.offsetbox import AnnotationBbox, TextArea
 
 
 @pytest.fixture(autouse=True)
@@ -27,6 +26,14 @@ def line(ax, label):
 
 def texts(ax):
     return [text_of(note) for note in labels_of(ax)]
+
+
+def labels_of(ax):
+    return [artist for artist in ax.artists if isinstance(artist, AnnotationBbox)]
+
+
+def text_of(note):
+    return "\n".join(line.get_text() for line in note.offsetbox.get_children() if isinstance(line, TextArea))
 
 
 def size_of(ds, pin):

@@ -78,6 +78,18 @@ def test_linear_numbers_along_several_dims():
     assert work(fewer, "mass", "speed") < work(request, "mass", "speed") / 5
 
 
+@pytest.mark.parametrize("name", ["engine", "quick-return"])
+def test_other_machines_over_their_speed(name):
+    """Friction chooses a sign by a force that is itself such a sum."""
+    machine = ls.example(name)
+    machine = replace(machine, omega2=machine.omega2 * xr.DataArray([0.3, 1.0, 2.0], dims="speed"))
+    forces = machine.mechanism.unknowns(machine.drive)
+    plain, summed = (ls.sweep(machine, TURN, forces, solver=solver) for solver in ("fast", "superposed"))
+    for force in forces:
+        largest = abs(plain[force]).max().item()
+        np.testing.assert_allclose(summed[force], plain[force], rtol=0.0, atol=1e-13 * largest)
+
+
 def test_what_does_not_enter_linearly_is_left_alone():
     request, same = plans(scene(batch(5, *LENGTHS)), "F32x", "T12")
     assert same is request

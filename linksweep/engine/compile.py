@@ -19,7 +19,7 @@ from typing import Any
 
 SETTINGS = 'error_model="numpy", nogil=True, _nrt=False'
 """IEEE division, threads allowed, and no fast-math at all: a contracted or reordered sum would give other bits.
-Kernels make no arrays: numba need not count who refers to the rows they look at, which costs a tenth of a search."""
+Kernels make no arrays: numba need not count who refers to the rows they look at, which is felt in a search."""
 
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "

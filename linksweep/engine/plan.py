@@ -15,7 +15,7 @@ from linksweep.engine.quantity import Row, Table, Total
 from linksweep.engine.trace import Graph, Node
 
 LATE = {"atan2"}
-"""Operations done by numpy on stored rows after the kernel: an order of magnitude faster there than compiled."""
+"""Operations done by numpy on stored rows after the kernel: much faster there than compiled."""
 
 
 @dataclass(frozen=True, eq=False)

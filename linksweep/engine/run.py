@@ -42,7 +42,7 @@ OPERATORS = {
     "atan2": np.arctan2,
     "where": np.where,
 }
-"""Python's own operators do with numpy's single numbers what numpy's functions do, ten times as fast."""
+"""Python's own operators do with numpy's single numbers what numpy's functions do, and much faster."""
 
 
 Numbers = np.ndarray | np.float64

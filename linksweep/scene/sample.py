@@ -105,7 +105,7 @@ def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:
     if method == "random":
         points = random.random((n, dims))
     else:
-        from scipy.stats import qmc  # here: it takes half a second
+        from scipy.stats import qmc  # here: it is slow to import
 
         engines = {"sobol": qmc.Sobol, "halton": qmc.Halton, "latin_hypercube": qmc.LatinHypercube}
         engine = engines[method](dims, seed=random)

@@ -6,7 +6,7 @@ divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors
 pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as number/m,
 "1 1/2 in" as half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity
 takes; all else is an error that tells what to write. The arithmetic is in fractions: where a unit is defined
-exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit). pint takes half a second to wake, so
+exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit). pint is slow to wake, so
 what it says of the units on the list is kept in the user's cache folder.
 """
 

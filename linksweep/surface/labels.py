@@ -52,15 +52,6 @@ def label(axes: Axes, x: float, y: float, *lines: TextLine, **style: Any) -> Ann
     return note
 
 
-def labels_of(axes: Axes) -> list[AnnotationBbox]:
-    """The labels written so far."""
-    return _placer(axes).notes
-
-
-def text_of(note: AnnotationBbox) -> str:
-    return "\n".join(line.get_text() for line in note.offsetbox.get_children() if isinstance(line, TextArea))
-
-
 def _placer(axes: Axes) -> Placer:
     placer = next((artist for artist in axes.artists if isinstance(artist, Placer)), None)
     if placer is None:
