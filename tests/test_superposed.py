@@ -123,6 +123,13 @@ def test_parts_of_a_superposed_batch_have_its_bits():
     xr.testing.assert_identical(whole.isel(design=slice(2, 5)).drop_attrs(), half.drop_attrs())
 
 
+def test_a_study_takes_the_word_along(tmp_path):
+    machine = scene(batch(6, "m3"))
+    words = {"of": ["F32"], "theta2": TURN, "solver": "superposed"}
+    study = ls.study(machine, tmp_path / "study.nc", chunk=4, **words).load()
+    np.testing.assert_array_equal(study.F32_peak, ls.peaks(machine, **words).F32_peak)
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
