@@ -1,0 +1,13 @@
+"""Every attack in its small version; ``python -m benchmarks.stress.attacks`` runs the long ones."""
+
+import numpy as np
+import pytest
+
+from benchmarks.stress.attacks import Attack, attacks
+
+
+@pytest.mark.parametrize("attack", attacks(), ids=lambda attack: attack.name)
+def test_nothing_breaks(attack: Attack):
+    outcome = attack.run(np.random.default_rng(1), attack.small)
+    assert outcome.tried >= attack.small
+    assert outcome.failures == []
