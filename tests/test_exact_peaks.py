@@ -92,6 +92,27 @@ def test_equal_peaks_flat_and_zero_ones():
     assert all(float(nothing[name]) == 0.0 for name in nothing.data_vars)
 
 
+def test_the_place_of_a_peak_that_ties_with_its_mirror_image():
+    """Of a weightless rod's force along itself, |m·a − P|/cos ψ with a = ω²·x'', x = a·cos θ + √(b² − a²·sin² θ)."""
+    speeds = xr.DataArray(np.linspace(20.0, 60.0, 25), dims="speed")
+    engine = ls.SliderCrank(ls.Link(0.05, **WEIGHTLESS), ls.Link(0.15, **WEIGHTLESS), slider_mass=0.5)
+    found = ls.peaks(ls.Scene(engine, speeds, loads=[ls.Load("slider", force=-50.0)]), of=["F12", "F32", "F43"])
+    for pin in ("F12", "F32", "F43"):
+        angle = np.radians(found[f"{pin}_peak_at"])
+        q = np.sqrt(0.15**2 - (0.05 * np.sin(angle)) ** 2)
+        slope = -(0.05**2) * np.cos(2.0 * angle) / q - 0.05**4 * np.sin(2.0 * angle) ** 2 / (4.0 * q**3)
+        force = abs(0.5 * speeds**2 * (slope - 0.05 * np.cos(angle)) + 50.0) * 0.15 / q
+        np.testing.assert_allclose(force, found[f"{pin}_peak"], rtol=1e-9)
+
+
+def test_a_peak_where_the_turn_begins_is_at_0():
+    """The slider's acceleration is greatest at the outer dead centre: the rod, a point mass, pulls hardest there."""
+    masses = xr.DataArray(np.linspace(0.2, 2.0, 40), dims="mass")
+    engine = ls.SliderCrank(ls.Link(0.05, **WEIGHTLESS), ls.Link(0.15, masses, 0.0, 0.05), slider_mass=masses)
+    at = ls.peaks(ls.Scene(engine, 10.0), of=["F32"]).F32_peak_at
+    assert ((at >= 0.0) & (at < 1e-5)).all()
+
+
 def test_a_four_stroke_torque():
     found = ls.peaks(torque_on_crank(lambda t: -np.cos(np.radians((t - 715.0) / 2.0))), of=["T12", "T12_rms"])
     assert (float(found.T12_max), float(found.T12_min)) == pytest.approx((1.0, -1.0), rel=1e-13)

@@ -283,4 +283,5 @@ def settle(lanes, k, best, tag):
         rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
         step = 0.5 * (rise * after - fall * before) / (rise + fall)
         place += step if -before < step < after else 0.0
-    best[PEAK_X, tag], best[BEYOND, tag] = place, max(left, 0.0) + RISE * abs(height)
+    best[PEAK_X, tag], best[PEAK_FAR, tag] = place, lanes[FAR, k]
+    best[BEYOND, tag] = max(left, 0.0) + RISE * abs(height)

@@ -31,6 +31,8 @@ PROBE, PROBED = 0.025, 1e-5
 """How near to the end, of a step or at least, a quantity is looked at to tell whether it grows without bound."""
 JUMPS_AT_ONCE = 4096
 """Designs whose breaks are looked at together."""
+PLACE = 1e-6
+"""How near to the end of a period the angle of a peak counts as its start [degree]: less than it is known to."""
 PathsOf = Callable[[Group], Paths]
 
 
@@ -117,8 +119,14 @@ def _turned(scene: Scene, peak: Peak) -> Found:
     dims, value = peak.value
     away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
     angle = away + laid(scene.mechanism.pinch_angle, dims)
-    angle = np.where(np.isnan(value), np.nan, in_period(angle, scene.period))
+    angle = np.where(np.isnan(value), np.nan, _place(angle, scene.period))
     return Found(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
+
+
+def _place(angle: Array, period: float) -> Array:
+    """Return the angles of peaks in [0, period); one that is the period but for its last digits is 0."""
+    folded = in_period(angle, period)
+    return np.where(folded < period - PLACE, folded, 0.0 * folded)
 
 
 def _steady(field: Field) -> Found:
@@ -204,7 +212,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
             samples += np.bincount(path, minlength=count_of_paths)
             count = run["advance"](lanes, trials, count, best)
     value, x, beyond = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
-    angle = in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
+    angle = _place(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return Best(value, angle, beyond, np.broadcast_to(samples[:, None], value.shape))
 
 
@@ -232,7 +240,7 @@ def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Bes
         raised = limit > value
         edge = paths.middle + side * paths.half
         value, beyond = np.where(raised, limit, value), np.where(raised, error, beyond)
-        angle = np.where(raised, in_period(edge, group.scene.period)[:, None], angle)
+        angle = np.where(raised, _place(edge, group.scene.period)[:, None], angle)
     return Best(value, angle, beyond, samples + 2 * (NODES + 2))
 
 
