@@ -101,6 +101,21 @@ def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) 
     return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
 
 
+def as_tuple(value: Any) -> Any:
+    """Return a list or a bare row of numbers as a tuple; anything else as it is."""
+    row = isinstance(value, np.ndarray) and value.ndim == 1
+    return tuple(value.tolist() if row else value) if row or isinstance(value, list) else value
+
+
+def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
+    """Return the problems of a tuple that must hold plain numbers."""
+    if not isinstance(values, tuple):
+        return [f"{path} = {said(values)}: must be a list, each item {rule.number}"]
+    items = [(f"{path}[{k}]", value) for k, value in enumerate(values, 1)]
+    arrays = [f"{at} is an array: must be {rule.number}, for all designs the same" for at, x in items if is_array(x)]
+    return arrays + [p for at, x in items if not is_array(x) for p in number_problems(at, x, rule)]
+
+
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     if is_array(value):
         return _array_problems(path, value, rule)

@@ -55,7 +55,7 @@ class Action(ByContent):
         return 0.0
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        """Crank angles [degree] at which its force or torque jumps."""
+        """Return the crank angles [degree] at which its force or torque jumps, kinks or is narrow; NaN for none."""
         return ()
 
     def sampled(self, path: str, revolution: Revolution) -> Action:

@@ -119,6 +119,18 @@ class Pair(Field):
 
 
 @dataclass(frozen=True)
+class Numbers(Field):
+    """A list of numbers of one kind, for all designs the same."""
+
+    each: Number
+
+    def read(self, raw: Any, where: Where, log: Log) -> Any:
+        if not isinstance(raw, list):
+            return raw  # the constructor says what it must be
+        return tuple(self.each.read(item, (*where, k), log) for k, item in enumerate(raw))
+
+
+@dataclass(frozen=True)
 class Force(Pair):
     """Two components, or one number: the force on a slider, along its guide."""
 
@@ -206,6 +218,7 @@ _ENDS = {"from_": End(example='["ground", 0.3, 0]'), "to": End(example='["rocker
 _LINKS_TURNED = {"from_": Field(example='"ground"'), "to": Field(example='"rocker"')}
 _CYCLES = Table({"OttoCycle": OttoCycle, "DieselCycle": DieselCycle})
 _LOADS = Table({cls.__name__: cls for cls in ACTIONS}, default="Load")
+_BREAKS = Numbers(Number("angle"))
 _GRAVITY = Pair(Number("acceleration"), Number("acceleration"))
 
 SCHEMA: dict[type, dict[str, Field]] = {
@@ -215,8 +228,8 @@ SCHEMA: dict[type, dict[str, Field]] = {
     InvertedSliderCrank: _fields(InvertedSliderCrank, crank=_LINKS, rocker=_LINKS),
     LoopTrack: _fields(LoopTrack),
     **{cls: _fields(cls) for cls in ACTIONS},
-    Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR),
-    GasPressure: _fields(GasPressure, pressure=NumberOr("pressure", _CYCLES)),
+    Load: _fields(Load, link=Field(example='"coupler"'), force=_FORCE, at=_POLAR, breaks=_BREAKS),
+    GasPressure: _fields(GasPressure, pressure=NumberOr("pressure", _CYCLES), breaks=_BREAKS),
     **{cls: _fields(cls) for cls in _CYCLES.classes.values()},
     **{cls: _fields(cls, **_ENDS) for cls in (Spring, Damper)},
     **{cls: _fields(cls, **_LINKS_TURNED) for cls in (TorsionSpring, TorsionDamper)},
@@ -346,7 +359,7 @@ def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
 
 
 def _left_out(word: Any) -> bool:
-    return word is None or (isinstance(word, str) and not word)
+    return word is None or (isinstance(word, str | tuple) and not word)
 
 
 def _array_written(array: xr.DataArray, path: str, elsewhere: Collection[str]) -> dict[str, Any]:

@@ -12,9 +12,18 @@ import numpy as np
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, Rule, is_lazy, parameter, problems
+from linksweep.mechanisms.validate import (
+    Number,
+    Rule,
+    as_tuple,
+    is_lazy,
+    parameter,
+    plain_numbers_problems,
+    problems,
+)
 from linksweep.scene.action import Action, Revolution, with_sound
 from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, pressure_over
+from linksweep.scene.loads import BREAK
 
 PRESSURE = Rule("pressure", over_angle=True)
 
@@ -29,6 +38,7 @@ class GasPressure(Action):
     pressure : in the cylinder, absolute [Pa]: a number, a DataArray, a function of theta2 [degree], or an `OttoCycle`
         or `DieselCycle`, which need no data
     crankcase : pressure on the other side of the piston, absolute [Pa]
+    breaks : angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`
 
     The force acts at C along the guide, (p − crankcase)·π·bore²/4. The head is where the rod reaches farthest: ahead
     of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
@@ -58,6 +68,10 @@ class GasPressure(Action):
     bore: Number = parameter("length", above=0.0)
     pressure: Number | Cycle = parameter("pressure", over_angle=True)
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
+    breaks: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "breaks", as_tuple(self.breaks))
 
     in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
 
@@ -75,7 +89,9 @@ class GasPressure(Action):
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
-        return problems(given, path + ".") + (self.cycle.problems(f"{path}.pressure") if self.cycle else [])
+        of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
+        of_breaks = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
+        return problems(given, path + ".") + of_cycle + of_breaks
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if not isinstance(mechanism, SliderCrank):
@@ -102,8 +118,9 @@ class GasPressure(Action):
         return brought
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        """Crank angles [degree] at which a cycle's pressure jumps: its dead centres."""
-        return cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
+        """Return the breaks, and the dead centres, where a cycle's pressure jumps [degree]."""
+        dead_centres = cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
+        return (*dead_centres, *self.breaks)
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""

@@ -6,14 +6,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, Rule, as_pair, choice_problems, pair_problems, parameter, problems
+from linksweep.mechanisms.validate import (
+    Number,
+    Rule,
+    as_pair,
+    as_tuple,
+    choice_problems,
+    pair_problems,
+    parameter,
+    plain_numbers_problems,
+    problems,
+)
 from linksweep.scene.action import Action, Revolution, with_values
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
 FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
+BREAK = Rule("angle")
 AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
 
 
@@ -29,6 +41,8 @@ class Load(Action):
     frame : axes of the force: "ground", or "link" (x along the line of pins)
     torque : [N m], positive counter-clockwise, or None for no torque
     origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
+    breaks : angles theta2 [degree] at which the force or torque jumps, kinks or is narrower than 0.05 degrees, in a
+        list: exact peaks look at both sides of each
 
     Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
     point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline (scipy's
@@ -49,10 +63,12 @@ class Load(Action):
     frame: str = "ground"
     torque: Number | None = parameter("torque", None, over_angle=True)
     origin: str = "pin"
+    breaks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", as_pair(self.force))
         object.__setattr__(self, "at", as_pair(self.at))
+        object.__setattr__(self, "breaks", as_tuple(self.breaks))
         on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
         if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
             object.__setattr__(self, "force", (self.force, 0.0))
@@ -74,7 +90,11 @@ class Load(Action):
             found
             + problems(self, path + ".")
             + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
+            + plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
         )
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        return self.breaks
 
     def sampled(self, path: str, revolution: Revolution) -> Load:
         force = self.force and tuple(

@@ -150,7 +150,12 @@ def _load(load: Any) -> str:
         said.append(f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {at}")
     if load.torque is not None:
         said.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
-    return "; ".join(said)
+    return "; ".join(said + _breaks(load.breaks))
+
+
+def _breaks(angles: tuple[float, ...]) -> list[str]:
+    """Angles at which a load jumps, kinks or is narrow."""
+    return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
 
 
 def _in_words(part: Any) -> str:
@@ -162,6 +167,8 @@ def _in_words(part: Any) -> str:
             said.append(f"{_said(item.name)}: {_in_words(value)}")
         elif "rule" in item.metadata:
             said += [] if value is None else [f"{_said(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
+        elif item.name == "breaks":
+            said += _breaks(value)
         else:
             said.append(f"{_said(item.name)} {_end(value) if isinstance(value, tuple) else value}")
     kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
