@@ -11,7 +11,7 @@ import pytest
 import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, batch, scene
 from benchmarks.kernel import kernel_of
-from linksweep.engine import compile
+from linksweep.engine import cache, compile
 
 PINS = ("F12", "F32", "F43", "F14")
 general, designs = scene(GENERAL), scene(batch(3, *ALL))
@@ -39,7 +39,7 @@ def width() -> str:
 @pytest.fixture
 def assembly(monkeypatch):
     """Machine code of the one kernel that a call runs, compiled here: a cached one has none to show."""
-    monkeypatch.setattr(compile, "cache_folder", lambda: None)
+    monkeypatch.setattr(cache, "cache_folder", lambda: None)
 
     def of(call) -> str:
         kernel = compile.compiled.__wrapped__(*kernel_of(call).sources)

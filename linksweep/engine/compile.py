@@ -1,23 +1,24 @@
-"""Kernel source to machine code: every numba setting of the package, and where compiled kernels are kept.
+"""Kernel source to machine code: every numba setting of the package, and how compiled kernels are kept.
 
-A generated module holds all the code that enters its kernel, so its text, hashed, names its file in the user's
-cache folder, and numba's own disk cache beside it can never be stale: numba keys on bytecode alone, which here
-is everything. Without a folder to write to, kernels are compiled afresh in each process.
+A generated module holds all the code that enters its kernel. Its text, hashed, names it, and the file of each of its
+compiled functions in the user's cache folder (`engine.cache`): none can be stale. numba's own disk cache is not used:
+it runs what it finds, and a damaged file ends every run. Whatever goes wrong with a kept kernel, it is compiled afresh.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
-import importlib.util
-import os
+import pickle
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
 from functools import cache
-from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import Any
 
-SETTINGS = 'error_model="numpy", nogil=True, _nrt=False'
+from linksweep.engine.cache import forget, keep, recall
+
+SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, threads allowed, and no fast-math at all: a contracted or reordered sum would give other bits.
 Kernels make no arrays: numba need not count who refers to the rows they look at, which is felt in a search."""
 
@@ -31,88 +32,72 @@ SEARCH_SIGNATURE = (
     "f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1])"
 )
 
-IMPORTS = "import math\nfrom math import atan2, sqrt\n\nimport numba\n\n\n"
+IMPORTS = "import math\nfrom math import atan2, sqrt\n\n\n"
 
 
 @cache
 def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
-    """The kernel of this source as machine code: from this process, from the user's cache, or compiled now.
-
-    The helpers' digest in its text makes it another module when they change.
-    """
-    given = compiled_functions(helpers_source)
-    decorator = f'@numba.njit("{signature}", {SETTINGS}, cache=__spec__ is not None)'
-    text = f"# helpers {_digest(_helpers(helpers_source))}\n{IMPORTS}{decorator}\n{kernel_source}"
-    return _namespace(text, given)["kernel"]
-
-
-def compiled_functions(source: str) -> Mapping[str, Callable]:
-    """A module of plain functions as functions that numba compiles when they are first called, by name."""
-    return _compiled_functions(source, cache_folder())
+    """Return the kernel of this source as machine code: from this process, from the user's cache, or compiled now."""
+    helpers = compiled_functions(helpers_source)
+    kernel = _jitted(IMPORTS + kernel_source, helpers, f"{signature} {helpers_source}")["kernel"]
+    kernel.compile(signature)
+    kernel.disable_compile()
+    return kernel
 
 
 @cache
-def _compiled_functions(source: str, folder: Path | None) -> Mapping[str, Callable]:
-    """The same, once for each folder: a kernel from a folder looks for its helpers under their name there."""
-    made = _namespace(_helpers(source), {}) if source else {}
-    return {name: value for name, value in made.items() if hasattr(value, "py_func")}
+def compiled_functions(source: str) -> Mapping[str, Any]:
+    """Return the functions of a module of plain functions by name, compiled when they are first called."""
+    return _jitted(source, {}) if source else {}
 
 
-def _helpers(source: str) -> str:
-    """The module that a module of plain functions becomes."""
-    decorator = f"@numba.njit({SETTINGS}, cache=__spec__ is not None)\ndef "
-    return IMPORTS + source.replace("import math\n", "").replace("\ndef ", "\n" + decorator)
+def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
+    """Run a module's text and hand its functions to numba; its name covers all that enters their machine code."""
+    import numba
 
-
-def _namespace(text: str, given: Mapping[str, Callable]) -> Mapping[str, Any]:
-    """What a module of this text defines: kept in the user's cache folder if that can be, else made afresh."""
-    folder = cache_folder()
-    path = folder and folder / f"kernel_{_digest(text)}.py"
-    if path and stored(path, text):
-        return vars(_imported(path, given))
-    namespace = {"__spec__": None, **given}
-    exec(text, namespace)
-    return namespace
+    name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
+    module = sys.modules[name] = ModuleType(name)  # where a kept kernel looks for it
+    vars(module).update(helpers)
+    exec(compile(text, name, "exec"), vars(module))
+    functions = {key: value for key, value in vars(module).items() if isinstance(value, FunctionType)}
+    jitted = {key: numba.njit(**SETTINGS)(function) for key, function in functions.items()}
+    for key, function in jitted.items():
+        function._cache = KernelCache(f"{name}.{key}")
+    vars(module).update(jitted)  # so that they call each other compiled
+    return jitted
 
 
 def _digest(text: str) -> str:
-    import numba
-
-    return hashlib.sha256(f"{numba.__version__} {sys.version} {text}".encode()).hexdigest()[:24]
+    return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def cache_folder() -> Path | None:
-    """Where what took long is kept: LINKSWEEP_CACHE_DIR, or the user's cache folder; None if it can't be made."""
-    import platformdirs
+class KernelCache:
+    """Machine code of one function, kept for each signature and kind of processor: the cache of a numba dispatcher."""
 
-    folder = Path(os.environ.get("LINKSWEEP_CACHE_DIR") or platformdirs.user_cache_path("linksweep"))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return None
-    return folder if os.access(folder, os.W_OK) else None
+    cache_path = None
 
+    def __init__(self, name: str) -> None:
+        self.name = name
 
-def stored(path: Path, text: str) -> bool:
-    """Whether a file of the cache holds this text: it is written, whole, unless it is there as it should be."""
-    content = text.encode()
-    try:
-        if not path.exists() or path.read_bytes() != content:
-            handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-            os.replace(temporary, path)
-    except OSError:
-        return False
-    return True
+    def load_overload(self, signature: object, target: Any) -> Any:
+        """Return the kept machine code, ready to run; None where there is none, or anything is wrong with it."""
+        from numba.core.compiler import CompileResult
 
+        target.refresh()
+        name = self._file(signature, target.codegen())
+        try:
+            content = recall(name)
+            return content and CompileResult._rebuild(target, *pickle.loads(content))
+        except Exception:
+            forget(name)
+            return None
 
-def _imported(path: Path, given: Mapping[str, Callable]):
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path}: not a module")
-    module = importlib.util.module_from_spec(spec)
-    vars(module).update(given)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    return module
+    def save_overload(self, signature: object, result: Any) -> None:
+        """Keep machine code; what can't be kept is compiled again by the next process."""
+        from numba.core.serialize import dumps
+
+        with contextlib.suppress(Exception):
+            keep(self._file(signature, result.codegen), dumps(result._reduce()))
+
+    def _file(self, signature: object, codegen: Any) -> str:
+        return f"{self.name}.{_digest(f'{signature} {codegen.magic_tuple()}')}"

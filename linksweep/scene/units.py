@@ -23,10 +23,9 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from importlib.metadata import version
 from numbers import Real
-from pathlib import Path
 from typing import Any
 
-from linksweep.engine.compile import cache_folder, stored
+from linksweep.engine.cache import keep, recall
 from linksweep.mechanisms.validate import UNITS, did_you_mean
 
 
@@ -276,25 +275,13 @@ def _factor(spelling: str, kind: str) -> Fraction:
 @cache
 def _factors_kept() -> dict[str, Fraction]:
     """All of them, as pint says, or as it said to an earlier process."""
-    folder = cache_folder()
-    path = folder and folder / f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}.txt"
-    if path and (kept := _read(path)):
-        return kept
+    name = f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}"
+    if kept := recall(name):
+        return {unit: Fraction(factor) for unit, factor in json.loads(kept).items()}
     pairs = [(spelling, kind.unit) for kind in KINDS.values() for spelling in kind.spellings]
     factors = {f"{spelling} in {si}": _converted(spelling, si) for spelling, si in pairs}
-    if path:
-        text = json.dumps({name: str(factor) for name, factor in factors.items()}, indent=1)
-        stored(path, f"{_digest(text)}\n{text}")
+    keep(name, json.dumps({unit: str(factor) for unit, factor in factors.items()}, indent=1).encode())
     return factors
-
-
-def _read(path: Path) -> dict[str, Fraction]:
-    """The factors of a file; none where it is not there, or damaged."""
-    try:
-        digest, _, text = path.read_text().partition("\n")
-    except (OSError, ValueError):
-        return {}
-    return {name: Fraction(factor) for name, factor in json.loads(text).items()} if digest == _digest(text) else {}
 
 
 def _digest(text: str) -> str:
