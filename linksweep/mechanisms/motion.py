@@ -42,7 +42,7 @@ class CrankDriven(ByContent):
     position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
     spot: ClassVar[str] = "crank angle"
     motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
-    defaults: ClassVar[Mapping[str, Number]] = {"alpha2": 0.0, "drive": "crank"}
+    defaults: ClassVar[Mapping[str, str]] = {"drive": "crank"}
     profiles: ClassVar[Mapping[str, float]] = {}
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")

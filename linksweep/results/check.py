@@ -8,6 +8,7 @@ from linksweep.mechanisms.finding import Finding
 from linksweep.results.compute import require_scene
 from linksweep.results.record import design_coordinates, flags, origin_attributes
 from linksweep.scene.dimensions import side_by_side
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
@@ -38,6 +39,11 @@ def check(scene: Scene) -> xr.Dataset:
     Of an InvertedSliderCrank also `rocker_motion` (swings, turns_fully, limited), `swing` and `reversal_angle` [degree]
     and `time_ratio` of a rocker that swings; with drive="cylinder" `dead_centre_angle` [degree], where the block stands
     still, and `slide_at_dead_centre` [m], its least and greatest size.
+
+    Of a scene that gives both an omega2 that changes with theta2 and alpha2:
+
+    - `alpha2_difference` [rad/s²], `alpha2_difference_at` [degree]: how far alpha2 is from ω2·dω2/dθ2 at worst, and
+      where, of 720 angles a turn
 
     Of a LoopTrack, over the design dims of the scene:
 
@@ -71,9 +77,35 @@ def check(scene: Scene) -> xr.Dataset:
             variables[name] = _variable(found, dims_of_numbers)
             if found.along and found.along[1]:
                 labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))
+    variables |= _acceleration(scene)
     dims = {dim for variable in variables.values() for dim in variable.dims}
     coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)} | labels
     return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))
+
+
+def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
+    """How far an alpha2 stands from that of an omega2 that changes with theta2, at worst, and where."""
+    if scene.alpha2 is None or not scene.changes_speed:
+        return {}
+    grid = crank_grid(_count(scene), scene.period, scene.mechanism.index)
+    difference = abs(scene.at(grid).alpha2 - scene.derived_acceleration(grid))
+    at = difference["theta2"][difference.argmax("theta2")]
+    words = "of alpha2 from omega2·d(omega2)/d(theta2)"
+    return {
+        "alpha2_difference": _told(difference.max("theta2"), "rad s-2", f"largest difference {words}"),
+        "alpha2_difference_at": _told(at, "degree", f"crank angle of the largest difference {words}"),
+    }
+
+
+def _count(scene: Scene) -> int:
+    """720 angles a turn, or as many as arrays over theta2 have that do not say of which angles they are."""
+    index = scene.mechanism.index
+    counts = [a.sizes[index] for a in scene.arrays.values() if index in a.dims and index not in a.coords]
+    return next(iter(counts), round(2.0 * scene.period))
+
+
+def _told(array: xr.DataArray, units: str, long_name: str) -> xr.Variable:
+    return xr.Variable(array.dims, array.values, {"units": units, "long_name": long_name})
 
 
 def _variable(found: Finding, dims: tuple) -> xr.Variable:

@@ -52,7 +52,7 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> A
         For values of the wrong shape or not finite, and for an array that cannot be brought to these angles.
     """
     if callable(value) and not hasattr(value, "dims"):
-        return _called(path, value, rule, grid)
+        return called(path, value, rule, grid.angles)
     if "theta2" not in getattr(value, "dims", ()):
         return value
     if "theta2" not in value.coords:
@@ -66,21 +66,22 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> A
     return _spline(path, value, grid, period)
 
 
-def _called(path: str, function: Any, rule: Rule, grid: Grid) -> xr.DataArray:
+def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
+    """Values of a function of theta2 [degree] at these angles. Raises ValueError as `at_angles`."""
     try:
-        values = np.asarray(function(grid.angles.copy()))
+        values = np.asarray(function(angles.copy()))
     except Exception as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
             f"{path}: the function failed on an array of theta2 in degrees ({said}); "
             f"write it with numpy, as in lambda theta2: 5 * np.cos(np.radians(theta2))"
         ) from error
-    if values.shape not in ((), grid.angles.shape):
+    if values.shape not in ((), angles.shape):
         raise ValueError(
-            f"{path}: the function returned shape {values.shape} for {len(grid.angles)} angles; "
+            f"{path}: the function returned shape {values.shape} for {len(angles)} angles; "
             f"it must return {rule.number} for each angle"
         )
-    sampled = xr.DataArray(np.broadcast_to(values, grid.angles.shape), {"theta2": grid.angles}, "theta2")
+    sampled = xr.DataArray(np.broadcast_to(values, angles.shape), {"theta2": angles}, "theta2")
     refuse([f"{problem}; its function returned it" for problem in number_problems(path, sampled, rule)])
     return sampled.astype(float)
 
@@ -95,28 +96,47 @@ def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
 
 
 def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.DataArray:
-    from scipy.interpolate import CubicSpline
-
-    order = np.argsort(value["theta2"].values, kind="stable")
-    known = value["theta2"].values[order].astype(float)
-    values = np.moveaxis(value.values, value.dims.index("theta2"), 0)[order]
-    span, period = known[-1] - known[0], period_of(value, period)
-    knots, at_knots = known, values
-    if span < period:
-        knots, at_knots = np.append(known, known[0] + period), np.concatenate([values, values[:1]])
-    refuse(_period_problems(path, known, knots, at_knots, period))
-    spline = CubicSpline(knots, at_knots, bc_type="periodic")
-    found = spline(known[0] + np.mod(grid.angles - known[0], period))
+    known, values = knots(value)
+    period = period_of(value, period)
+    refuse(period_problems(path, known, values, period))
+    found = periodic_spline(known, values, period)(known[0] + np.mod(grid.angles - known[0], period))
     place = {angle: k for k, angle in enumerate(np.mod(known, period).tolist())}
     held = np.array([place.get(angle, -1) for angle in np.mod(grid.angles, period).tolist()])
     found[held >= 0] = values[held[held >= 0]]
-    others = [dim for dim in value.dims if dim != "theta2"]
-    labels = {dim: value[dim].variable for dim in others if dim in value.coords}
-    return xr.DataArray(found, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=value.attrs)
+    return over_grid(found, value, grid)
 
 
-def _period_problems(path: str, known: np.ndarray, knots: np.ndarray, at_knots: np.ndarray, period: float) -> list[str]:
-    """Why values at known angles cannot be joined to a periodic curve."""
+def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    """Angles [degree] of an array over theta2 in order, and its values with theta2 as their first axis."""
+    order = np.argsort(value["theta2"].values, kind="stable")
+    known = value["theta2"].values[order].astype(float)
+    return known, np.moveaxis(value.values, value.dims.index("theta2"), 0)[order]
+
+
+def periodic_spline(known: np.ndarray, values: np.ndarray, period: float) -> Any:
+    """Periodic cubic spline through values at angles in order [degree]."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(*_closed(known, values, period), bc_type="periodic")
+
+
+def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
+    """Values at the grid's angles, theta2 as their first axis, with the other dims of an array."""
+    others = [dim for dim in like.dims if dim != "theta2"]
+    labels = {dim: like[dim].variable for dim in others if dim in like.coords}
+    return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
+
+
+def _closed(known: np.ndarray, values: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
+    """Knots and values with the first again a period later, unless it stands there."""
+    if known[-1] - known[0] >= period:
+        return known, values
+    return np.append(known, known[0] + period), np.concatenate([values, values[:1]])
+
+
+def period_problems(path: str, known: np.ndarray, values: np.ndarray, period: float) -> list[str]:
+    """Why values at angles in order cannot be joined to a periodic curve."""
+    knots, at_knots = _closed(known, values, period)
     said = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
     if len(knots) < 4 or knots[-1] - knots[0] > period:
         return [f"{said} cannot be joined; give at least 3 different angles within one period of {period:g} degrees"]

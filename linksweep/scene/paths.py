@@ -35,9 +35,8 @@ def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
 
 def free(scene: Any) -> dict[str, tuple[Any, str]]:
     """What may vary in a study: value and kind of each number by its path, but for words that this machine lacks."""
-    return {
-        path: (value, kind) for path, value, kind in numbers(scene) if kind and not (value is None and "." not in path)
-    }
+    words = {path: (scene.motion.get(path, value), kind) for path, value, kind in numbers(scene) if kind}
+    return {path: (value, kind) for path, (value, kind) in words.items() if value is not None or "." in path}
 
 
 def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner:

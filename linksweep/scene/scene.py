@@ -29,6 +29,7 @@ from linksweep.mechanisms.validate import (
     refuse,
     said,
 )
+from linksweep.scene.acceleration import acceleration, acceleration_problems
 from linksweep.scene.action import Action, Revolution, with_sound
 from linksweep.scene.dimensions import dimension_problems, side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
@@ -58,7 +59,9 @@ class Scene(ByContent):
     ----------
     mechanism : FourBar, SliderCrank, InvertedSliderCrank or LoopTrack
     omega2 : angular velocity of the crank [rad/s], positive counter-clockwise
-    alpha2 : its angular acceleration [rad/s²]; taken as given, also where omega2 changes with theta2
+    alpha2 : its angular acceleration [rad/s²]. Left out, it is ω2·dω2/dθ2, which is 0 where omega2 is the same at every
+        angle; of a spline by that spline, of a function by differences, to 1e-10 of the largest. Where it is given it
+        is taken, and `linksweep.check` tells how far it is from that
     gravity : (gx, gy) [m/s²]; none by default, (0, -9.81) for a mechanism that stands upright
     loads : any number of Load, GasPressure, Spring, Damper, TorsionSpring and TorsionDamper
     drive : the link whose ground torque is the unknown: "crank" (T12), "coupler" (T13) or "rocker" (T14);
@@ -218,7 +221,24 @@ class Scene(ByContent):
         omega2 = self._sampled("omega2", grid)
         revolution = Revolution(self.mechanism, grid, omega2)
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
-        return with_sound(self, omega2=omega2, alpha2=self._sampled("alpha2", grid), loads=loads)
+        return with_sound(self, omega2=omega2, alpha2=self._acceleration(grid), loads=loads)
+
+    def _acceleration(self, grid: Grid) -> Number | None:
+        """Return alpha2 at the grid's angles; None where it was left out and omega2 is the same at every angle."""
+        if self.alpha2 is not None or not self.changes_speed:
+            return self._sampled("alpha2", grid)
+        derived = self.derived_acceleration(grid)
+        refuse(acceleration_problems(derived))
+        return derived
+
+    @property
+    def changes_speed(self) -> bool:
+        """Whether omega2 is a function of theta2, or an array over it."""
+        return "omega2" in self.functions or self.mechanism.index in getattr(self.omega2, "dims", ())
+
+    def derived_acceleration(self, grid: Grid) -> xr.DataArray:
+        """Return ω2·dω2/dθ2 [rad/s²] at the grid's angles, of an omega2 that changes with theta2."""
+        return acceleration("omega2", self.omega2, _rule("omega2"), grid, self.mechanism.period)
 
     def _sampled(self, word: str, grid: Grid) -> Number:
         return at_angles(word, getattr(self, word), _rule(word), grid, self.mechanism.period)
@@ -253,7 +273,9 @@ class Scene(ByContent):
     def motion(self) -> dict[str, Any]:
         """The numbers of its motion under the names that the physics wires by."""
         profile = self.mechanism.profiles.get(self.profile)
-        named = {"omega2": self.omega2, "alpha2": self.alpha2, "entry_speed": self.speed, "thrust": self.thrust}
+        steady = 0.0 if "alpha2" in self.mechanism.motion else None
+        alpha2 = steady if self.alpha2 is None else self.alpha2
+        named = {"omega2": self.omega2, "alpha2": alpha2, "entry_speed": self.speed, "thrust": self.thrust}
         named |= {"work_counts": profile, "gravity_x": self.gravity[0], "gravity_y": self.gravity[1]}
         return {name: number for name, number in named.items() if number is not None}
 

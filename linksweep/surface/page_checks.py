@@ -68,6 +68,8 @@ def _of_linkage(results: Results) -> Iterator[Check]:
     yield from _transmission(results)
     if "friction_to_jam" in found:
         yield from _friction(results)
+    if "alpha2_difference" in found:
+        yield _acceleration(results)
     yield from _numerical(results.cycle)
 
 
@@ -98,6 +100,13 @@ def _friction(results: Results) -> Iterator[Check]:
     if np.isfinite(least):
         said = joined("wedges the slider from ", number(least), " on; here ", number(given, text=f"{given:g}"))
         yield Check("friction", said, not jams)
+
+
+def _acceleration(results: Results) -> Check:
+    """Whether alpha2 is that of an omega2 that changes over the revolution."""
+    worst, at = (float(results.check[f"alpha2_difference{end}"]) for end in ("", "_at"))
+    words = joined("differs from that of the speed by ", number(worst, "rad/s²"), " at ", angle(at))
+    return Check("acceleration of the crank", words, worst <= EXACT * float((results.cycle["omega2"] ** 2).max()))
 
 
 def _numerical(cycle: xr.Dataset) -> Iterator[Check]:

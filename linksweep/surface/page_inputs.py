@@ -118,8 +118,9 @@ def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
     unknown = sampled.mechanism.drives[sampled.drive]
     yield "drive", f"{sampled.drive}; sought: {symbol(unknown)}"
     yield "speed of the crank", _speed(sampled.omega2)
-    if np.any(np.not_equal(sampled.alpha2, 0.0)):
-        yield "its acceleration", quantity(sampled.alpha2, "angular_acceleration")
+    alpha2 = sampled.motion["alpha2"]
+    if np.any(np.not_equal(alpha2, 0.0)):
+        yield "its acceleration", quantity(alpha2, "angular_acceleration")
     if sampled.period > sampled.mechanism.period:
         yield "cycle", "two turns of the crank"
 

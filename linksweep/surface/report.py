@@ -105,7 +105,7 @@ def check_lines(found: xr.Dataset) -> list[str]:
     if "grashof" not in found:
         said = ((str(name).replace("_", " "), _summary(found[name])) for name in found.data_vars)
     else:
-        said = _of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)
+        said = (*(_of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)), *_of_acceleration(found))
     return [f"{title + ':':<26}{text}" for title, text in said]
 
 
@@ -128,6 +128,12 @@ def _labelled(finding: xr.DataArray, unit: str) -> list[str]:
         return []
     pairs = zip(finding.values, finding[finding.dims[0]].values, strict=True)
     return [f"{value:.6g}{unit} ({str(label).replace('_', ' ')})" for value, label in pairs if np.isfinite(value)]
+
+
+def _of_acceleration(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    if "alpha2_difference" in found:
+        worst, at = (_summary(found[f"alpha2_difference{end}"]) for end in ("", "_at"))
+        yield "alpha2", f"differs from that of omega2 by up to {worst}, at {at}"
 
 
 def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:
