@@ -18,6 +18,7 @@ from linksweep.results.orders import orders
 from linksweep.results.pareto import pareto
 from linksweep.results.peaks import peaks
 from linksweep.results.pin_friction import pin_friction
+from linksweep.results.position_equation import position_equation
 from linksweep.results.regressor import regressor
 from linksweep.results.shaking import shaking_moment
 from linksweep.results.speed_limit import speed_limit, speed_separation
@@ -83,6 +84,7 @@ __all__ = [
     "peaks",
     "pin_friction",
     "plot",
+    "position_equation",
     "regressor",
     "report",
     "sample",

@@ -86,33 +86,35 @@ pd.DataFrame({"kg": [m2, m3, m4], "blob": [m2 / blob, m3 / blob, m4 / blob], "kg
 # ## Position
 #
 # Freudenstein's equations give two solutions, ±, and the sheet does not say which is which. linksweep calls them open and
-# crossed.
+# crossed. `ls.position_equation` lays K1 … K5 and A … F out as the sheet has them; the roots are taken here, by the sheet's
+# formula.
 
 # %%
 theta2 = np.arange(360.0)
 cos, sin = np.cos(np.radians(theta2)), np.sin(np.radians(theta2))
-K1, K2, K3, K4 = d / a, d / c, (a**2 - b**2 + c**2 + d**2) / (2 * a * c), d / b
-K5 = (c**2 - d**2 - a**2 - b**2) / (2 * a * b)
-A, B, C = cos - K1 - K2 * cos + K3, -2 * sin, K1 - (K2 + 1) * cos + K3
-D, E, F = cos - K1 + K4 * cos + K5, -2 * sin, K1 + (K4 - 1) * cos + K5
+page = ls.position_equation(pusher, theta2)
+A, B, C, D, E, F = (page[letter].values for letter in "ABCDEF")
 
 for sign, name in ((-1, "−"), (1, "+")):
     theta3 = 2 * np.arctan((-E + sign * np.sqrt(E**2 - 4 * D * F)) / (2 * D))
     theta4 = 2 * np.arctan((-B + sign * np.sqrt(B**2 - 4 * A * C)) / (2 * A))
     for branch in ("open", "crossed"):
-        ours = ls.sweep(replace(pusher, mechanism=replace(machine, branch=branch)), theta2, ["theta3", "theta4"])
+        ours = page.sel(branch=branch)
         apart = np.exp(1j * np.array([theta3, theta4])) - np.exp(1j * np.radians([ours.theta3, ours.theta4]))
         print(f"{name} and {branch:8}: up to {abs(apart).max():.1e} apart")
 
+page.sel(theta2=[0, 45, 90])[["K1", "K2", "K3", "K4", "K5", *"ABCDEF"]].to_dataframe()
+
 # %% [markdown]
 # So − is open and + is crossed. Ours is the open one. Its transmission angle: the sheet's μ = θ4 − θ3 passes 90°, and what
-# matters is how far it is from there. linksweep folds it to an acute angle.
+# matters is how far it is from there. linksweep has it as `transmission_angle_signed`, and folds it to an acute angle.
 
 # %%
 theta3 = 2 * np.arctan((-E - np.sqrt(E**2 - 4 * D * F)) / (2 * D))
 theta4 = 2 * np.arctan((-B - np.sqrt(B**2 - 4 * A * C)) / (2 * A))
 mu = np.degrees(theta4 - theta3)
-cycle = ls.sweep(pusher, theta2, ["transmission_angle"])
+cycle = ls.sweep(pusher, theta2, ["transmission_angle", "transmission_angle_signed"])
+assert np.allclose(mu, cycle.transmission_angle_signed)
 
 fig, ax = plt.subplots(figsize=(8, 3.2), layout="constrained")
 ax.plot(theta2, mu, label="μ = θ4 − θ3")
@@ -166,6 +168,8 @@ def polar(length, angle):
 
 R12, R23, R14 = -polar(s, t2), -polar(p, theta3), -polar(u, theta4)
 R32, R43, R34 = polar(a, t2) + R12, polar(b, theta3) + R23, polar(c, theta4) + R14
+ours = ls.sweep(pusher, theta2, ["R43x", "R34y"])
+assert np.allclose(R43.real, ours.R43x) and np.allclose(R34.imag, ours.R34y)
 FP3, FP4 = -10j * pound * gravity, -25 * pound * gravity
 RP3 = polar(3.5 * inch, theta3 + np.radians(20)) + R23
 RP4 = polar(5 * inch, theta4) + R14

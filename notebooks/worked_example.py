@@ -266,11 +266,12 @@ ours.round(3)
 # *ME 470 Final Project* has arms as R vectors, F32 and F43 as unknowns, and loads on links 3 and 4: the form of `ls.system`. (One
 # of its R vectors, "R_23", should read R_23x; and there are no weights in it.) *Lecture 17* writes out ΣT on the crank: its third
 # term must be −R32y·F32x, and T12 is missing. It then takes a slider-crank whose T12 is known. Accelerations are prescribed there
-# too, so some other torque must be unknown, and T13, on the rod, makes the matrix square again. Here this is `drive="coupler"`:
+# too, so some other torque must be unknown, and T13, on the rod, makes the matrix square again. Here this is `drive="coupler"`.
+# Its matrix has T14 and the trivial row T14 = 0, which `form="document"` prints; our friction adds F14x and a row to its nine:
 
 # %%
 lecture = ls.Scene(machine, omega2=20.0, drive="coupler", loads=[ls.Load("crank", torque=2.0)])
-driven = ls.system(lecture, theta2=30.0).isel(theta2=0)
+driven = ls.system(lecture, theta2=30.0, form="document").isel(theta2=0)
 print(*driven.unknown.values)
 driven.matrix.sel(equation=[name for name in driven.equation.values if " M " in name]).to_pandas().round(4)
 

@@ -156,6 +156,16 @@ def centres(move: Motion, numbers: dict[str, int]) -> dict:
     return {f"{of}{k}": getattr(move, of)[name] for name, k in numbers.items() for of in ("G", "vG", "aG")}
 
 
+def arms(move: Motion, acting: dict[str, Sequence], numbers: dict[str, int]) -> dict:
+    """{'R12': …}: from the centre of gravity of each link k to where link i acts on it, Rik."""
+    found = {}
+    for name, forces in acting.items():
+        for force, pin, _ in forces:
+            (other,) = {*force[1:]} - {str(numbers[name])}
+            found[f"R{other}{numbers[name]}"] = move.pin[pin] - move.G[name]
+    return found
+
+
 def components(vectors: dict) -> dict:
     """{'B': x + jy} as {'Bx': x, 'By': y}."""
     parts = {"x": "real", "y": "imag"}

@@ -24,6 +24,7 @@ from judges import (
     LoadData,
     Motion,
     Unassemblable,
+    arms,
     centres,
     components,
     crank_angle,
@@ -134,15 +135,17 @@ def kinematic_values(move: Motion) -> dict:
     values["transmission_angle"] = mp.degrees(mp.atan2(abs(cross(u, v)), abs((u.conjugate() * v).real)))
     for name in ("coupler", "rocker"):
         values |= {f"{rate}{NUMBER[name]}": getattr(move, rate)[name] for rate in ("omega", "alpha")}
-    return values | components({pin: move.pin[pin] for pin in "BCD"} | centres(move, NUMBER))
+    values["transmission_angle_signed"] = mp.degrees(mp.arg(v / u))
+    vectors = {pin: move.pin[pin] for pin in "BCD"} | centres(move, NUMBER) | arms(move, ACTING, NUMBER)
+    return values | components(vectors)
 
 
 def solve(data: FourBarData, theta2) -> dict:
     """Everything at one crank angle [degree], by name.
 
-    theta3, theta4, transmission_angle (acute) [degree]; omega3, omega4 [rad/s]; alpha3, alpha4 [rad/s^2];
-    Bx .. Dy, G2x .. G4y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x .. F14y, F12, F32, F43, F14 [N];
-    T12, T13 or T14 [N m]; power of the drive [W]. Raises Unassemblable or DeadPoint.
+    theta3, theta4, transmission_angle (acute) and _signed (theta4 - theta3) [degree]; omega3, omega4 [rad/s]; alpha3,
+    alpha4 [rad/s^2]; Bx .. Dy, G2x .. G4y, R12x .. R14y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x .. F14y,
+    F12, F32, F43, F14 [N]; T12, T13 or T14 [N m]; power of the drive [W]. Raises Unassemblable or DeadPoint.
     """
     move = motion(data, theta2)
     if drive_hold(data, move) < FOLD:

@@ -8,7 +8,7 @@ x + jy, from A.
     j omega4 (B - D) + s' r = j omega2 B
     j alpha4 (B - D) + s'' r = (j alpha2 - omega2^2) B + omega4^2 (B - D) - 2 j omega4 s' r
     link 2:   F12 + F32 + P2 + m2 g = m2 aG2        and for each, moments about its G = I alpha
-    link 3:  -F32 + F43 + P3 + m3 g = m3 aB,        T43 on the block
+    link 3:  -F32 + F43 + P3 + m3 g = m3 aG3,       F43 at B, T43 on the block
     link 4:  -F43 + F14 + P4 + m4 g = m4 aG4,       F43 at B, -T43 on the rocker
     no friction: F43 . r = 0, or what a cylinder between block and rocker gives, which is then the unknown of the drive
 """
@@ -26,6 +26,7 @@ from judges import (
     LoadData,
     Motion,
     Unassemblable,
+    arms,
     centres,
     components,
     crank_angle,
@@ -60,7 +61,8 @@ T43, DRIVE = 8, 9  # the columns after those of the forces
 class InvertedSliderCrankData:
     """One inverted slider-crank and what happens to it: SI, angles in degrees, rates in rad/s and rad/s^2.
 
-    Loads act on "crank", "block" or "rocker". The block's centre of gravity is B; its axes are the rocker's.
+    Loads act on "crank", "block" or "rocker". The block's axes are the rocker's; its centre of gravity is polar in
+    them, from B.
     """
 
     crank: LinkData
@@ -76,6 +78,8 @@ class InvertedSliderCrankData:
     gravity: tuple[float, float] = (0.0, 0.0)
     drive: str = "crank"
     loads: tuple[LoadData, ...] = ()
+    block_cg_distance: float = 0.0
+    block_cg_angle: float = 0.0
 
 
 def by_link(*values) -> dict:
@@ -85,7 +89,8 @@ def by_link(*values) -> dict:
 
 def links(data: InvertedSliderCrankData) -> dict[str, LinkData]:
     """The three bodies."""
-    return by_link(data.crank, LinkData(0.0, data.block_mass, data.block_inertia), data.rocker)
+    block = LinkData(0.0, data.block_mass, data.block_inertia, data.block_cg_distance, data.block_cg_angle)
+    return by_link(data.crank, block, data.rocker)
 
 
 def close_loop(data: InvertedSliderCrankData, theta2) -> dict[str, Any]:
@@ -156,16 +161,16 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
     """Everything at one crank angle [degree], by name.
 
     theta3 = theta4, transmission_angle [degree]; omega3 = omega4 [rad/s]; alpha3 = alpha4 [rad/s^2]; slide,
-    slide_velocity, slide_acceleration; Bx .. Dy, G2x .. G4y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x ..
-    F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 [N m] and T12, T14 [N m] or cylinder_force [N]; power [W].
-    Raises Unassemblable or DeadPoint.
+    slide_velocity, slide_acceleration; Bx .. Dy, G2x .. G4y, R12x .. R14y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y
+    [m/s^2]; F12x .. F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 [N m] and T12, T14 [N m] or cylinder_force
+    [N]; power [W]. Raises Unassemblable or DeadPoint.
     """
     move, values = motion_and_slide(data, theta2)
     if hold(data, move) < FOLD:
         raise DeadPoint(f"theta2 = {float(theta2)} degree: the {data.drive} stands still and cannot drive")
     solution = linear_solve(*system(data, move))
     forces = {name: mp.mpc(*solution[2 * i : 2 * i + 2]) for i, name in enumerate(FORCES)}
-    vectors = {pin: move.pin[pin] for pin in "BD"} | centres(move, NUMBER)
+    vectors = {pin: move.pin[pin] for pin in "BD"} | centres(move, NUMBER) | arms(move, ACTING, NUMBER)
     for k in (3, 4):
         values |= {f"theta{k}": mp.degrees(mp.arg(move.line["rocker"]))}
         values |= {f"omega{k}": move.omega["rocker"], f"alpha{k}": move.alpha["rocker"]}
@@ -192,6 +197,7 @@ def to_scene(data: InvertedSliderCrankData):
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rocker")}
     rest = ("ground", "block_mass", "block_inertia", "offset", "branch", "ground_angle")
+    rest += ("block_cg_distance", "block_cg_angle")
     mechanism = ls.InvertedSliderCrank(**bars, **{name: getattr(data, name) for name in rest})
     return ls.Scene(mechanism, **happening(data))
 
@@ -253,6 +259,8 @@ def random_data(
         gravity=gravity,
         drive=drive or str(rng.choice(DRIVES)),
         loads=tuple(drawn),
+        block_cg_distance=float(rng.uniform(0, 0.5)) * scale if rng.integers(2) else 0.0,
+        block_cg_angle=float(rng.uniform(-180, 180)),
     )
 
 

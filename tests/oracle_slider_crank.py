@@ -28,6 +28,7 @@ from judges import (
     LoadData,
     Motion,
     Unassemblable,
+    arms,
     centres,
     components,
     crank_angle,
@@ -70,8 +71,8 @@ class Jammed(ValueError):
 class SliderCrankData:
     """One slider-crank and what happens to it: SI, angles in degrees, rates in rad/s and rad/s^2.
 
-    Loads act on "crank", "rod" or "slider". The slider's centre of gravity is C, its axes run along and across the
-    guide.
+    Loads act on "crank", "rod" or "slider". The slider's axes run along and across the guide; its centre of gravity is
+    polar in them, from C.
     """
 
     crank: LinkData
@@ -86,6 +87,8 @@ class SliderCrankData:
     gravity: tuple[float, float] = (0.0, 0.0)
     drive: str = "crank"
     loads: tuple[LoadData, ...] = ()
+    slider_cg_distance: float = 0.0
+    slider_cg_angle: float = 0.0
 
 
 def by_link(*values) -> dict:
@@ -94,8 +97,9 @@ def by_link(*values) -> dict:
 
 
 def links(data: SliderCrankData) -> dict[str, LinkData]:
-    """The three bodies; the slider is a mass at C that does not turn."""
-    return by_link(data.crank, data.rod, LinkData(0.0, data.slider_mass, 0.0))
+    """The three bodies; the slider does not turn."""
+    slider = LinkData(0.0, data.slider_mass, 0.0, data.slider_cg_distance, data.slider_cg_angle)
+    return by_link(data.crank, data.rod, slider)
 
 
 def guide(data: SliderCrankData):
@@ -209,9 +213,10 @@ def kinematic_values(data: SliderCrankData, move: Motion) -> dict:
     u, s, slider = move.line["rod"], guide(data), {"pin": "C", "vG": "slider", "aG": "slider"}
     values = {"theta3": mp.degrees(mp.arg(u)), "omega3": move.omega["rod"], "alpha3": move.alpha["rod"]}
     values["transmission_angle"] = mp.degrees(mp.atan2(abs(along(u, s)), abs(along(u, 1j * s))))
+    vectors = {pin: move.pin[pin] for pin in "BC"} | centres(move, NUMBER) | arms(move, ACTING, NUMBER)
     travel = [along(getattr(move, of)[name], s) for of, name in slider.items()]
     values |= dict(zip(("x_slider", "v_slider", "a_slider"), travel, strict=True))
-    return values | components({pin: move.pin[pin] for pin in "BC"} | centres(move, NUMBER))
+    return values | components(vectors)
 
 
 def guide_values(data: SliderCrankData, move: Motion, F14) -> dict:
@@ -226,7 +231,8 @@ def solve(data: SliderCrankData, theta2) -> dict:
     """Everything at one crank angle [degree], by name.
 
     theta3, transmission_angle (between rod and the guide's normal, acute: 0 at a toggle) [degree]; omega3 [rad/s];
-    alpha3 [rad/s^2]; x_slider, v_slider, a_slider along the guide from A's foot on it; Bx .. Cy, G2x .. G4y [m];
+    alpha3 [rad/s^2]; x_slider, v_slider, a_slider along the guide from A's foot on it; Bx .. Cy, G2x .. G4y, R12x ..
+    R34y [m];
     vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x .. F14y in ground axes, F12, F32, F43, F14, normal_force (along n)
     and friction_force (along s) [N]; T14 of the guide on the slider about C and T12 or T13 [N m]; power of the drive
     and friction_power, lost, never negative [W]. Raises Unassemblable, DeadPoint or Jammed.
@@ -252,8 +258,9 @@ def to_scene(data: SliderCrankData):
     import linksweep as ls
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rod")}
-    rest = {name: getattr(data, name) for name in ("slider_mass", "offset", "friction", "branch", "slide_angle")}
-    return ls.Scene(ls.SliderCrank(**bars, **rest), **happening(data))
+    own = ("slider_mass", "offset", "friction", "branch", "slide_angle", "slider_cg_distance", "slider_cg_angle")
+    mechanism = ls.SliderCrank(**bars, **{name: getattr(data, name) for name in own})
+    return ls.Scene(mechanism, **happening(data))
 
 
 def mirrored(data: SliderCrankData) -> SliderCrankData:
@@ -264,7 +271,8 @@ def mirrored(data: SliderCrankData) -> SliderCrankData:
         return replace(one, force=(Fx, -Fy), at=(distance, -angle), torque=-one.torque)
 
     bars = {name: replace(bar, cg_angle=-bar.cg_angle) for name in ("crank", "rod") for bar in [getattr(data, name)]}
-    turned = {name: -getattr(data, name) for name in ("offset", "slide_angle", "omega2", "alpha2")}
+    changing = ("offset", "slide_angle", "omega2", "alpha2", "slider_cg_angle")
+    turned = {name: -getattr(data, name) for name in changing}
     gravity = data.gravity[0], -data.gravity[1]
     return replace(data, **bars, **turned, gravity=gravity, loads=tuple(map(load, data.loads)))
 
@@ -327,6 +335,8 @@ def random_data(
         gravity=gravity,
         drive=drive or str(rng.choice(DRIVES)),
         loads=tuple(drawn),
+        slider_cg_distance=float(rng.uniform(0, 0.5)) * scale if rng.integers(2) else 0.0,
+        slider_cg_angle=float(rng.uniform(-180, 180)),
     )
 
 

@@ -40,10 +40,11 @@ def table(kind, **words):
 
 
 def links(length):
+    off_pin = {"cg_distance": (lengths,), "cg_angle": (angles,)}
     return st.one_of(
-        table("Link", length=length, mass=masses, inertia=masses, cg_distance=(lengths,), cg_angle=(angles,)),
+        table("Link", length=length, mass=masses, inertia=masses, **off_pin),
         table("Bar", length=length, width=lengths, thickness=lengths, density=st.floats(0, 8000)),
-        table("Disk", length=length, radius=lengths, thickness=lengths, density=st.floats(0, 8000)),
+        table("Disk", length=length, radius=lengths, thickness=lengths, density=st.floats(0, 8000), **off_pin),
     )
 
 
@@ -65,6 +66,8 @@ MACHINES = {
         friction=(st.floats(0, 0.5),),
         branch=(branches,),
         slide_angle=(angles,),
+        slider_cg_distance=(lengths,),
+        slider_cg_angle=(angles,),
     ),
     "InvertedSliderCrank": table(
         "InvertedSliderCrank",
@@ -75,6 +78,8 @@ MACHINES = {
         offset=(st.floats(-0.1, 0.1),),
         branch=(branches,),
         ground_angle=(angles,),
+        block_cg_distance=(lengths,),
+        block_cg_angle=(angles,),
     ),
     "LoopTrack": table("LoopTrack", radius=st.floats(1, 100), mass=st.floats(1, 1000)),
 }

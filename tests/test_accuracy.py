@@ -33,8 +33,10 @@ import linksweep as ls
 from linksweep.engine import run
 
 EPS = float(np.finfo(float).eps)
-KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "transmission_angle")
+KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
+ANGLES = ("transmission_angle", "transmission_angle_signed")
 PLACES = ("Bx", "By", "Cx", "Cy", "aG2x", "aG2y", "aG3x", "aG3y", "aG4x", "aG4y")
+ARMS = tuple(f"R{pair}{axis}" for pair in (12, 32, 23, 43, 34, 14) for axis in "xy")
 PINS = ("F12", "F32", "F43", "F14")
 FORCES = tuple(pin + part for pin in PINS for part in ("x", "y", ""))
 REACTIONS = {f"F{name[2]}{name[1]}{name[3:]}": name for name in FORCES}
@@ -53,7 +55,7 @@ def unknowns(data: FourBarData) -> tuple[str, ...]:
 
 
 def all_names(data: FourBarData) -> tuple[str, ...]:
-    return (*KINEMATICS, *PLACES, *FORCES, *REACTIONS, torque_name(data), "power")
+    return (*KINEMATICS, *ANGLES, *PLACES, *ARMS, *FORCES, *REACTIONS, torque_name(data), "power")
 
 
 def solved(data: FourBarData, theta2: list[float]) -> Case:
@@ -92,7 +94,7 @@ def scales(data: FourBarData, results: dict[str, np.ndarray]) -> dict[str, np.nd
     longest = max(data.ground, *(getattr(data, link).length for link in LINKS))
     angle = np.full_like(omega, 180.0)
     found = {"theta": angle, "transmission": angle, "omega": omega, "alpha": alpha, "aG": alpha * longest}
-    found |= {"B": np.full_like(omega, longest), "C": np.full_like(omega, longest)}
+    found |= {"B": np.full_like(omega, longest), "C": np.full_like(omega, longest), "R": np.full_like(omega, longest)}
     found |= {"F": results["largest_force"], "T": results["largest_torque"]}
     return found | {"power": results["largest_torque"] * omega}
 

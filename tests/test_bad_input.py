@@ -64,6 +64,8 @@ NUMBERS = [
     Number("crank.density", key(crank, "density"), "kg/m^3", "not negative"),
     *(Number(f"rocker.{name}", key(rocker, name), "m", "positive") for name in ("length", "radius", "thickness")),
     Number("rocker.density", key(rocker, "density"), "kg/m^3", "not negative"),
+    Number("rocker.cg_distance", key(rocker, "cg_distance"), "m", "not negative"),
+    Number("rocker.cg_angle", key(rocker, "cg_angle"), "degree"),
     Number("ground", key(four_bar, "ground"), "m", "positive"),
     Number("ground_angle", key(four_bar, "ground_angle"), "degree"),
     Number("omega2", key(scene, "omega2"), "rad/s", over_angle=True),
@@ -79,6 +81,7 @@ NUMBERS = [
     Number("loads[2].torque", key(load, "torque"), "N m", over_angle=True),
 ]
 every_number = pytest.mark.parametrize("number", NUMBERS, ids=str)
+POLAR = ("coupler.cg_distance", "rocker.cg_distance", "loads[2].at[1]")
 TURNED = "; for a point on the other side turn its angle by 180 degrees"
 OVER_ANGLE = "only omega2, alpha2 and loads may change over the revolution"
 
@@ -98,7 +101,7 @@ def test_the_table_has_every_number_of_every_constructor():
 @every_number
 def test_negative_and_zero(number):
     allowed = {"any": (-1.0, 0.0), "positive": (), "not negative": (0.0,)}[number.bound]
-    turned = TURNED if number.path in ("coupler.cg_distance", "loads[2].at[1]") else ""
+    turned = TURNED if number.path in POLAR else ""
     for value, shown in ((-1.0, "-1"), (0.0, "0"), (-2.5e-4, "-0.00025"), (-np.float32(0.5), "-0.5"), (-3, "-3")):
         if value in allowed or number.bound == "any":
             number.change(value)
@@ -175,7 +178,7 @@ def test_arrays_with_values_that_are_not_allowed(number):
     ):
         assert refusal(number.change, value) == [expected]
     if number.bound != "any":
-        turned = TURNED if number.path in ("coupler.cg_distance", "loads[2].at[1]") else ""
+        turned = TURNED if number.path in POLAR else ""
         expected = f"{path} = -0.2 {unit} at design[2]: must be {number.allowed}{turned}"
         assert refusal(number.change, array(0.1, 0.1, -0.2)) == [expected]
 

@@ -22,14 +22,16 @@ SKEW = replace(
     ),
     alpha2=50.0,
 )
+SLIDER = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slider_cg_distance=0.02, slider_cg_angle=70.0))
+BLOCK = replace(SHAPER, mechanism=replace(SHAPER.mechanism, block_cg_distance=0.06, block_cg_angle=-120.0))
 OUTPUTS = ["F12x", "F32y", "F43x", "F14y", "T12", "Fsx", "Ms", "power", "F32x_link3"]
 
 # ------------------------------------------------------------------------------------------------- regressor
 
 
-@pytest.mark.parametrize("scene", [PRESS, ENGINE, SHAPER, SKEW, replace(SKEW, drive="coupler")])
+@pytest.mark.parametrize("scene", [PRESS, ENGINE, SHAPER, SKEW, replace(SKEW, drive="coupler"), SLIDER, BLOCK])
 def test_coefficients_times_parameters_are_the_sweep(scene):
-    names = [name.replace("T12", scene.mechanism.drives[scene.drive]) for name in OUTPUTS]
+    names = [name.replace("T12", scene.mechanism.drives[scene.drive]) for name in OUTPUTS] + ["T14", "T43"]
     names = [name for name in names if name in scene.table.quantity]
     found, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, outputs=names)
     for name in names:
@@ -51,6 +53,24 @@ def test_coefficients_foretell_other_masses():
     for name in OUTPUTS:
         again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
         np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
+
+
+def test_coefficients_foretell_a_slider_and_a_block_of_other_centres_of_gravity():
+    for scene, role in ((ENGINE, "slider"), (SHAPER, "block")):
+        mass = getattr(scene.mechanism, f"{role}_mass")
+        moved = {f"{role}_cg_distance": 0.03, f"{role}_cg_angle": 35.0}
+        names = [name for name in (*OUTPUTS, "T14", "T43") if name in scene.table.quantity]
+        found = ls.regressor(scene, names, theta2=36)
+        h, values = mass * 0.03 * np.exp(1j * np.radians(35.0)), found.value.copy()
+        numbers = {"mx": h.real, "my": h.imag}
+        if role == "block":
+            numbers["J"] = scene.mechanism.block_inertia + mass * 0.03**2
+        for word, number in numbers.items():
+            values.loc[{"parameter": f"{role}.{word}"}] = number
+        cycle = ls.sweep(replace(scene, mechanism=replace(scene.mechanism, **moved)), theta2=36, outputs=names)
+        for name in names:
+            again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
+            np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
 
 
 def test_the_torque_of_a_flywheel_is_its_inertia_times_alpha():
@@ -78,7 +98,7 @@ def shaking(scene, **options):
 
 
 @pytest.mark.parametrize(
-    "scene", [PRESS, SKEW, replace(SKEW, mechanism=replace(SKEW.mechanism, branch="crossed")), SHAPER]
+    "scene", [PRESS, SKEW, replace(SKEW, mechanism=replace(SKEW.mechanism, branch="crossed")), SHAPER, BLOCK]
 )
 def test_balanced_wholly(scene):
     """Berkof and Lowen: no shaking force is left, at any speed and acceleration of the crank."""

@@ -37,7 +37,8 @@ ANGLES = ("theta3", "theta4")
 RATES = ("omega3", "omega4", "alpha3", "alpha4")
 SLIDE = ("slide", "slide_velocity", "slide_acceleration")
 COMPONENTS = tuple(vector + axis for vector in ("B", "aG2", "aG3", "aG4", *FORCES) for axis in "xy")
-EVERYTHING = (*ANGLES, *RATES, *SLIDE, *COMPONENTS, *FORCES, "F43n", "T43", "transmission_angle", "power")
+ARMS = tuple(f"R{pair}{axis}" for pair in (12, 32, 23, 14) for axis in "xy")
+EVERYTHING = (*ANGLES, *RATES, *SLIDE, *COMPONENTS, *ARMS, *FORCES, "F43n", "T43", "transmission_angle", "power")
 
 
 class Case(NamedTuple):
@@ -72,7 +73,7 @@ def size(name: str, data: InvertedSliderCrankData, result: dict) -> float:
     omega = max(abs(data.omega2), abs(result["omega4"]))
     alpha = max(data.omega2**2 + abs(data.alpha2), abs(result["alpha4"]))
     length, force, torque = longest(data), largest_force(result), largest_torque(result, data)
-    by_start = {"theta": 180.0, "transmission": 180.0, "omega": omega, "alpha": alpha, "B": length}
+    by_start = {"theta": 180.0, "transmission": 180.0, "omega": omega, "alpha": alpha, "B": length, "R": length}
     by_start |= {"slide_velocity": omega * length, "slide_acceleration": alpha * length, "slide": length}
     by_start |= {"aG": alpha * length, "F": force, "cylinder": force, "T": torque, "power": torque * omega}
     return float(next(scale for start, scale in by_start.items() if name.startswith(start)))
@@ -263,14 +264,15 @@ def mirrored(data: InvertedSliderCrankData) -> InvertedSliderCrankData:
         return replace(one, force=(Fx, -Fy), at=(distance, -angle), torque=-one.torque)
 
     bars = {name: replace(getattr(data, name), cg_angle=-getattr(data, name).cg_angle) for name in ("crank", "rocker")}
-    turned = {name: -getattr(data, name) for name in ("offset", "ground_angle", "omega2", "alpha2")}
+    turned = {name: -getattr(data, name) for name in ("offset", "ground_angle", "omega2", "alpha2", "block_cg_angle")}
     gravity = data.gravity[0], -data.gravity[1]
     return replace(data, **bars, **turned, gravity=gravity, loads=tuple(map(load, data.loads)))
 
 
 def test_mirror():
     """Angles, rates, torques, normal force and y turn their signs; not a bit changes otherwise."""
-    turned = {*ANGLES, *RATES, "F43n", "T43", "T12", "T14", *(name for name in COMPONENTS if name.endswith("y"))}
+    turned = {*ANGLES, *RATES, "F43n", "T43", "T12", "T14"}
+    turned |= {name for name in (*COMPONENTS, *ARMS) if name.endswith("y")}
     for case in cases():
         expected = swept(case.data, case.theta2).map(lambda x: -x if x.name in turned else x)
         assert_bits(swept(mirrored(case.data), [-angle for angle in case.theta2]), expected)
@@ -280,7 +282,8 @@ def test_mirror():
 def test_units(metre, kilogram):
     """Units that are powers of two of others: exponents change, and not a bit besides."""
     newton, joule = metre * kilogram, metre * metre * kilogram
-    factors = {"B": metre, "slide": metre, "aG": metre, "F": newton, "cylinder": newton, "T": joule, "power": joule}
+    factors = {"B": metre, "R": metre, "slide": metre, "aG": metre, "F": newton, "cylinder": newton}
+    factors |= {"T": joule, "power": joule}
     for case in few_cases():
         data = case.data
         bars = {
@@ -311,6 +314,7 @@ def test_units(metre, kilogram):
             offset=data.offset * metre,
             block_mass=data.block_mass * kilogram,
             block_inertia=data.block_inertia * joule,
+            block_cg_distance=data.block_cg_distance * metre,
             gravity=(data.gravity[0] * metre, data.gravity[1] * metre),
         )
 

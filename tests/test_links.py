@@ -28,3 +28,16 @@ def test_a_disk_is_what_its_parts_add_up_to():
     expected = summed(0.16, 0.16, lambda x, y: x**2 + y**2 < 0.08**2)
     assert (disk.mass, disk.inertia) == pytest.approx(expected, rel=1e-4)
     assert disk.cg_distance == 0.0
+
+
+def test_an_eccentric_disk_turns_about_its_pin_as_its_parts_do():
+    """Without all other masses T12 = J·α, J about the pin A, 3 cm off the centre at 50° from A–B."""
+    eccentric = ls.Disk(0.05, radius=0.08, thickness=THICKNESS, density=DENSITY, cg_distance=0.03, cg_angle=50.0)
+    light = ls.Link(0.2, 0.0, 0.0)
+    machine = ls.FourBar(eccentric, light, light, ground=0.2)
+    spun = ls.sweep(ls.Scene(machine, omega2=0.0, alpha2=7.0), theta2=8, outputs=["T12"])
+    mass, about_pin = summed(0.24, 0.24, lambda x, y: (x - 0.03) ** 2 + y**2 < 0.08**2)
+    np.testing.assert_allclose(spun.T12, 7.0 * about_pin, rtol=1e-4)
+    at_rest = ls.sweep(ls.Scene(machine, omega2=0.0, gravity=(0.0, -9.81)), theta2=[0.0, 40.0], outputs=["T12"])
+    lever = 0.03 * np.cos(np.radians([50.0, 90.0]))
+    np.testing.assert_allclose(at_rest.T12, mass * 9.81 * lever, rtol=1e-4, atol=1e-12)

@@ -13,8 +13,10 @@ CRANK = ls.Link(0.08, 0.5, 1e-3, 0.03, 20.0)
 ROD = ls.Link(0.22, 0.7, 3e-3, 0.1, -10.0)
 ROCKER = ls.Link(0.18, 0.6, 2e-3, 0.08, 5.0)
 FOUR_BAR = ls.FourBar(CRANK, ROD, ROCKER, ground=0.2, ground_angle=12.0)
-SLIDER_CRANK = ls.SliderCrank(CRANK, ROD, slider_mass=0.4, offset=0.02, slide_angle=15.0)
-INVERTED = ls.InvertedSliderCrank(CRANK, ROCKER, 0.2, block_mass=0.3, block_inertia=1e-4, offset=0.02)
+SLIDER = {"slider_mass": 0.4, "slider_cg_distance": 0.05, "slider_cg_angle": 65.0}
+BLOCK = {"block_mass": 0.3, "block_inertia": 1e-4, "block_cg_distance": 0.04, "block_cg_angle": -35.0}
+SLIDER_CRANK = ls.SliderCrank(CRANK, ROD, **SLIDER, offset=0.02, slide_angle=15.0)
+INVERTED = ls.InvertedSliderCrank(CRANK, ROCKER, 0.2, **BLOCK, offset=0.02)
 MACHINES = pytest.mark.parametrize("mechanism", [FOUR_BAR, SLIDER_CRANK, INVERTED])
 OMEGA, ALPHA = 30.0, 70.0
 SHAKING = ["Fsx", "Fsy", "Ms"]
@@ -34,14 +36,14 @@ def bodies(mechanism, theta2):
     found = [(CRANK, turned(CRANK, (0.0, 0.0), theta2), theta2)]
     if mechanism is SLIDER_CRANK:
         found.append((ROD, turned(ROD, B, theta3), theta3))
-        slider = ls.Link(1.0, mechanism.slider_mass, 0.0)
-        found.append((slider, (ds.Cx.values, ds.Cy.values), 0.0 * theta2))
+        slider = ls.Link(1.0, 0.4, 0.0, 0.05, 65.0)
+        found.append((slider, turned(slider, (ds.Cx.values, ds.Cy.values), 15.0), 0.0 * theta2))
     else:
         angle = np.radians(mechanism.ground_angle)
         D = mechanism.ground * np.cos(angle), mechanism.ground * np.sin(angle)
         if mechanism is INVERTED:
-            block = ls.Link(1.0, mechanism.block_mass, mechanism.block_inertia)
-            found.append((block, B, theta3))
+            block = ls.Link(1.0, 0.3, 1e-4, 0.04, -35.0)
+            found.append((block, turned(block, B, theta3), theta3))
         else:
             found.append((ROD, turned(ROD, B, theta3), theta3))
         found.append((ROCKER, turned(ROCKER, D, ds.theta4.values), ds.theta4.values))
@@ -106,6 +108,14 @@ def test_without_weights_and_loads_pins_and_torque_hold_its_moment():
     x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
     held = ds.T12 + x * ds.F14y - y * ds.F14x
     np.testing.assert_allclose(held, -ds.Ms, rtol=0, atol=1e-12 * float(abs(ds.Ms).max()))
+
+
+def test_of_a_slider_crank_the_guide_holds_its_part_by_a_moment():
+    """T14 about C, where the slider's centre of gravity is not: without it nothing would hold m4·a4 off C."""
+    ds = ls.sweep(ls.Scene(SLIDER_CRANK, OMEGA, ALPHA), outputs=["F14x", "F14y", "Cx", "Cy", "T12", "T14", *SHAKING])
+    held = ds.T12 + ds.Cx * ds.F14y - ds.Cy * ds.F14x + ds.T14
+    np.testing.assert_allclose(held, -ds.Ms, rtol=0, atol=1e-12 * float(abs(ds.Ms).max()))
+    assert abs(ds.T14).max() > 0.01 * abs(ds.Ms).max()
 
 
 def test_the_moment_about_d_has_no_arm_of_the_pin_there():

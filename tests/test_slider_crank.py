@@ -33,6 +33,7 @@ from linksweep.engine import run
 EPS = float(np.finfo(float).eps)
 KINEMATICS = ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider", "transmission_angle")
 PLACES = ("Bx", "By", "Cx", "Cy", "aG2x", "aG2y", "aG3x", "aG3y", "aG4x", "aG4y")
+ARMS = tuple(f"R{pair}{axis}" for pair in (12, 32, 23, 43, 34) for axis in "xy")
 PINS = ("F12", "F32", "F43", "F14")
 FORCES = tuple(pin + part for pin in PINS for part in ("x", "y", ""))
 REACTIONS = {f"F{name[2]}{name[1]}{name[3:]}": name for name in FORCES}
@@ -52,7 +53,7 @@ def unknowns(data: SliderCrankData) -> tuple[str, ...]:
 
 
 def all_names(data: SliderCrankData) -> tuple[str, ...]:
-    return (*KINEMATICS, *PLACES, *FORCES, *REACTIONS, *GUIDE, torque_name(data), "power")
+    return (*KINEMATICS, *PLACES, *ARMS, *FORCES, *REACTIONS, *GUIDE, torque_name(data), "power")
 
 
 def judged(data: SliderCrankData, theta2: float) -> dict:
@@ -93,7 +94,7 @@ def scales(case: Case) -> dict[str, np.ndarray]:
     longest = np.full_like(omega, max(data.crank.length, data.rod.length, abs(data.offset)))
     force, torque = results["largest_force"], results["largest_torque"]
     found = {"theta": np.full_like(omega, 180.0), "transmission": np.full_like(omega, 180.0)}
-    found |= {"omega": omega, "alpha": alpha, "aG": alpha * longest, "B": longest, "C": longest}
+    found |= {"omega": omega, "alpha": alpha, "aG": alpha * longest, "B": longest, "C": longest, "R": longest}
     found |= {"x_": longest, "v_": omega * longest, "a_": alpha * longest}
     return found | {"F": force, "normal": force, "friction_force": force, "T": torque, "": torque * omega}
 
@@ -224,10 +225,11 @@ def loaded(data: SliderCrankData, rng: np.random.Generator) -> SliderCrankData:
         LoadData("slider", (px, py), at=(0.3 * length, 80.0), frame="link"),
         LoadData("slider", torque=torque * length),
     )
-    return replace(data, loads=loads, friction=float(rng.uniform(0.2, 1.5)))
+    return replace(data, loads=loads, friction=float(rng.uniform(0.2, 1.5)), slider_cg_distance=0.1 * length)
 
 
-BATCH = (ls.SliderCrank, ("crank", "rod"), "slider_mass", "offset", "friction", "slide_angle")
+FRAME = ("slider_mass", "offset", "friction", "slide_angle", "slider_cg_distance", "slider_cg_angle")
+BATCH = (ls.SliderCrank, ("crank", "rod"), *FRAME)
 
 
 @pytest.mark.parametrize("drive", DRIVES)

@@ -130,35 +130,111 @@ def document_3(T12: float) -> ls.Scene:
     )
 
 
-@pytest.mark.parametrize("theta2", ANGLES)
-def test_document_3_beside_the_page(theta2):
-    """Without friction F14x has no column there and T14 = 0 a row; b_y is meant positive for a rod that slopes down."""
-    at, T12 = moving(theta2), 40.0
+def page_of_document_3(at: Motion, T12: float) -> tuple[np.ndarray, np.ndarray]:
+    """F12, F32, F43, T13, F14y, T14: its 9×9, b_y positive for a rod that slopes down, T14 = 0 the last row."""
     c, b, rest = at.crank / 2, at.rod * (BG3 / BC), at.rod * (CG3 / BC)
-    names = [*PINS[:6], "T13", "F14y"]
-    expected = [
-        [1, 0, 1, 0, 0, 0, 0, 0],
-        [0, 1, 0, 1, 0, 0, 0, 0],
-        [c.imag, -c.real, -c.imag, c.real, 0, 0, 0, 0],
-        [0, 0, -1, 0, 1, 0, 0, 0],
-        [0, 0, 0, -1, 0, 1, 0, 0],
-        [0, 0, -b.imag, b.real, -rest.imag, rest.real, 1, 0],
-        [0, 0, 0, 0, -1, 0, 0, 0],
-        [0, 0, 0, 0, 0, -1, 0, 1],
+    matrix = [
+        [1, 0, 1, 0, 0, 0, 0, 0, 0],
+        [0, 1, 0, 1, 0, 0, 0, 0, 0],
+        [c.imag, -c.real, -c.imag, c.real, 0, 0, 0, 0, 0],
+        [0, 0, -1, 0, 1, 0, 0, 0, 0],
+        [0, 0, 0, -1, 0, 1, 0, 0, 0],
+        [0, 0, -b.imag, b.real, -rest.imag, rest.real, 1, 0, 0],
+        [0, 0, 0, 0, -1, 0, 0, 0, 0],
+        [0, 0, 0, 0, 0, -1, 0, 1, 0],
+        [0, 0, 0, 0, 0, 0, 0, 0, 1],
     ]
-    scene = document_3(T12)
-    page = ls.system(scene, theta2=theta2).isel(theta2=0)
-    assert page.unknown.values.tolist() == [*PINS, "T13"]
-    beside = page.matrix.sel(unknown=names)
-    np.testing.assert_allclose(beside[:8], np.array(expected, dtype=float), rtol=1e-14, atol=1e-17)
     inertia2 = 3.0 * (1j * ALPHA2 - OMEGA2**2) * c
     inertia3, inertia4 = MASS3 * at.acceleration3, MASS4 * at.acceleration4
-    rhs = [inertia2.real, inertia2.imag, J2 * ALPHA2 - T12, inertia3.real, inertia3.imag, J3 * at.alpha3, inertia4, 0]
-    np.testing.assert_allclose(page.rhs[:8], rhs, rtol=1e-12, atol=1e-14)
-    friction = page.isel(equation=8)
+    known = [inertia2.real, inertia2.imag, J2 * ALPHA2 - T12, inertia3.real, inertia3.imag, J3 * at.alpha3]
+    return np.array(matrix, dtype=float), np.array([*known, inertia4, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("theta2", ANGLES)
+def test_document_3_beside_the_page(theta2):
+    """T12 is known, T13 not. Without friction F14x has no column there; the reduced form has its row, not T14's."""
+    matrix, rhs = page_of_document_3(moving(theta2), T12=40.0)
+    names = [*PINS[:6], "T13", "F14y", "T14"]
+    scene = document_3(T12=40.0)
+    page = ls.system(scene, theta2=theta2, form="document").isel(theta2=0)
+    assert page.unknown.values.tolist() == names
+    assert page.equation.values.tolist() == [*EQUATIONS[:8], "sum M on 4 about G4"]
+    np.testing.assert_allclose(page.matrix, matrix, rtol=1e-14, atol=1e-17)
+    np.testing.assert_allclose(page.rhs, rhs, rtol=1e-12, atol=1e-14)
+    reduced = ls.system(scene, theta2=theta2).isel(theta2=0)
+    assert reduced.unknown.values.tolist() == [*PINS, "T13"]
+    np.testing.assert_array_equal(reduced.matrix.sel(unknown=names[:8])[:8], page.matrix[:8, :8])
+    friction = reduced.isel(equation=8)
     assert friction.matrix.values.tolist() == [0, 0, 0, 0, 0, 0, 1, 0, 0] and friction.rhs == 0.0
-    solution = np.linalg.solve(np.array(expected), rhs)
-    cycle = ls.sweep(scene, [theta2], outputs=[*names, "F14x", "T14"]).isel(theta2=0)
+    solution = np.linalg.solve(matrix, rhs)
+    cycle = ls.sweep(scene, [theta2], outputs=[*names, "F14x"]).isel(theta2=0)
     for name, value in zip(names, solution, strict=True):
         assert cycle[name].item() == pytest.approx(value, abs=1e-12 * abs(solution).max()), name
     assert cycle.F14x == cycle.T14 == 0.0
+
+
+# ---- the documents' form, with friction and without -----
+
+
+@pytest.mark.parametrize("theta2", ANGLES)
+@pytest.mark.parametrize("P", [-900.0, 700.0])
+def test_friction_adds_an_unknown_and_a_row_to_document_3(theta2, P):
+    """The ten columns of document 1: those of its nine unknowns, and the empty one, which T14 and its row fill."""
+    scene = document_1(P, friction=0.2)
+    page = ls.system(scene, theta2=theta2, form="document").isel(theta2=0)
+    assert page.unknown.values.tolist() == [*PINS, "T12", "T14"]
+    assert page.equation.values.tolist() == [*EQUATIONS, "sum M on 4 about G4"]
+    matrix, rhs, _ = solved_with_the_right_sign(moving(theta2), P, 0.2)
+    turned = np.array([1, 1, -1, -1, -1, -1, 1, 1, 1])
+    np.testing.assert_allclose(page.matrix[:9, :9], matrix * turned, rtol=1e-14, atol=1e-17)
+    np.testing.assert_allclose(page.rhs[:9], rhs, rtol=1e-12, atol=0.0)
+    assert page.matrix[:9, 9].values.tolist() == [0.0] * 9
+    assert page.matrix[9].values.tolist() == [0.0] * 9 + [1.0] and page.rhs[9] == 0.0
+
+
+def general(friction: float, slide_angle: float, drive: str) -> ls.Scene:
+    """Nothing is zero: the slider's centre of gravity is off its pin, loads turn it, weights and an offset."""
+    crank, rod = ls.Link(AB, 3.0, J2, 0.02, 40.0), ls.Link(BC, MASS3, J3, BG3, -15.0)
+    slider = {"slider_mass": MASS4, "slider_cg_distance": 0.03, "slider_cg_angle": 70.0}
+    mechanism = ls.SliderCrank(crank, rod, **slider, offset=0.01, friction=friction, slide_angle=slide_angle)
+    push = ls.Load("slider", force=(-60.0, 20.0), at=(0.04, 130.0), torque=3.0)
+    return ls.Scene(mechanism, OMEGA2, ALPHA2, (1.0, -9.81), [push], drive=drive)
+
+
+@pytest.mark.parametrize(("friction", "slide_angle", "size"), [(0.0, 0.0, 9), (0.2, 0.0, 10), (0.0, 25.0, 10)])
+@pytest.mark.parametrize("drive", ["crank", "coupler"])
+def test_the_documents_form_has_the_same_solution(friction, slide_angle, size, drive):
+    scene = general(friction, slide_angle, drive)
+    page = ls.system(scene, ANGLES, form="document")
+    assert page.matrix.shape == (4, size, size)
+    solution = np.linalg.solve(page.matrix.values, page.rhs.values[..., None])[..., 0]
+    names = page.unknown.values.tolist()
+    cycle = ls.sweep(scene, ANGLES, outputs=names, solver="dense")
+    for k, name in enumerate(names):
+        np.testing.assert_allclose(solution[:, k], cycle[name], rtol=0.0, atol=1e-12 * abs(solution).max())
+
+
+@pytest.mark.parametrize("name", ["press", "quick-return"])
+def test_other_machines_have_one_form(name):
+    scene = ls.example(name)
+    first, second = ls.system(scene, 45.0), ls.system(scene, 45.0, form="document")
+    assert first.equals(second)
+
+
+def test_no_other_form():
+    with pytest.raises(ValueError, match="form = 'dokument': must be one of reduced, document"):
+        ls.system(document_3(T12=40.0), 45.0, form="dokument")
+
+
+# ---- the slider's centre of gravity -----
+
+
+def test_the_guides_moment_at_the_outer_dead_centre_by_hand():
+    """T14 = r × m(a − g) about C: above C the slider is left behind, a = −ω²(AB + AB²/BC); ahead of it, it hangs."""
+    acceleration = -(OMEGA2**2) * (AB + AB**2 / BC)
+    expected = {90.0: -0.03 * MASS4 * acceleration, 0.0: 0.03 * MASS4 * 9.81, 180.0: -0.03 * MASS4 * 9.81}
+    crank, rod = ls.Link(AB, 3.0, J2), ls.Link(BC, MASS3, J3, cg_distance=BG3)
+    for angle, moment in expected.items():
+        engine = ls.SliderCrank(crank, rod, MASS4, slider_cg_distance=0.03, slider_cg_angle=angle)
+        scene = ls.Scene(engine, OMEGA2, gravity=(0.0, -9.81))
+        assert ls.sweep(scene, [0.0], outputs=["T14"]).T14.item() == pytest.approx(moment, rel=1e-13)

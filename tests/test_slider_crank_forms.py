@@ -85,6 +85,7 @@ def rescaled(data: SliderCrankData, length: float, mass: float, time: float) -> 
         data,
         **{name: link(getattr(data, name)) for name in ("crank", "rod")},
         slider_mass=data.slider_mass * mass,
+        slider_cg_distance=data.slider_cg_distance * length,
         offset=data.offset * length,
         omega2=data.omega2 / time,
         alpha2=data.alpha2 / time**2,

@@ -25,13 +25,15 @@ def four_bar(length=1.0, mass=1.0, time=1.0):
 
 def slider_crank(length=1.0, mass=1.0, time=1.0):
     crank, rod = link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass), link(0.22, 0.7, 3e-3, 0.1, -10.0, length, mass)
-    mechanism = ls.SliderCrank(crank, rod, 0.4 * mass, offset=0.02 * length, friction=0.1, slide_angle=15.0)
+    slider = {"slider_mass": 0.4 * mass, "slider_cg_distance": 0.03 * length, "slider_cg_angle": 40.0}
+    mechanism = ls.SliderCrank(crank, rod, **slider, offset=0.02 * length, friction=0.1, slide_angle=15.0)
     return scene(mechanism, "rod", "slider", length, mass, time)
 
 
 def inverted_slider_crank(length=1.0, mass=1.0, time=1.0):
     crank, rocker = link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass), link(0.3, 0.7, 3e-3, 0.1, -10.0, length, mass)
     block = {"block_mass": 0.4 * mass, "block_inertia": 1e-4 * mass * length**2}
+    block |= {"block_cg_distance": 0.02 * length, "block_cg_angle": -50.0}
     mechanism = ls.InvertedSliderCrank(crank, rocker, 0.2 * length, **block, offset=0.02 * length, ground_angle=15.0)
     return scene(mechanism, "rocker", "block", length, mass, time)
 

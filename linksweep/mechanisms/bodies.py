@@ -159,6 +159,11 @@ class Equation:
     coefficients: dict[str, float | tuple[float, str]]
     right_side: str
 
+    def without(self, unknown: str) -> Equation:
+        """Copy for an unknown that is zero."""
+        kept = {name: entry for name, entry in self.coefficients.items() if name != unknown}
+        return Equation(self.label, kept, self.right_side)
+
 
 def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: str | None) -> list[Equation]:
     """ΣFx, ΣFy and ΣM about the centre of gravity of link k.
@@ -180,13 +185,12 @@ def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: s
     ]
 
 
-def arm_rows(k: int, first: str, second: str) -> list[Row | Total]:
-    """Arms from the centre of gravity of link k to its two pins."""
-    centre = (f"rG{k}x", f"rG{k}y")
-    return [
-        Row(planar.difference, (f"{first}x", f"{first}y"), (0.0, 0.0, *centre)),
-        Row(planar.difference, (f"{second}x", f"{second}y"), (f"r{k}x", f"r{k}y", *centre)),
-    ]
+def arm_rows(k: int, first: str, second: str | None = None) -> list[Row | Total]:
+    """Return rows of the arms from the centre of gravity of link k to its first pin and, if named, its second."""
+    ends: dict[str, tuple[Source, Source]] = {first: (0.0, 0.0)}
+    if second:
+        ends[second] = (f"r{k}x", f"r{k}y")
+    return [Row(planar.difference, (f"{arm}x", f"{arm}y"), (*end, f"rG{k}x", f"rG{k}y")) for arm, end in ends.items()]
 
 
 def pin_force_rows(i: int, j: int) -> list[Row | Total]:

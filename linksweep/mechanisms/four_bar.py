@@ -37,7 +37,7 @@ from linksweep.mechanisms.motion import (
 from linksweep.mechanisms.pins import Pins, rotating
 from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
-from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, planar
+from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, freudenstein, planar
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
@@ -228,6 +228,10 @@ def _position() -> list[Row | Total]:
         Row(four_bar.assembly, ("assembly",)),
         Row(dyad_rrr.rrr_close, CLOSED),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
+        Row(dyad_rrr.transmission_angle_signed, ("transmission_angle_signed",)),
+        Row(freudenstein.ratios, ("K1", "K2", "K3", "K4", "K5")),
+        Row(freudenstein.rocker_equation, ("A", "B", "C")),
+        Row(freudenstein.coupler_equation, ("D", "E", "F")),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
         Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
@@ -308,6 +312,7 @@ def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
         Quantity("theta3", "degree", "angle of the coupler B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
+        Quantity("transmission_angle_signed", "degree", "mu = theta4 - theta3 of document 2 (ME 470), in (-180, 180]"),
         *position_quantities("B", "C"),
         *drive_quantities(drive_torque(FourBar.drives[drive], drive)),
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),

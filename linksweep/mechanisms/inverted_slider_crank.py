@@ -26,7 +26,7 @@ from linksweep.mechanisms.bodies import (
 )
 from linksweep.mechanisms.finding import Findings
 from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
     CrankDriven,
     between_rows,
@@ -48,13 +48,14 @@ BODIES = (
     on_crank_pin(3, "block", "ratio4", "slope4"),
     Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
 )
-BLOCK = {"block_cg_x": 0.0, "block_cg_y": 0.0, "block_length": 1.0}
-"""The block as a body with its centre of gravity on its pin, its axes along and across the rocker's line."""
+BLOCK_LENGTH = 1.0
+"""Unit of the block's axes, which lie along and across the rocker's line."""
 SLIDE_FORCES = {
-    "F43n": ((-1.0, "r3y"), (1.0, "r3x"), (1.0, "normal_arm")),
-    "cylinder_force": ((1.0, "r3x"), (1.0, "r3y"), (1.0, "cylinder_arm")),
+    "F43n": ((-1.0, "r3y"), (1.0, "r3x"), (1.0, "block_normal_arm"), (1.0, "normal_arm")),
+    "cylinder_force": ((1.0, "r3x"), (1.0, "r3y"), (1.0, "block_cylinder_arm"), (1.0, "cylinder_arm")),
 }
-"""Of forces on the block, along (r3x, r3y) or across: x, y, and the moment about the rocker's centre of gravity."""
+"""Of forces on the block at B, along (r3x, r3y) or across: x, y, and the moments about the centres of gravity of block
+and rocker."""
 
 
 class Drive(NamedTuple):
@@ -89,11 +90,13 @@ class InvertedSliderCrank(CrankDriven):
     rocker : Link, Bar or Disk; its first pin is D. Its line is the direction in which the block slides, its centre of
         gravity and its loads are polar from D and that direction; its length is a reference that no result depends on
     ground : distance A-D [m]
-    block_mass : [kg], at B
-    block_inertia : about B [kg m²]; the block turns with the rocker
+    block_mass : [kg]
+    block_inertia : about its centre of gravity [kg m²]; the block turns with the rocker
     offset : distance of the line of sliding from D, to the left of the rocker's direction [m], either sign
     branch : "open" (B ahead of D along the rocker), "crossed" (behind), or "both" (adds the dimension `branch`)
     ground_angle : direction of the line A→D to x [degree]
+    block_cg_distance : distance of the block's centre of gravity from B [m]
+    block_cg_angle : angle of the centre of gravity from the rocker's direction, counter-clockwise [degree]
 
     All numbers may be DataArrays of design dims. A load on "block" acts at a point from B, in axes along and across
     the rocker's line.
@@ -139,6 +142,8 @@ class InvertedSliderCrank(CrankDriven):
     offset: Number = parameter("length", 0.0)
     branch: str = "open"
     ground_angle: Number = parameter("angle", 0.0)
+    block_cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
+    block_cg_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
     links: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
@@ -172,8 +177,10 @@ class InvertedSliderCrank(CrankDriven):
             "block_mass": self.block_mass,
             "block_inertia": self.block_inertia,
             "branch_sign": self.branch_sign,
+            "block_length": BLOCK_LENGTH,
+            **cg_parameters("block", self.block_cg_distance, self.block_cg_angle),
         }
-        return numbers | BLOCK | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
+        return numbers | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
 
     @property
     def pinch_angle(self) -> Number:
@@ -203,9 +210,10 @@ class InvertedSliderCrank(CrankDriven):
         rocker = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque["rocker"])
         rocker[2].coefficients["T43"] = -1.0
         for force in (name for name in self.unknowns(drive) if name in SLIDE_FORCES):
-            x, y, moment = SLIDE_FORCES[force]
-            block[0].coefficients[force], block[1].coefficients[force] = x, y  # through B, its centre of gravity
-            for row, (factor, name) in zip(rocker, (x, y, moment), strict=True):
+            x, y, about_block, about_rocker = SLIDE_FORCES[force]
+            for row, entry in zip(block, (x, y, about_block), strict=True):
+                row.coefficients[force] = entry
+            for row, (factor, name) in zip(rocker, (x, y, about_rocker), strict=True):
                 row.coefficients[force] = (-factor, name)
         return (*crank, *block, *rocker)
 
@@ -242,11 +250,17 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
 
 
 def _arms() -> list[Row | Total]:
-    """From the centres of gravity of block and rocker to their pins, and to the normal force."""
+    """From the centres of gravity of block and rocker to their pins, and to the forces of the slide at B."""
+    line = ("r3x", "r3y")
     return [
-        Row(planar.difference, ("R23x", "R23y"), (0.0, 0.0, "rG3x", "rG3y")),
-        Row(planar.difference, ("R14x", "R14y"), (0.0, 0.0, "rG4x", "rG4y")),
-        Row(inverted_slider_crank.arms_about_rocker_centre, ("normal_arm", "cylinder_arm")),
+        *arm_rows(3, "R23"),
+        *arm_rows(4, "R14"),
+        Row(inverted_slider_crank.slide_arms, ("normal_arm", "cylinder_arm"), ("DBx", "DBy", "rG4x", "rG4y", *line)),
+        Row(
+            inverted_slider_crank.slide_arms,
+            ("block_normal_arm", "block_cylinder_arm"),
+            (0.0, 0.0, "rG3x", "rG3y", *line),
+        ),
     ]
 
 

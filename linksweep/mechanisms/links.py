@@ -85,27 +85,39 @@ class Bar(ByContent):
 
 @dataclass(frozen=True, eq=False)
 class Disk(ByContent):
-    """A uniform disk centred on the link's first pin, the second pin `length` from it: m = ρ·πr²·t, I = m r²/2.
+    """A uniform disk, its centre on the link's first pin or off it: m = ρ·πr²·t, I = m r²/2 about its centre.
 
     Parameters
     ----------
     length : distance between its two pins [m]
     radius, thickness : [m]
     density : [kg/m³]
+    cg_distance : distance of the disk's centre, which is its centre of gravity, from the first pin [m]
+    cg_angle : angle of the centre from the line of pins, counter-clockwise [degree]
 
-    Values are checked as those of a Link. Source: document 2 (ME 470), circle link.
+    Values are checked as those of a Link. Source: document 2 (ME 470), circle link, with its s and δ2 (p and δ3, u and
+    δ4).
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Disk(length=0.05, radius=0.08, thickness=0.01, density=7750).cg_distance
+    >>> wheel = ls.Disk(length=0.05, radius=0.08, thickness=0.01, density=7750)
+    >>> wheel.cg_distance
     0.0
+
+    An eccentric turns about a pin off its centre; its strap is a rod whose first pin is that centre:
+
+    >>> eccentric = ls.Disk(length=0.01, radius=0.04, thickness=0.02, density=7750, cg_distance=0.01)
+    >>> eccentric.inertia == 0.5 * eccentric.mass * 0.04**2
+    True
     """
 
     length: Number = parameter("length", above=0.0)
     radius: Number = parameter("length", above=0.0)
     thickness: Number = parameter("length", above=0.0)
     density: Number = parameter("density", at_least=0.0)
+    cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
+    cg_angle: Number = parameter("angle", 0.0)
 
     @property
     def mass(self) -> Number:
@@ -114,14 +126,6 @@ class Disk(ByContent):
     @property
     def inertia(self) -> Number:
         return 0.5 * self.mass * self.radius * self.radius
-
-    @property
-    def cg_distance(self) -> Number:
-        return 0.0
-
-    @property
-    def cg_angle(self) -> Number:
-        return 0.0
 
 
 def link_problems(mechanism: Any, *roles: str) -> list[str]:
@@ -136,11 +140,15 @@ def link_problems(mechanism: Any, *roles: str) -> list[str]:
 
 def link_parameters(role: str, link: Link | Bar | Disk) -> dict[str, Number]:
     """A link's numbers under the names that the physics wires by; its centre of gravity in the link's own axes."""
-    cos, sin = cos_sin(link.cg_angle)
     return {
         f"{role}_length": link.length,
         f"{role}_mass": link.mass,
         f"{role}_inertia": link.inertia,
-        f"{role}_cg_x": link.cg_distance * cos,
-        f"{role}_cg_y": link.cg_distance * sin,
+        **cg_parameters(role, link.cg_distance, link.cg_angle),
     }
+
+
+def cg_parameters(role: str, distance: Number, angle: Number) -> dict[str, Number]:
+    """Return a centre of gravity in its link's own axes, under the names that the physics wires by."""
+    cos, sin = cos_sin(angle)
+    return {f"{role}_cg_x": distance * cos, f"{role}_cg_y": distance * sin}

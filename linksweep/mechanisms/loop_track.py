@@ -111,6 +111,10 @@ class LoopTrack(ByContent):
             Equation("sum F along t over m", {"a_tangential": 1.0}, "raw_a_tangential"),
         )
 
+    def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
+        """Return the unknowns and rows of the square system as document 3 prints it."""
+        return self.unknowns(drive), self.equations(drive)
+
     def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
         """Nothing can be said of the loop alone."""
         return ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from linksweep.engine.quantity import Row
 from linksweep.engine.run import Field
+from linksweep.mechanisms.bodies import Equation
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
@@ -71,6 +72,18 @@ class CrankDriven(ByContent):
     def closes_everywhere(self) -> bool:
         """Whether every design closes at every angle with a margin that rounding cannot touch."""
         raise NotImplementedError
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        """Return the unknowns of the square system."""
+        raise NotImplementedError
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """Return the rows of the square system."""
+        raise NotImplementedError
+
+    def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
+        """Return the unknowns and rows of the square system as the documents print it, where that is another."""
+        return self.unknowns(drive), self.equations(drive)
 
     def always_ok(self, drive: str) -> bool:
         """Whether the numbers alone say that every sample is ok; with another drive than the crank there are dead

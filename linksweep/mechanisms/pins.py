@@ -1,4 +1,5 @@
-"""Rows of a pin between two links: how fast it turns in its bearing, and its force in the axes of either link.
+"""Rows of a pin between two links: where each link has it, how fast it turns in its bearing, and its force in the axes
+of either link.
 
 The force Fij is that of link i on link j: link i bears link j, so that i has the bearing (the bush, the big end) and j
 the journal (the pin that turns in it).
@@ -44,4 +45,15 @@ def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
                 Quantity(f"F{i}{j}x_link{k}", "N", f"{force}, component along the x axis {axes}"),
                 Quantity(f"F{i}{j}y_link{k}", "N", f"{force}, component along the y axis {axes}"),
             ]
+            found += _arm_quantities(pin, k, ({i, j} - {k}).pop(), links)
     return found
+
+
+def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -> list[Quantity]:
+    """Return the vector of document 2 (ME 470) from a link's centre of gravity to a pin, named after both links there.
+
+    Its rows are `linksweep.mechanisms.bodies.arm_rows`.
+    """
+    said = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
+    axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}
+    return [Quantity(f"R{other}{link}{axis}", "m", f"{said} ({links[other]}), component {axes[axis]}") for axis in "xy"]

@@ -25,7 +25,7 @@ from linksweep.mechanisms.bodies import (
 )
 from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
     BRANCH_SIGN,
     CrankDriven,
@@ -43,6 +43,8 @@ from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_
 
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 DRIVEN = {"crank": "omega2", "coupler": "omega3"}
+UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
@@ -59,13 +61,11 @@ BODIES = (
 )
 SLIDER = {
     "slider_inertia": 0.0,
-    "slider_cg_x": 0.0,
-    "slider_cg_y": 0.0,
     "slider_length": 1.0,
     "omega4": 0.0,
     "alpha4": 0.0,
 }
-"""The slider as a body that does not turn, its centre of gravity on its pin, its axes along and across the guide."""
+"""The slider as a body that does not turn, so that any inertia would do; its axes lie along and across the guide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,13 @@ class SliderCrank(CrankDriven):
     ----------
     crank, rod : Link, Bar or Disk
         Their first pins are A and B.
-    slider_mass : [kg], at the pin C
+    slider_mass : [kg]
     offset : height of the guide over A, to the left of the guide's direction [m], either sign
     friction : coefficient of Coulomb friction between slider and guide
     branch : "open" (C ahead of B along the guide), "crossed" (behind), or "both" (adds the dimension `branch`)
     slide_angle : direction of the guide to x [degree]
+    slider_cg_distance : distance of the slider's centre of gravity from its pin C [m]
+    slider_cg_angle : angle of the centre of gravity from the guide's direction, counter-clockwise [degree]
 
     All numbers may be DataArrays of design dims. A load on "slider" acts at a point from C, in axes along and across
     the guide.
@@ -93,8 +95,10 @@ class SliderCrank(CrankDriven):
     Notes
     -----
     Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
-    guide: status `jammed`. A load that is a cycle of full turns of the crank (see `GasPressure`) is none in a design
-    whose crank does not turn fully: status `no_cycle`.
+    guide: status `jammed`. The slider does not turn: where its centre of gravity lies changes `T14`, the guide's moment
+    on it, and the shaking moment; its moment of inertia would change nothing, and is no parameter. A load that is a
+    cycle of full turns of the crank (see `GasPressure`) is none in a design whose crank does not turn fully: status
+    `no_cycle`.
 
     Examples
     --------
@@ -111,6 +115,8 @@ class SliderCrank(CrankDriven):
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
     branch: str = "open"
     slide_angle: Number = parameter("angle", 0.0)
+    slider_cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
+    slider_cg_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13"}
     links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
@@ -154,6 +160,7 @@ class SliderCrank(CrankDriven):
             "r4x": guide_cos,
             "r4y": guide_sin,
             "branch_sign": self.branch_sign,
+            **cg_parameters("slider", self.slider_cg_distance, self.slider_cg_angle),
         }
         return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
 
@@ -170,24 +177,32 @@ class SliderCrank(CrankDriven):
         return ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider")
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
-        forces = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
-        return (*forces, self.drives[drive])
+        return (*UNKNOWN_FORCES, self.drives[drive])
 
     def dynamics(self, drive: str) -> tuple[str, ...]:
         return (*self.unknowns(drive), "T14")
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
         """The 9×9: document 1's rows, with friction; the torque in the row of the driven link (document 3)."""
+        return (*self._newton_euler(drive)[:-1], FRICTION)
+
+    def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
+        """Return the unknowns and rows that document 3 prints: T14 with its trivial row; F14x only beside friction.
+
+        A guide that is turned has F14x, too, which its friction row then ties to F14y.
+        """
+        pins, torque, rows = UNKNOWN_FORCES[:-2], self.drives[drive], self._newton_euler(drive)
+        if np.any(self.friction) or turned(self.slide_angle):
+            return (*UNKNOWN_FORCES, torque, "T14"), (*rows[:-1], FRICTION, rows[-1])
+        return (*pins, torque, "F14y", "T14"), tuple(row.without("F14x") for row in rows)
+
+    def _newton_euler(self, drive: str) -> tuple[Equation, ...]:
+        """Return the three rows of each link; the guide's moment T14 is about C."""
         torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
-        slider = newton_euler_equations(4, {"F43": (-1.0, "R43"), "F14": (1.0, "R43")}, None)[:2]
-        friction = Equation(
-            "friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs"
-        )
         return (
             *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"]),
             *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
-            *slider,
-            friction,
+            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"),
         )
 
     def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
@@ -259,7 +274,7 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
     ]
     rows += machine_rows(BODIES, PINS, loads) + _transmission()
     rows += [rounding_error.row(low="crank_length", high="crank_length")]
-    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43")]
+    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
 
 

@@ -141,5 +141,10 @@ def rrr_coupler_torque(
 
 
 def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:
-    """Acute angle between coupler and rocker [degree]; document 2 leaves μ = θ4 − θ3 unfolded."""
+    """Acute angle between coupler and rocker [degree]."""
     return degrees(atan2(abs(cross(r3x, r3y, r4x, r4y)), abs(dot(r3x, r3y, r4x, r4y))))
+
+
+def transmission_angle_signed(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:
+    """μ = θ4 − θ3 of document 2 (ME 470) [degree], in (−180, 180]: positive with C to the left of B→D."""
+    return degrees(atan2(cross(r3x, r3y, r4x, r4y), dot(r3x, r3y, r4x, r4y)))

@@ -100,9 +100,8 @@ def normal_force_from_crank(moment_r2: Number, crank_along: Number) -> Number:
     return where(abs(crank_along) > 0.0, moment_r2 / crank_along, math.nan)
 
 
-def arms_about_rocker_centre(
-    DBx: Number, DBy: Number, rG4x: Number, rG4y: Number, r3x: Number, r3y: Number
-) -> tuple[Number, Number]:
-    """Moments about the rocker's centre of gravity, per unit, of a force at B across the line and of one along it."""
-    x, y = DBx - rG4x, DBy - rG4y
+def slide_arms(Bx: Number, By: Number, rGx: Number, rGy: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:
+    """Moments about a link's centre of gravity, per unit, of a force at B across the line and of one along it; both
+    points seen from the link's first pin."""
+    x, y = Bx - rGx, By - rGy
     return dot(x, y, r3x, r3y), cross(x, y, r3x, r3y)

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -40,7 +40,7 @@ from linksweep.mechanisms.validate import (
     said,
 )
 from linksweep.results.compute import require_scene
-from linksweep.results.regressor import moments, own_links
+from linksweep.results.regressor import Placed, mass_of, moments, own_links
 from linksweep.scene.loads import AT
 from linksweep.scene.scene import Scene
 
@@ -134,23 +134,12 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
 
 def _carrying(link: Any, weights: list[Counterweight]) -> Link:
     """The link with its weights: masses, first moments and moments of inertia about its pin add up."""
-    parts = [
-        moments(part) for part in (link, *(_Placed(*weight.at, weight.mass, weight.inertia) for weight in weights))
-    ]
+    parts = [moments(part) for part in (link, *(Placed(*weight.at, weight.mass, weight.inertia) for weight in weights))]
     mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
     distance = np.hypot(x, y) / mass.where(mass > 0.0, 1.0)
     inertia = (about_pin - mass * distance * distance).clip(min=0.0)
     numbers = (mass, inertia, distance, np.degrees(np.arctan2(y, x)))
     return Link(link.length, *map(_plain, numbers))
-
-
-class _Placed(NamedTuple):
-    """A counterweight with the names that a link has for the same."""
-
-    cg_distance: Number
-    cg_angle: Number
-    mass: Number
-    inertia: Number
 
 
 def _plain(number: Any) -> Number:
@@ -238,7 +227,7 @@ def _lacking(mechanism: Any, fraction: Number) -> dict[str, Any]:
         h3, b = _first_moment(mechanism.coupler), mechanism.coupler.length
         turning = crank + mechanism.coupler.mass * a - h3 * (a / b)
         return {"crank": -turning, "rocker": -rocker - h3 * (mechanism.rocker.length / b)}
-    return {"crank": -crank - mechanism.block_mass * a, "rocker": -rocker}
+    return {"crank": -crank - mechanism.block_mass * a, "rocker": -rocker - _first_moment(mass_of(mechanism, "block"))}
 
 
 def _weight(link: str, moment: Any, radius: Number) -> Counterweight:

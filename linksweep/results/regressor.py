@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -35,8 +35,15 @@ PROBE = "_probe"
 LINEAR_UNITS = ("N", "N m", "W")
 UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m2"}
 OF_LINK = tuple(UNITS)
-OF_BLOCK = {"m": "mass", "J": "inertia"}
-"""A block has these as numbers of the mechanism: block_mass, block_inertia, slider_mass."""
+
+
+class Placed(NamedTuple):
+    """A mass distribution, with the names that a link has for its numbers."""
+
+    cg_distance: Number
+    cg_angle: Number
+    mass: Number
+    inertia: Number
 
 
 def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
@@ -54,7 +61,7 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
     Dataset with, for each output, the coefficients over (…, theta2, parameter), and `F32x_of_loads` (…, theta2), what
     is there without any mass; `value` (…, parameter), what the parameters are in the scene. Parameters of a link are
     "crank.m" [kg], "crank.mx" and "crank.my" [kg m], mass times the centre of gravity's coordinates from the first pin
-    in the link's axes, and "crank.J" [kg m²], moment of inertia about that pin; of a slider "slider.m" alone.
+    in the link's axes, and "crank.J" [kg m²], moment of inertia about that pin; a slider does not turn and has no J.
 
     Raises
     ------
@@ -122,21 +129,21 @@ def moments(link: Any) -> tuple[Number, Number, Number, Number]:
     return link.mass, first * cos, first * sin, link.inertia + first * link.cg_distance
 
 
+def mass_of(mechanism: Any, role: str) -> Any:
+    """Return a link, or the mass distribution of a block: numbers of the mechanism, such as block_mass."""
+    if role in own_links(mechanism):
+        return getattr(mechanism, role)
+    return Placed(*(getattr(mechanism, f"{role}_{name}", 0.0) for name in Placed._fields))
+
+
 def _values(mechanism: Any) -> dict[str, Number]:
     """The parameters of a mechanism by label."""
     found: dict[str, Number] = {}
     for role in mechanism.links:
-        if role in own_links(mechanism):
-            numbers = moments(getattr(mechanism, role))
-            found |= {f"{role}.{word}": number for word, number in zip(OF_LINK, numbers, strict=True)}
-        else:
-            found |= {f"{role}.{word}": getattr(mechanism, name) for word, name in _of_block(mechanism, role).items()}
+        turns = role in own_links(mechanism) or hasattr(mechanism, f"{role}_inertia")
+        numbers = dict(zip(OF_LINK, moments(mass_of(mechanism, role)), strict=True))
+        found |= {f"{role}.{word}": number for word, number in numbers.items() if turns or word != "J"}
     return found
-
-
-def _of_block(mechanism: Any, role: str) -> dict[str, str]:
-    names = {word: f"{role}_{field}" for word, field in OF_BLOCK.items()}
-    return {word: name for word, name in names.items() if hasattr(mechanism, name)}
 
 
 def _with_masses(mechanism: Any, labels: list[str]) -> Any:
@@ -151,13 +158,15 @@ def _with_masses(mechanism: Any, labels: list[str]) -> Any:
 
     changed: dict[str, Any] = {}
     for role in mechanism.links:
+        part = mass_of(mechanism, role)
+        length = getattr(part, "length", mechanism.crank.length)
+        place = part.cg_distance, part.cg_angle
+        if labels:
+            place = float(np.max(length)) * only(role, "mx", "my"), 90.0 * only(role, "my")
+        numbers = Placed(*place, only(role, "m", "mx", "my"), only(role, "J"))._asdict()
         if role in own_links(mechanism):
-            link = getattr(mechanism, role)
-            place = {"cg_distance": link.cg_distance, "cg_angle": link.cg_angle}
-            if labels:
-                reach = float(np.max(link.length))
-                place = {"cg_distance": reach * only(role, "mx", "my"), "cg_angle": 90.0 * only(role, "my")}
-            changed[role] = Link(link.length, only(role, "m", "mx", "my"), only(role, "J"), **place)
+            changed[role] = Link(length, **numbers)
         else:
-            changed |= {name: only(role, word) for word, name in _of_block(mechanism, role).items()}
+            own = {f"{role}_{name}": number for name, number in numbers.items()}
+            changed |= {name: number for name, number in own.items() if hasattr(mechanism, name)}
     return replace(mechanism, **changed)

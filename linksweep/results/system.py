@@ -9,20 +9,28 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.run import Field, Grid
+from linksweep.mechanisms.bodies import Equation
+from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.compute import blank, compute, require_scene, sample_status
 from linksweep.results.record import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
+FORMS = ("reduced", "document")
+System = tuple[tuple[str, ...], tuple[Equation, ...]]
+"""Unknowns and equations."""
 
-def system(scene: Scene, theta2: Any) -> xr.Dataset:
+
+def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
     """The square Newton–Euler system of a scene, as the textbook prints it.
 
     Parameters
     ----------
     scene : Scene
     theta2 : crank angle or angles [degree]; a single number is an angle here, not a count
+    form : "reduced", nine equations, or "document", a slider-crank's with T14 and its row, as document 3 prints them:
+        nine without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one form
 
     Returns
     -------
@@ -37,7 +45,10 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
       the four-bar's ΣT on link 2 lacks T12 and has a wrong third term).
     - Slider-crank: document 1's rows, nine columns instead of the ten printed, row 6 with F34 = −F43, the friction row
       with the sign that its abs() stands for, moments of the crank about its centre of gravity. With drive="coupler"
-      T13 stands on the rod, T12 is known (document 3; its row T14 = 0 is trivial and left out: `T14` comes from sweep).
+      T13 stands on the rod, T12 is known (document 3). form="document" has the slider's moment row, of which document
+      3 says that it can be removed, T14 = I4·α4 = 0; with a load's moment, or the slider's centre of gravity off C, it
+      is not zero. With friction that makes the ten columns of document 1 and, with F14x, the ten unknowns of document
+      3; document 3's b_y is positive for a rod that slopes down, its T12 a load on the crank.
     - Inverted slider-crank: the same equations with the slide's normal force F43n and moment T43; with
       drive="cylinder" cylinder_force stands on block and rocker in place of a torque. The loop: document 3's 2×2,
       example 17-4.
@@ -45,7 +56,7 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     Raises
     ------
     ValueError
-        For what is no Scene, and for angles that are none.
+        For what is no Scene, for angles that are none, and for another form.
 
     Examples
     --------
@@ -54,15 +65,17 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     >>> page = ls.system(scene, theta2=45.0)
     >>> page.matrix.isel(theta2=0).shape
     (9, 9)
+    >>> ls.system(ls.example("engine"), theta2=45.0, form="document").unknown.values[-2:].tolist()
+    ['T12', 'T14']
     """
     require_scene(scene)
+    refuse(choice_problems("form", form, FORMS))
     scene = in_memory(scene)
-    angles = [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    grid = crank_grid(as_angles(theta2), scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     status = sample_status(sampled, grid)
-    dims, matrix, rhs = assembled(sampled, grid)
-    equations = scene.mechanism.equations(scene.drive)
+    unknowns, equations = of_form(scene, form)
+    dims, matrix, rhs = assembled(sampled, grid, unknowns, equations)
     both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
     blank(both, status)
     variables = {
@@ -73,15 +86,33 @@ def system(scene: Scene, theta2: Any) -> xr.Dataset:
     coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
     coordinates |= {
         "equation": xr.Variable("equation", [equation.label for equation in equations]),
-        "unknown": xr.Variable("unknown", list(scene.mechanism.unknowns(scene.drive))),
+        "unknown": xr.Variable("unknown", list(unknowns)),
     }
-    command = f"linksweep.system(scene, theta2={theta2})"
+    command = f"linksweep.system(scene, theta2={theta2}, form={form!r})"
     return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
 
 
-def assembled(scene: Scene, grid: Grid, threads: int | None = None) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
-    """Dims, matrix and right side of the square system, for every design and angle."""
-    equations, unknowns = scene.mechanism.equations(scene.drive), scene.mechanism.unknowns(scene.drive)
+def as_angles(theta2: Any) -> Any:
+    """Return angles, a single number as one of them: elsewhere it is a count."""
+    return [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
+
+
+def of_form(scene: Scene, form: str) -> System:
+    """Return the unknowns and the equations of a scene's square system."""
+    mechanism, drive = scene.mechanism, scene.drive
+    if form == "document":
+        return mechanism.document_form(drive)
+    return mechanism.unknowns(drive), mechanism.equations(drive)
+
+
+def assembled(
+    scene: Scene,
+    grid: Grid,
+    unknowns: tuple[str, ...],
+    equations: tuple[Equation, ...],
+    threads: int | None = None,
+) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Dims, matrix and right side of a square system, for every design and angle."""
     names = {entry[1] for row in equations for entry in row.coefficients.values() if isinstance(entry, tuple)}
     names |= {row.right_side for row in equations}
     fields = compute(scene, grid, tuple(sorted(names)), threads)
@@ -109,10 +140,10 @@ def _spread(field: Field, dims: tuple[str, ...]) -> np.ndarray:
 def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None = None) -> dict[str, Field]:
     """The unknowns by LAPACK with partial pivoting, and the exact 1-norm condition number `cond`, of the matrix with
     rows and columns brought to the same size: units and scales then have no say in which pivots are taken."""
-    dims, matrix, rhs = assembled(scene, grid, threads)
+    unknowns, equations = of_form(scene, "reduced")
+    dims, matrix, rhs = assembled(scene, grid, unknowns, equations, threads)
     bad = np.broadcast_to(_spread(Field(status.dims, status.values != 0), dims), matrix.shape[:-2])
     matrix[bad] = np.eye(matrix.shape[-1])
-    unknowns = scene.mechanism.unknowns(scene.drive)
     balanced, rows, columns = equilibrated(matrix, unknowns)
     with np.errstate(over="ignore", under="ignore"):  # what no float can hold is inf, or 0
         solution = np.ldexp(np.linalg.solve(balanced, np.ldexp(rhs, -rows)[..., None])[..., 0], -columns)

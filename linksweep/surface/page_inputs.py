@@ -73,17 +73,12 @@ def _sampled(scene: Scene) -> Scene:
 def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
     """A row of the table; a slider or a block has its numbers in the mechanism itself."""
     link = getattr(mechanism, role, None)
-    if link is not None:
-        cg = "on its first pin"
-        if link.cg_distance != 0.0:
-            cg = f"{quantity(link.cg_distance, 'length')} at {quantity(link.cg_angle, 'angle')}"
-        sizes = quantity(link.length, "length"), quantity(link.mass, "mass"), quantity(link.inertia, "inertia")
-        return f"{number} {role}", *sizes, cg, _made(link)
-    own = (getattr(mechanism, f"{role}_{kind}", None) for kind in ("mass", "inertia"))
-    mass, inertia = (
-        "" if value is None else quantity(value, kind) for value, kind in zip(own, ("mass", "inertia"), strict=True)
-    )
-    return f"{number} {role}", "", mass, inertia, "on its first pin", ""
+    owner, prefix = (mechanism, f"{role}_") if link is None else (link, "")
+    values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
+    sizes = ("" if value is None else quantity(value, kind) for kind, value in values.items())
+    distance, angle = (getattr(owner, f"{prefix}cg_{word}") for word in ("distance", "angle"))
+    cg = "on its first pin" if distance == 0.0 else f"{quantity(distance, 'length')} at {quantity(angle, 'angle')}"
+    return f"{number} {role}", *sizes, cg, _made(link)
 
 
 def _made(link: Any) -> str:
