@@ -14,6 +14,7 @@ from linksweep.results.check import check
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
+from linksweep.surface.atomic import target_of
 from linksweep.surface.commands import PICTURES, a_file, add_commands, write_figure
 from linksweep.surface.page import report
 from linksweep.surface.report import check_lines, peak_table, study_report
@@ -28,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; 0 when all went well, 2 with a message when the input or a file was at fault."""
     options = _parser().parse_args(arguments)
     try:
+        for path in filter(None, (getattr(options, "output", None), getattr(options, "plot", None))):
+            target_of(path)  # before anything is computed
         options.run(options)
     except (ValueError, OSError) as error:
         print(f"linksweep: {error}", file=sys.stderr)
@@ -45,9 +48,9 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="command")
 
     demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
-    scenes = names()
+    scenes, without = names(), "name of the files without ending (demo)"
     demo.add_argument("scene", nargs="?", choices=scenes, default="press", help=f"{', '.join(scenes)} (press)")
-    demo.add_argument("-o", "--output", type=Path, default=Path("demo"), help="name of the files without ending (demo)")
+    demo.add_argument("-o", "--output", type=Path, dest="stem", metavar="NAME", default=Path("demo"), help=without)
     demo.set_defaults(run=_demo)
 
     cycle = commands.add_parser("sweep", help="one revolution to NetCDF, and to a figure")
@@ -93,7 +96,7 @@ def _demo(options: argparse.Namespace) -> None:
     cycle = sweep(scene)
     print(f"{title(options.scene)}\n")
     print(peak_table(peaks(scene), scene.mechanism.index))
-    data, picture = (options.output.with_name(options.output.name + ending) for ending in (".nc", ".png"))
+    data, picture = (options.stem.with_name(options.stem.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
     write_figure(_figure(cycle), picture)
     print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")

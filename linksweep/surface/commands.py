@@ -25,7 +25,8 @@ from linksweep.scene.choose import design_labels
 from linksweep.scene.scene import Scene
 from linksweep.scene.units import quantity
 from linksweep.surface import summaries
-from linksweep.surface.storage import load_scene, whole
+from linksweep.surface.atomic import whole
+from linksweep.surface.storage import load_scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from linksweep.mechanisms.validate import refuse
+from linksweep.surface.atomic import whole
 from linksweep.surface.machine_parts import BAR, EDGE
-from linksweep.surface.storage import whole
 from linksweep.surface.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION, small_type
 
 PAUSE = 40  # milliseconds between frames: a GIF counts in hundredths of a second

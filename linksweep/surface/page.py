@@ -23,11 +23,11 @@ from linksweep.scene.file import write_scene
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 from linksweep.surface import page_checks, page_figures, page_inputs, page_tables
+from linksweep.surface.atomic import whole
 from linksweep.surface.markup import Markup, joined, safe, tag
 from linksweep.surface.page_inputs import quantity
 from linksweep.surface.page_results import STEPS, Range, Results, results_of
 from linksweep.surface.scene_at import scene_at
-from linksweep.surface.storage import whole
 
 ENDINGS = (".html", ".htm")
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."

@@ -13,6 +13,7 @@ import io
 import json
 import os
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -21,10 +22,10 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import refuse, said
-from linksweep.surface.storage import whole
+from linksweep.surface.atomic import SUFFIX, whole
 
 MANIFEST = "manifest.json"
-PART = ".part"  # how the names of files end that are being written
+PART = SUFFIX  # how the names end of what is being written
 ASSEMBLED = "assembled" + PART
 CHUNK = re.compile(r"(\d+)-([0-9a-f]{64})\.npz")
 
@@ -39,7 +40,7 @@ class Partial:
             if named := CHUNK.fullmatch(path.name):
                 self.kept[int(named[1])] = path
             elif path.name.endswith(PART):
-                path.unlink()  # a file that was being written when the study was killed
+                _remove(path)  # it was being written when the study was killed
 
     @property
     def assembled(self) -> Path:
@@ -82,6 +83,14 @@ class Partial:
             path.unlink(missing_ok=True)
         with contextlib.suppress(OSError):  # somebody else's files stay
             self.folder.rmdir()
+
+
+def _remove(path: Path) -> None:
+    """Remove a file, or a folder with all that is in it."""
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink()
 
 
 @contextlib.contextmanager

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import secrets
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import RLock
@@ -16,6 +13,7 @@ import xarray as xr
 from linksweep.mechanisms.validate import did_you_mean
 from linksweep.scene.file import parse_scene, read_scene
 from linksweep.scene.scene import Scene
+from linksweep.surface.atomic import whole
 from linksweep.surface.seal import SAVED, mark_of, seal, sealed
 
 NETCDF = RLock()
@@ -33,7 +31,7 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     Raises
     ------
     OSError
-        When the folder is missing, cannot be written or is full; what was there before stays.
+        When the folder is missing, cannot be written or is full, or `path` is no file; what was there before stays.
 
     Examples
     --------
@@ -49,40 +47,6 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
         seal(temporary, {}, SAVED)
-
-
-@contextlib.contextmanager
-def whole(path: str | os.PathLike) -> Iterator[Path]:
-    """A temporary file to write to, which becomes `path` when all went well; else `path` is left as it was."""
-    path = Path(path)
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no folder {path.parent}; make it first")
-    target = Path(os.path.realpath(path))  # a link stays one
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
-    try:
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))  # the rights that any new file has
-    except OSError as error:
-        raise type(error)(error.errno, error.strerror, str(path)) from None
-    try:
-        yield temporary
-        with open(temporary, "rb") as file:
-            os.fsync(file.fileno())
-        os.replace(temporary, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
-    sync_folder(target.parent)
-
-
-def sync_folder(folder: Path) -> None:
-    """Make the rename itself last; not every system lets a folder be opened."""
-    with contextlib.suppress(OSError):
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
 
 
 def load_scene(path: str | os.PathLike) -> Scene:

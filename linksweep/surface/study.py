@@ -12,6 +12,7 @@ it is the same file, byte for byte. The price is room for the results twice whil
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -30,13 +31,16 @@ from linksweep.results.compute import requested, require_scene
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.selection import Block
 from linksweep.surface.assemble import assemble
+from linksweep.surface.atomic import sync_folder, target_of
 from linksweep.surface.checked import open_study
 from linksweep.surface.partial import Partial, differing, partial
 from linksweep.surface.seal import seal, sealed
-from linksweep.surface.storage import sync_folder
 
 CHUNK = 50_000
 """Designs computed at a time: some tenths of a second of work, which is all that a kill can cost."""
+
+LONGEST_NAME = 255
+"""Bytes that the name of a file may have."""
 
 SHOWN_AFTER = 1.0
 """Seconds of work after which a progress bar appears."""
@@ -77,7 +81,7 @@ def study(
     ValueError
         For what `linksweep.peaks` refuses; for a file or folder that is there and is not of this study.
     OSError
-        When the folder is missing, cannot be written or is full; the finished chunks stay.
+        When the folder is missing, cannot be written or is full, or `path` is no file; the finished chunks stay.
     KeyboardInterrupt
         When it was stopped; says how much is done.
 
@@ -97,9 +101,7 @@ def study(
     refuse([*count_problems("chunk", chunk), *count_problems("threads", threads)])
     client = client_of(client)
     job = Job(in_memory(scene), None if of is None else requested("of", of), options, int(chunk))
-    target = Path(os.path.realpath(path) if os.path.islink(path) else path)  # a link stays one
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no folder {target.parent}; make it first")
+    target = target_of(path)
     if not target.exists():
         job.try_out()
         folder = _folder(target)
@@ -135,7 +137,10 @@ def _finished(target: Path, job: Job) -> xr.Dataset:
 
 
 def _folder(target: Path) -> Path:
-    return target.with_name(target.name + ".partial")
+    """Return the folder of its chunks, named after the study; by a digest where that name would be too long."""
+    name = os.fsencode(target.name)
+    short = target.name if len(name) + len(".partial") <= LONGEST_NAME else hashlib.sha256(name).hexdigest()
+    return target.with_name(short + ".partial")
 
 
 def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import INDICES
-from linksweep.surface.storage import whole
+from linksweep.surface.atomic import whole
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,0 +1,154 @@
+"""What results are written to: only files are replaced, whatever their names, and nothing is left of killed writers."""
+
+import fcntl
+import os
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+import linksweep as ls
+from linksweep.surface.atomic import whole
+from linksweep.surface.cli import main
+from linksweep.surface.commands import write_figure
+
+GET = fcntl.F_GETFL
+WRITERS = {
+    "save": (".nc", lambda path: ls.save(ls.check(ls.example("press")), path)),
+    "CSV": (".csv", lambda path: ls.peaks(ls.example("press"), theta2=8).linksweep.to_csv(path)),
+    "report": (".html", lambda path: ls.report(ls.example("loop"), path)),
+    "film": (".gif", lambda path: ls.plot.animate(ls.example("press"), 2).save(path)),
+    "figure": (".png", lambda path: write_figure(ls.sweep(ls.example("loop"), 8).linksweep.cycle(), path)),
+    "study": (".nc", lambda path: ls.study(ls.example("press"), path, of=["T12"])),
+}
+
+
+def pipe(path):
+    os.mkfifo(path)
+
+
+def device(path):
+    if os.geteuid():
+        pytest.skip("only root makes devices")
+    os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
+
+
+def bound(path):
+    with socket.socket(socket.AF_UNIX) as made:
+        made.bind(str(path))
+
+
+KINDS = {"a folder": Path.mkdir, "a pipe": pipe, "a device": device, "a socket": bound}
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """An empty working folder with a short path: a socket's has at most 108 bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.chdir(folder)
+        yield Path(folder)
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize("linked", [False, True], ids=["itself", "by a link"])
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_is_no_file_is_refused_and_stays(here, writer, kind, linked):
+    ending, write = WRITERS[writer]
+    target = here / f"target{ending}"
+    KINDS[kind](target)
+    path = here / f"link{ending}" if linked else target
+    if linked:
+        path.symlink_to(target)
+    before, mode = sorted(os.listdir(here)), target.stat().st_mode
+    with pytest.raises(OSError, match=f"{path.name}: is {kind}, which no file replaces; choose another name"):
+        write(path)
+    assert target.stat().st_mode == mode
+    assert sorted(os.listdir(here)) == before
+
+
+def test_the_command_line_refuses_it_before_it_computes(here, monkeypatch, capsys):
+    pipe(here / "out.nc")
+    monkeypatch.setattr("linksweep.surface.cli.sweep", lambda *_, **__: pytest.fail("computed"))
+    (here / "press.toml").write_text((Path(ls.__file__).parent / "scene/examples/press.toml").read_text())
+    assert main(["sweep", "press.toml", "-o", "out.nc"]) == 2
+    assert capsys.readouterr().err == "linksweep: out.nc: is a pipe, which no file replaces; choose another name\n"
+
+
+@pytest.mark.parametrize("length", [*range(241, 256)])
+def test_every_name_that_a_file_may_have(here, length):
+    for name in ("a" * (length - 3) + ".nc", "é" * ((length - 3) // 2) + "a" * ((length - 3) % 2) + ".nc"):
+        with whole(name) as temporary:
+            temporary.write_text("text")
+        assert os.listdir(here) == [name]
+        os.unlink(name)
+
+
+def test_a_study_may_have_the_longest_name(here):
+    name = "a" * 252 + ".nc"
+    ls.study(ls.example("press"), name, of=["T12"])
+    assert os.listdir(here) == [name]
+
+
+def test_a_file_that_is_replaced_keeps_its_rights(here):
+    Path("private.nc").touch(0o600)
+    ls.save(ls.check(ls.example("press")), "private.nc")
+    assert stat.S_IMODE(os.stat("private.nc").st_mode) == 0o600
+
+
+def test_a_link_to_a_file_that_is_not_there_yet(here):
+    Path("link.nc").symlink_to("new.nc")
+    ls.save(ls.check(ls.example("press")), "link.nc")
+    assert Path("link.nc").is_symlink()
+    assert Path("new.nc").stat().st_size > 0
+
+
+def test_what_is_flushed_was_opened_to_be_written(here, monkeypatch):
+    """Windows flushes no other file."""
+    opened = []
+    monkeypatch.setattr(
+        os, "fsync", lambda handle: opened.append((os.fstat(handle), fcntl.fcntl(handle, fcntl.F_GETFL)))
+    )
+    with whole("a.nc") as temporary:
+        temporary.write_text("text")
+    modes = [flags & os.O_ACCMODE for status, flags in opened if stat.S_ISREG(status.st_mode)]
+    assert modes == [os.O_RDWR]
+
+
+# --------------------------------------------------------------------------------------------- killed while writing
+
+
+KILLED = """
+import os, signal, sys
+from linksweep.surface.atomic import whole
+with whole(sys.argv[1]) as temporary:
+    temporary.write_text("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_writer_left_is_swept_by_the_next(here):
+    assert subprocess.run([sys.executable, "-c", KILLED, "a.nc"], check=False).returncode == -9
+    (left,) = os.listdir(here)
+    assert left != "a.nc"
+    with whole("b.nc") as temporary:
+        temporary.write_text("text")
+    assert os.listdir(here) == ["b.nc"]
+
+
+def test_what_another_process_is_writing_stays(here):
+    going = "import sys\nfrom linksweep.surface.atomic import whole\n" + (
+        "with whole('slow.nc') as temporary:\n    print(flush=True)\n    temporary.write_text(sys.stdin.read())\n"
+    )
+    command = [sys.executable, "-c", going]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        with whole("quick.nc") as temporary:
+            temporary.write_text("text")
+        process.communicate("all of it")
+    assert Path("slow.nc").read_text() == "all of it"
+    assert sorted(os.listdir(here)) == ["quick.nc", "slow.nc"]
