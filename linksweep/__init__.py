@@ -27,6 +27,7 @@ from linksweep.results.system import system
 from linksweep.scene.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.examples import example
 from linksweep.scene.gas_pressure import GasPressure
+from linksweep.scene.interpolation import OvershootWarning
 from linksweep.scene.loads import Load
 from linksweep.scene.sample import sample
 from linksweep.scene.scene import Scene
@@ -57,6 +58,7 @@ __all__ = [
     "MultiCylinder",
     "Normal",
     "OttoCycle",
+    "OvershootWarning",
     "Scene",
     "SliderCrank",
     "Spring",

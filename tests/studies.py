@@ -46,7 +46,7 @@ def moving() -> ls.Scene:
     angles = np.arange(12) * 30.0
     each = xr.DataArray(rng.normal(size=(5, 12)), {"theta2": angles, "n": [1, 2, 4, 8, 16]}, ("n", "theta2"))
     loads = [
-        ls.Load("rocker", torque=each),
+        ls.Load("rocker", torque=each, interpolation="pchip"),
         ls.Load(
             "coupler", force=(lambda theta2: 30.0 * np.sin(np.radians(theta2)), over("m", 1.0, 2.0)), at=(0.1, 9.0)
         ),

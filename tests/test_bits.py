@@ -75,7 +75,7 @@ def loaded(**changes) -> ls.Scene:
     torque = xr.DataArray([1.0, 0.5, -2.0, 0.25], {"theta2": [0.0, 90.0, 180.0, 270.0]}, "theta2")
     loads = [
         ls.Load("coupler", force=(ripple, -80.0), at=(0.1, 15.0), frame="link", origin="cg"),
-        ls.Load("rocker", force=(3.0, 5.0), at=(0.09, 0.0), torque=torque),
+        ls.Load("rocker", force=(3.0, 5.0), at=(0.09, 0.0), torque=torque, interpolation="pchip"),
         ls.Load("crank", torque=0.7),
     ]
     return ls.Scene(four_bar(), omega2=ripple, alpha2=-12.0, gravity=(0.0, -9.81), loads=loads, **changes)

@@ -183,7 +183,7 @@ def loaded() -> ls.Scene:
     angles = np.arange(0.0, 360.0, 30.0)
     own = np.random.default_rng(1).normal(size=(3, 12))
     torque = xr.DataArray(own, {"theta2": angles}, ("case", "theta2"))
-    return replace(several(), loads=[ls.Load("rocker", torque=torque)])
+    return replace(several(), loads=[ls.Load("rocker", torque=torque, interpolation="pchip")])
 
 
 OF = ["F32", "T12", "theta4", "T12_mean", "F32_bound"]

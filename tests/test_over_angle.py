@@ -84,6 +84,7 @@ def test_a_variable_depends_on_theta2_only_as_far_as_its_inputs_do():
     assert batch.T12.dims == ("case", "theta2")
 
 
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_design_dims_and_theta2_together_in_any_order():
     angles = np.arange(4) * 90.0
     values = np.array([[1.0, -2.0, 3.0, 0.5], [4.0, 4.0, -1.0, 2.0]])
@@ -95,6 +96,7 @@ def test_design_dims_and_theta2_together_in_any_order():
             np.testing.assert_array_equal(cycle.T12.sel(case=case).values, alone.T12.values)
 
 
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_peaks_of_what_changes_are_those_of_the_sweep():
     load = over_angles([0.0, -50.0, 20.0, 5.0], [0.0, 90.0, 180.0, 270.0])
     moving = scene(torque=load, omega2=lambda theta2: 30.0 + np.cos(np.radians(theta2)))
@@ -111,6 +113,7 @@ def ripple(theta2):
     return 3.0 + np.cos(radians) - 0.5 * np.sin(3 * radians)
 
 
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_sampled_angles_are_reproduced_to_the_bit_wherever_they_stand():
     rng = np.random.default_rng(1)
     for first in (0.0, 0.1, -200.0, 33.3):
@@ -123,6 +126,7 @@ def test_sampled_angles_are_reproduced_to_the_bit_wherever_they_stand():
             assert brought(given, with_others)[:-1].tolist() == values.tolist()
 
 
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_the_spline_is_periodic_and_smooth_over_the_join():
     known = np.array([10.0, 60.0, 130.0, 200.0, 280.0, 340.0])
     given = over_angles(ripple(known), known)
@@ -170,6 +174,7 @@ def test_angles_beyond_one_revolution_mean_a_period_of_two():
     assert cycle[0] == cycle[2] != cycle[1]
 
 
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_other_dims_are_interpolated_side_by_side():
     known = np.arange(0.0, 360.0, 45.0)
     both = xr.DataArray([ripple(known), 2.0 - ripple(known)], {"case": [5, 7], "theta2": known}, ("case", "theta2"))

@@ -39,13 +39,13 @@ def batch() -> ls.Scene:
 def moving() -> ls.Scene:
     """What changes over the revolution in each of the ways to say so."""
     rng = np.random.default_rng(1)
-    over = xr.DataArray(rng.normal(size=12), {"theta2": THETA2}, "theta2")
+    over = xr.DataArray(7.0 * np.cos(np.radians(THETA2)), {"theta2": THETA2}, "theta2")
     coarse = xr.DataArray(rng.normal(size=(2, 4)), {"theta2": [0, 90, 180, 270]}, ("case", "theta2"))
     loads = [
         ls.Load(
             "coupler", force=(over, lambda theta2: 30.0 * np.sin(np.radians(theta2))), at=(0.1, 15.0), frame="link"
         ),
-        ls.Load("rocker", force=(1.0, 2.0), at=(0.1, 15.0), torque=coarse, origin="cg"),
+        ls.Load("rocker", force=(1.0, 2.0), at=(0.1, 15.0), torque=coarse, origin="cg", interpolation="pchip"),
     ]
     return ls.Scene(four_bar(), omega2=lambda theta2: 20.0 + np.cos(np.radians(theta2)), alpha2=3.0, loads=loads)
 

@@ -51,6 +51,11 @@ def check(scene: Scene) -> xr.Dataset:
     - `leaves_track_at`, `stalls_at` [degree]: where it first does; NaN where it does not
     - `least_entry_speed` [m/s]: least speed at the bottom (profile="constant": everywhere) with which it goes round
 
+    Of a scene with arrays over theta2 that are interpolated by a spline (`interpolation` of a Load):
+
+    - `overshoot` (spline) [1]: how far each spline leaves the range of its values, relative to that range; where it is
+      more than 0.01 it rings, as it does beside steps
+
     Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.four_bar_limits`.
 
     Raises
@@ -78,6 +83,10 @@ def check(scene: Scene) -> xr.Dataset:
             if found.along and found.along[1]:
                 labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))
     variables |= _acceleration(scene)
+    if overshoots := scene.overshoots():
+        said = {"units": "1", "long_name": "how far its spline leaves the range of an array, relative to that range"}
+        variables["overshoot"] = xr.Variable("spline", list(overshoots.values()), said)
+        labels["spline"] = xr.Variable("spline", list(overshoots))
     dims = {dim for variable in variables.values() for dim in variable.dims}
     coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)} | labels
     return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))

@@ -17,14 +17,15 @@ import xarray as xr
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.validate import Rule, refuse
 from linksweep.scene.over_angle import (
+    Curves,
     at_angles,
     called,
+    curve_of,
     knots,
     over_grid,
     period_of,
     period_of_function,
     period_problems,
-    periodic_spline,
 )
 
 WIDEST = 7.25
@@ -36,7 +37,9 @@ JUMP = 1e-6
 """Of the largest ω²: what still changes so much over the least step (0.001 degree), and faster the nearer, jumps."""
 
 
-def acceleration(path: str, omega: Any, rule: Rule, grid: Grid, turn: float) -> xr.DataArray:
+def acceleration(
+    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, curves: Curves | None = None
+) -> xr.DataArray:
     """ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
 
     That of a function errs by 1e-10 of its largest value where the function is smooth over half a degree. At a corner
@@ -49,7 +52,7 @@ def acceleration(path: str, omega: Any, rule: Rule, grid: Grid, turn: float) -> 
     """
     if callable(omega) and not hasattr(omega, "dims"):
         return _of_function(path, omega, rule, grid, period_of_function(omega, turn))
-    return _of_array(path, omega, rule, grid, turn)
+    return _of_array(path, omega, rule, grid, turn, {} if curves is None else curves)
 
 
 def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
@@ -92,19 +95,18 @@ def _limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     return best
 
 
-def _of_array(path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float) -> xr.DataArray:
+def _of_array(path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float, curves: Curves) -> xr.DataArray:
     """By the periodic spline; at the angles of an array over part of a turn by the spline through these alone."""
     from scipy.interpolate import CubicSpline
 
     omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
     known, values = knots(omega)
-    period = period_of(omega, turn)
-    problems = period_problems(path, known, values, period)
+    problems = period_problems(path, known, values, period_of(omega, turn))
     if not problems:
-        slope = periodic_spline(known, values, period)(known[0] + np.mod(grid.angles - known[0], period), 1)
+        slope = curve_of(path, omega, turn).slope(grid.angles)
     elif len(known) > 1 and np.isin(grid.angles, known).all():
         slope = CubicSpline(known, values)(grid.angles, 1)
     else:
         refuse([f"{problem}; or give alpha2" for problem in problems])
-    speed = at_angles(path, omega, rule, grid, turn)
+    speed = at_angles(path, omega, rule, grid, turn, curves=curves)
     return (speed * over_grid(np.degrees(slope), omega, grid)).transpose(*omega.dims)

@@ -12,21 +12,22 @@ from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.validate import Number, Rule, problems
-from linksweep.scene.over_angle import at_angles
+from linksweep.scene.over_angle import Curves, at_angles
 
 Owner = TypeVar("Owner")
 
 
 class Revolution(NamedTuple):
-    """What a sweep looks at: the machine, its angles, and the speed of the crank at them."""
+    """What a sweep looks at: the machine, its angles, the speed of the crank at them, and the curves of its scene."""
 
     mechanism: Mechanism
     grid: Grid
     omega2: Number
+    curves: Curves
 
-    def sample(self, path: str, value: Any, rule: Rule) -> Any:
+    def sample(self, path: str, value: Any, rule: Rule, interpolation: str | None = None) -> Any:
         """A number at the angles, where it changes with them."""
-        return at_angles(path, value, rule, self.grid, self.mechanism.period)
+        return at_angles(path, value, rule, self.grid, self.mechanism.period, interpolation, self.curves)
 
 
 class Action(ByContent):

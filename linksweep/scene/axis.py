@@ -10,11 +10,12 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
+from linksweep.scene.interpolation import interpolation_attribute
 from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 MOST = 1_000_000
 """Numbers of an axis that is given by its ends."""
-KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2")
+KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2", "interpolation")
 
 
 def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.DataArray:
@@ -24,7 +25,8 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     ----------
     table : dict
         `dim` or `dims`; `values`, nested as deep as the dims, or `start`, `stop`, `num`; the `unit` of plain
-        numbers; `coords`, a list for each dim with labels; `theta2`, short for angles [degree] in `coords`.
+        numbers; `coords`, a list for each dim with labels; `theta2`, short for angles [degree] in `coords`;
+        `interpolation` over them.
     kind : str
         What is measured: a key of `KINDS`.
     alone : bool
@@ -57,7 +59,7 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
         problems = [problem for problem in problems if ": missing" not in problem]
     if problems:
         raise ValueError("\n".join(problems))
-    return xr.DataArray(values, dims=dims, coords=coords)
+    return xr.DataArray(values, dims=dims, coords=coords, attrs=interpolation_attribute(table))
 
 
 def _dims(table: dict[str, Any], problems: list[str]) -> list[str]:

@@ -10,7 +10,8 @@
 The first line names the columns; the first column is theta2 [degree], in rising order, over one turn (360) or two
 (720). The last row may close the cycle by repeating the first. In a scene file the column stands in place of a number:
 ``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column` may be
-left out where there are but two, and `unit` where the values are in SI units.
+left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes on
+between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean, name_problems, refuse
+from linksweep.scene.interpolation import interpolation_attribute
 from linksweep.scene.text_file import text_of
 from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
-KEYS = ("csv", "column", "unit")
+KEYS = ("csv", "column", "unit", "interpolation")
 MOST_SHOWN = 5
 """Bad cells of a file that a message lists one by one."""
 
@@ -49,7 +51,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     Parameters
     ----------
     table : dict
-        `csv`, the file; `column`, its name in the first line; `unit` of its values.
+        `csv`, the file; `column`, its name in the first line; `unit` of its values; their `interpolation`.
     kind : str
         What is measured: a key of `KINDS`.
     folder : Path
@@ -58,7 +60,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     Returns
     -------
     DataArray
-        Values [`KINDS[kind].unit`] over theta2 [degree].
+        Values [`KINDS[kind].unit`] over theta2 [degree]; the interpolation among its attributes.
 
     Raises
     ------
@@ -67,15 +69,15 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     """
     listed = f"; a CSV column has {', '.join(KEYS)}"
     refuse([f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
-    unit = _unit(table, kind)
+    unit, attributes = _unit(table, kind), interpolation_attribute(table)
     if not isinstance(table["csv"], str) or not table["csv"].isprintable():
         raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
     samples = _samples(name, rows, _column(table, rows[0].cells))
-    refuse(_angle_problems(name, samples))
+    refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
     angles = np.array([sample.angle for sample in samples])
     values = [quantity(sample.value, kind, unit) for sample in samples]
-    return xr.DataArray(values, {"theta2": angles}, "theta2")
+    return xr.DataArray(values, {"theta2": angles}, "theta2", attrs=attributes)
 
 
 def _unit(table: dict[str, Any], kind: str) -> str | None:
@@ -136,24 +138,26 @@ def _number(cell: str) -> float:
         return math.nan
 
 
-def _angle_problems(name: str, samples: list[Sample]) -> list[str]:
-    """Whether the angles rise, and go once or twice all the way round."""
-    if len(samples) < 4:
-        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
+def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
+    """Whether the angles rise, and go once or twice all the way round; steps hold as long as they like."""
+    if len(samples) < (2 if steps else 4):
+        least = "2" if steps else "4, all the way round"
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least {least}"]
     angles = np.array([sample.angle for sample in samples])
-    steps = np.diff(angles)
-    if not (steps > 0.0).all():
-        k = int(np.argmin(steps > 0.0))
+    rises = np.diff(angles)
+    if not (rises > 0.0).all():
+        k = int(np.argmin(rises > 0.0))
         twice = (
-            "stands twice: give each angle once" if steps[k] == 0.0 else "is less than the one before: sort the rows"
+            "stands twice: give each angle once" if rises[k] == 0.0 else "is less than the one before: sort the rows"
         )
         return [f"csv: {name}:{samples[k + 1].line}: theta2 = {samples[k + 1].angle:.15g} {twice}"]
     span = float(angles[-1] - angles[0])
     period = 360.0 if span <= 360.0 else 720.0
-    if not 0.0 <= period - span <= 1.5 * steps.max() or steps.max() > 0.5 * period:
+    open_ = period - span > 1.5 * rises.max() or rises.max() > 0.5 * period
+    if span > period or (open_ and not steps):
         return [
             f"csv: {name}: its angles run from {angles[0]:.15g} to {angles[-1]:.15g} degrees, steps at most "
-            f"{steps.max():.6g}: they must go round one turn (360) or two (720)"
+            f"{rises.max():.6g}: they must go round one turn (360) or two (720)"
         ]
     if span == period and samples[0].value != samples[-1].value:
         return [

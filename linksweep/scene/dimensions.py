@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-TABLES = ("status", "arc", "toggle", "equation", "unknown")
+TABLES = ("status", "arc", "toggle", "equation", "unknown", "spline")
 """What results of `sweep`, `check` and `system` bring with them, besides the quantities."""
 
 Arrays = dict[str, xr.DataArray]  # by the path of the parameter that each is

@@ -12,24 +12,16 @@ import numpy as np
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import (
-    Number,
-    Rule,
-    as_tuple,
-    is_lazy,
-    parameter,
-    plain_numbers_problems,
-    problems,
-)
-from linksweep.scene.action import Action, Revolution, with_sound
+from linksweep.mechanisms.validate import Number, Rule, is_lazy, parameter, problems
+from linksweep.scene.action import Revolution, with_sound
 from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, pressure_over
-from linksweep.scene.loads import BREAK
+from linksweep.scene.changing_load import ChangingLoad
 
 PRESSURE = Rule("pressure", over_angle=True)
 
 
 @dataclass(frozen=True, eq=False)
-class GasPressure(Action):
+class GasPressure(ChangingLoad):
     """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
 
     Parameters
@@ -39,13 +31,14 @@ class GasPressure(Action):
         or `DieselCycle`, which need no data
     crankcase : pressure on the other side of the piston, absolute [Pa]
     breaks : angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`
+    interpolation : of DataArrays over theta2, as that of a `Load`
 
     The force acts at C along the guide, (p − crankcase)·π·bore²/4. The head is where the rod reaches farthest: ahead
     of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
     direction; with branch "crossed" the head is behind, and pressure pushes it forward.
 
-    A DataArray over theta2 is interpolated by a periodic cubic spline at angles that it does not hold. One that spans
-    more than 360 degrees makes the scene's period 720, and so does a cycle of four strokes.
+    A DataArray over theta2 that spans more than 360 degrees makes the scene's period 720, and so does a cycle of four
+    strokes.
 
     In a study, a design whose crank does not turn fully has no ideal cycle: none of its samples is ok (status
     `no_cycle` where it can be assembled), and its forces are NaN.
@@ -69,11 +62,16 @@ class GasPressure(Action):
     pressure: Number | Cycle = parameter("pressure", over_angle=True)
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
     breaks: tuple[float, ...] = ()
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "breaks", as_tuple(self.breaks))
+    interpolation: str | None = None
 
     in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
+
+    def __post_init__(self) -> None:
+        self.take_breaks_and_interpolation()
+
+    @property
+    def changing(self) -> tuple[Any, ...]:
+        return self.pressure, self.crankcase
 
     @property
     def form(self) -> LoadForm:
@@ -90,8 +88,7 @@ class GasPressure(Action):
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
         of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
-        of_breaks = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
-        return problems(given, path + ".") + of_cycle + of_breaks
+        return problems(given, path + ".") + of_cycle + self.changing_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if not isinstance(mechanism, SliderCrank):
@@ -108,9 +105,9 @@ class GasPressure(Action):
         return []
 
     def sampled(self, path: str, revolution: Revolution) -> GasPressure:
-        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE)
+        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE, self.interpolation)
         if self.cycle is None:
-            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
+            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
         brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
         pressure = pressure_over(self.cycle, engine, revolution.grid.angles, _turning(revolution.omega2))
@@ -118,9 +115,9 @@ class GasPressure(Action):
         return brought
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        """Return the breaks, and the dead centres, where a cycle's pressure jumps [degree]."""
+        """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
         dead_centres = cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
-        return (*dead_centres, *self.breaks)
+        return (*dead_centres, *super().jumps(mechanism))
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""

@@ -6,31 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import (
-    Number,
-    Rule,
-    as_pair,
-    as_tuple,
-    choice_problems,
-    pair_problems,
-    parameter,
-    plain_numbers_problems,
-    problems,
-)
-from linksweep.scene.action import Action, Revolution, with_values
+from linksweep.mechanisms.validate import Number, Rule, as_pair, choice_problems, pair_problems, parameter, problems
+from linksweep.scene.action import Revolution, with_values
+from linksweep.scene.changing_load import ChangingLoad
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
 FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
-BREAK = Rule("angle")
 AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
 
 
 @dataclass(frozen=True, eq=False)
-class Load(Action):
+class Load(ChangingLoad):
     """A force at a point of a link, a torque on it, or both, besides weight and inertia.
 
     Parameters
@@ -43,12 +32,17 @@ class Load(Action):
     origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
     breaks : angles theta2 [degree] at which the force or torque jumps, kinks or is narrower than 0.05 degrees, in a
         list: exact peaks look at both sides of each
+    interpolation : of DataArrays over theta2, at angles that they do not hold: "periodic cubic" (spline, by default),
+        "pchip" (monotone between neighbours, does not ring), "linear", or "step" (each value holds from its angle up
+        to the next)
 
     Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
-    point may be DataArrays of design dims. A DataArray over theta2 is interpolated by a periodic cubic spline (scipy's
-    CubicSpline, bc_type="periodic") at angles that it does not hold, and reproduced exactly at those that it holds. Its
+    point may be DataArrays of design dims. A DataArray over theta2 is reproduced exactly at angles that it holds. Its
     period is 360 degrees, or 720 where its angles span more (four-stroke engines): then theta2 of the whole scene runs
     to 720, and what has a period of 360 repeats. Values are checked by the scene that takes the load: ValueError there.
+
+    A spline through a load with steps rings. Where one leaves its data's range by more than 1 % of it, it warns
+    (`OvershootWarning`) when it is first used, and `linksweep.check` tells by how much.
 
     Examples
     --------
@@ -64,15 +58,21 @@ class Load(Action):
     torque: Number | None = parameter("torque", None, over_angle=True)
     origin: str = "pin"
     breaks: tuple[float, ...] = ()
+    interpolation: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "force", as_pair(self.force))
         object.__setattr__(self, "at", as_pair(self.at))
-        object.__setattr__(self, "breaks", as_tuple(self.breaks))
         on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
         if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
             object.__setattr__(self, "force", (self.force, 0.0))
             object.__setattr__(self, "frame", "link")
+        self.take_breaks_and_interpolation()
+
+    @property
+    def changing(self) -> tuple[Any, ...]:
+        components = self.force if isinstance(self.force, tuple | list) else ()
+        return (*components, self.torque)
 
     @property
     def form(self) -> LoadForm:
@@ -82,6 +82,7 @@ class Load(Action):
         found = choice_problems(f"{path}.link", self.link, links)
         found += choice_problems(f"{path}.frame", self.frame, ("ground", "link"))
         found += choice_problems(f"{path}.origin", self.origin, ("pin", "cg"))
+        found += self.changing_problems(path)
         if self.force is None and self.torque is None:
             found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
         if self.force is not None:
@@ -90,17 +91,15 @@ class Load(Action):
             found
             + problems(self, path + ".")
             + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
-            + plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
         )
-
-    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        return self.breaks
 
     def sampled(self, path: str, revolution: Revolution) -> Load:
         force = self.force and tuple(
-            revolution.sample(f"{path}.force[{k}]", component, FORCE) for k, component in enumerate(self.force, 1)
+            revolution.sample(f"{path}.force[{k}]", component, FORCE, self.interpolation)
+            for k, component in enumerate(self.force, 1)
         )
-        return with_values(self, force=force, torque=revolution.sample(f"{path}.torque", self.torque, TORQUE))
+        torque = revolution.sample(f"{path}.torque", self.torque, TORQUE, self.interpolation)
+        return with_values(self, force=force, torque=torque)
 
     def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """The load's numbers under the names that the physics wires by; `machine` has its link's centre of gravity."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,10 @@ import xarray as xr
 
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.validate import Rule, number_problems, refuse
+from linksweep.scene.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
+
+Curves = dict[str, PeriodicCurve]
+"""The curves through a scene's arrays over theta2, by path: each is made when it is first needed."""
 
 TWO_TURNS = np.arange(0.0, 720.0, 0.5)
 """Angles [degree] at whose values a function of theta2 is known again."""
@@ -39,17 +44,30 @@ def tabulated(function: Any) -> xr.DataArray:
     return xr.DataArray(values, {"theta2": TWO_TURNS}, "theta2")
 
 
-def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> Any:
+def at_angles(
+    path: str,
+    value: Any,
+    rule: Rule,
+    grid: Grid,
+    period: float,
+    interpolation: str | None = None,
+    curves: Curves | None = None,
+) -> Any:
     """A function or DataArray of theta2 as a DataArray over the grid's angles; any other number as it is.
 
-    At angles that a DataArray does not hold it is interpolated by a periodic cubic spline (scipy's CubicSpline,
-    bc_type="periodic"), over `period` degrees (one turn) or, where its angles span more, two turns; at angles that it
-    holds, or that are whole periods from them, its values come back to the bit.
+    At angles that a DataArray does not hold it is interpolated (by a periodic cubic spline, unless `interpolation` says
+    otherwise), over `period` degrees (one turn) or, where its angles span more, two turns; at angles that it holds, or
+    that are whole periods from them, its values come back to the bit. Its curve is kept in `curves`.
 
     Raises
     ------
     ValueError
         For values of the wrong shape or not finite, and for an array that cannot be brought to these angles.
+
+    Warns
+    -----
+    OvershootWarning
+        Where a spline leaves its data's range, when its curve is made.
     """
     if callable(value) and not hasattr(value, "dims"):
         return called(path, value, rule, grid.angles)
@@ -63,7 +81,11 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, period: float) -> A
     place = {angle: k for k, angle in enumerate(known)}
     if all(angle in place for angle in grid.angles):
         return value.isel(theta2=[place[angle] for angle in grid.angles])
-    return _spline(path, value, grid, period)
+    curves = {} if curves is None else curves
+    if path not in curves:
+        curves[path] = curve_of(path, value, period, interpolation)
+        _warn_of_overshoot(path, curves[path].overshoot)
+    return over_grid(curves[path](grid.angles), value, grid)
 
 
 def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
@@ -95,29 +117,46 @@ def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
     return value
 
 
-def _spline(path: str, value: xr.DataArray, grid: Grid, period: float) -> xr.DataArray:
+def curve_of(path: str, value: xr.DataArray, period: float, interpolation: str | None = None) -> PeriodicCurve:
+    """Return the curve through an array over theta2. Raises ValueError where its angles do not go all the way round."""
     known, values = knots(value)
-    period = period_of(value, period)
-    refuse(period_problems(path, known, values, period))
-    found = periodic_spline(known, values, period)(known[0] + np.mod(grid.angles - known[0], period))
-    place = {angle: k for k, angle in enumerate(np.mod(known, period).tolist())}
-    held = np.array([place.get(angle, -1) for angle in np.mod(grid.angles, period).tolist()])
-    found[held >= 0] = values[held[held >= 0]]
-    return over_grid(found, value, grid)
+    period, interpolation = period_of(value, period), interpolation or CUBIC
+    refuse(period_problems(path, known, values, period, interpolation))
+    last = -1 if known[-1] - known[0] == period else None  # repeats the first
+    return PeriodicCurve(known[:last], values[:last], period, interpolation)
+
+
+def overshoot_of(value: xr.DataArray, period: float) -> float | None:
+    """Return how far the spline through an array leaves its range; None for angles that do not go all the way round."""
+    try:
+        return curve_of("", value, period).overshoot
+    except ValueError:
+        return None
+
+
+def _warn_of_overshoot(path: str, overshoot: float) -> None:
+    if overshoot <= RINGING:
+        return
+    instead = 'give its load interpolation = "pchip" (or "linear", "step"), or give it at more angles'
+    instead = instead if path.startswith("loads") else "give it at more angles, or as a function"
+    text = f"{path}: the spline through its values leaves their range by {100.0 * overshoot:.2g} % of it; {instead}"
+    warnings.warn(text, OvershootWarning, stacklevel=2)
+
+
+def corners(value: Any, interpolation: str | None) -> tuple[float, ...]:
+    """Return the angles [degree] at which an array over theta2 jumps (interpolation "step") or bends ("linear")."""
+    if interpolation not in ("step", "linear") or "theta2" not in getattr(value, "coords", ()):
+        return ()
+    known, values = knots(value)
+    jumps = (values != np.roll(values, 1, axis=0)).reshape(len(known), -1).any(axis=1)
+    return tuple(known[jumps if interpolation == "step" else jumps | np.roll(jumps, -1)].tolist())
 
 
 def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
     """Angles [degree] of an array over theta2 in order, and its values with theta2 as their first axis."""
     order = np.argsort(value["theta2"].values, kind="stable")
     known = value["theta2"].values[order].astype(float)
-    return known, np.moveaxis(value.values, value.dims.index("theta2"), 0)[order]
-
-
-def periodic_spline(known: np.ndarray, values: np.ndarray, period: float) -> Any:
-    """Periodic cubic spline through values at angles in order [degree]."""
-    from scipy.interpolate import CubicSpline
-
-    return CubicSpline(*_closed(known, values, period), bc_type="periodic")
+    return known, np.moveaxis(value.values.astype(float), value.dims.index("theta2"), 0)[order]
 
 
 def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
@@ -127,25 +166,22 @@ def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArra
     return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
 
 
-def _closed(known: np.ndarray, values: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
-    """Knots and values with the first again a period later, unless it stands there."""
-    if known[-1] - known[0] >= period:
-        return known, values
-    return np.append(known, known[0] + period), np.concatenate([values, values[:1]])
-
-
-def period_problems(path: str, known: np.ndarray, values: np.ndarray, period: float) -> list[str]:
-    """Why values at angles in order cannot be joined to a periodic curve."""
-    knots, at_knots = _closed(known, values, period)
+def period_problems(
+    path: str, known: np.ndarray, values: np.ndarray, period: float, interpolation: str = CUBIC
+) -> list[str]:
+    """Why values at angles in order cannot be joined to a periodic curve. A step may hold for as long as it likes."""
     said = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
-    if len(knots) < 4 or knots[-1] - knots[0] > period:
-        return [f"{said} cannot be joined; give at least 3 different angles within one period of {period:g} degrees"]
-    if not np.array_equal(at_knots[0], at_knots[-1]):
+    span, steps = known[-1] - known[0], interpolation == "step"
+    least = 2 if steps else 3
+    if len(known) < least + (span == period) or span > period:
+        angles = f"{least} different angles within one period of {period:g} degrees"
+        return [f"{said} cannot be joined; give at least {angles}"]
+    if span == period and not np.array_equal(values[0], values[-1]):
         return [
-            f"{path}: its values at {knots[0]:g} and {knots[-1]:g} degrees differ, but they are the same position; "
+            f"{path}: its values at {known[0]:g} and {known[-1]:g} degrees differ, but they are the same position; "
             f"make them equal or leave one out"
         ]
-    gap = np.diff(knots).max()
-    if gap > 0.5 * period:
+    gap = np.diff(known, append=known[0] + period).max()
+    if gap > 0.5 * period and not steps:
         return [f"{said} leave {gap:g} of {period:g} degrees open; give values all the way round"]
     return []

@@ -34,7 +34,8 @@ from linksweep.scene.action import Action, Revolution, with_sound
 from linksweep.scene.dimensions import dimension_problems, side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.over_angle import at_angles, period_of, period_of_function
+from linksweep.scene.interpolation import CUBIC
+from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function
 from linksweep.scene.paths import bare, numbers
 from linksweep.scene.units import unit_problems
 
@@ -117,7 +118,7 @@ class Scene(ByContent):
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
         # omega2 may be asked for as it was given; the loop's speed over theta is not the speed that was given
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
-        refuse(self._unit_problems())
+        refuse(self._unit_problems() + self._interpolation_problems())
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
     def _take_motion(self) -> list[str]:
@@ -147,6 +148,13 @@ class Scene(ByContent):
         """Arrays that say another unit than that of the parameter that each is."""
         arrays = [(path, value, kind) for path, value, kind in numbers(self) if path in self.arrays and kind]
         return [p for path, array, kind in arrays for p in unit_problems(path, array.attrs.get("units"), kind)]
+
+    def _interpolation_problems(self) -> list[str]:
+        """Arrays that say how they go on between angles, and are none of a load over the angles."""
+        index = self.mechanism.index
+        arrays = [(path, array) for path, array in self.arrays.items() if "interpolation" in array.attrs]
+        others = [path for path, array in arrays if index not in array.dims or not path.startswith("loads")]
+        return [f"{path}.interpolation: is for loads over {index}; leave it out" for path in others]
 
     def _of_mechanism(self, words: str) -> tuple[str, ...]:
         """The mechanism's drives or links; of an unsound one, those of any."""
@@ -219,7 +227,7 @@ class Scene(ByContent):
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""
         omega2 = self._sampled("omega2", grid)
-        revolution = Revolution(self.mechanism, grid, omega2)
+        revolution = Revolution(self.mechanism, grid, omega2, self._curves)
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
         return with_sound(self, omega2=omega2, alpha2=self._acceleration(grid), loads=loads)
 
@@ -238,10 +246,25 @@ class Scene(ByContent):
 
     def derived_acceleration(self, grid: Grid) -> xr.DataArray:
         """Return ω2·dω2/dθ2 [rad/s²] at the grid's angles, of an omega2 that changes with theta2."""
-        return acceleration("omega2", self.omega2, _rule("omega2"), grid, self.mechanism.period)
+        return acceleration("omega2", self.omega2, _rule("omega2"), grid, self.mechanism.period, self._curves)
 
     def _sampled(self, word: str, grid: Grid) -> Number:
-        return at_angles(word, getattr(self, word), _rule(word), grid, self.mechanism.period)
+        return at_angles(word, getattr(self, word), _rule(word), grid, self.mechanism.period, curves=self._curves)
+
+    @cached_property
+    def _curves(self) -> Curves:
+        return {}
+
+    def overshoots(self) -> dict[str, float]:
+        """By path, how far each spline through an array over theta2 leaves its range, relative to that range."""
+        kinds = {path: getattr(load, "interpolation", None) for path, load in self._loads()}
+        splines = {
+            path: array
+            for path, array in self.arrays.items()
+            if self.mechanism.index in array.coords and kinds.get(path.rpartition(".")[0]) in (None, CUBIC)
+        }
+        overshoots = {path: overshoot_of(array, self.mechanism.period) for path, array in splines.items()}
+        return {path: overshoot for path, overshoot in overshoots.items() if overshoot is not None}
 
     @cached_property
     def bare(self) -> Scene:

@@ -8,6 +8,8 @@ from math import prod
 import numpy as np
 import xarray as xr
 
+from linksweep.scene.interpolation import RINGING
+
 
 def peak_table(found: xr.Dataset, index: str = "theta2") -> str:
     """The peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
@@ -103,10 +105,18 @@ def check_lines(found: xr.Dataset) -> list[str]:
     """What check found, in words."""
     said: Iterable[tuple[str, str]]
     if "grashof" not in found:
-        said = ((str(name).replace("_", " "), _summary(found[name])) for name in found.data_vars)
+        others = [name for name in found.data_vars if name != "overshoot"]
+        said = ((str(name).replace("_", " "), _summary(found[name])) for name in others)
     else:
         said = (*(_of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)), *_of_acceleration(found))
-    return [f"{title + ':':<26}{text}" for title, text in said]
+    return [f"{title + ':':<26}{text}" for title, text in (*said, *_of_splines(found))]
+
+
+def _of_splines(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Splines through loads that ring."""
+    ringing = found.overshoot.where(found.overshoot > RINGING, drop=True) if "overshoot" in found else ()
+    for overshoot in ringing:
+        yield "a spline rings", f"{overshoot.spline.item()} by {100.0 * float(overshoot):.2g} % of its range"
 
 
 def _summary(finding: xr.DataArray) -> str:
