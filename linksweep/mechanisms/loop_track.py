@@ -64,6 +64,7 @@ class LoopTrack(ByContent):
     period: ClassVar[float] = 360.0
     position: ClassVar[str] = "position on the loop from the bottom, positive counter-clockwise"
     spot: ClassVar[str] = "position"
+    pace: ClassVar[str] = "speed"
     motion: ClassVar[tuple[str, ...]] = ("speed", "thrust", "profile")
     defaults: ClassVar[Mapping[str, Any]] = {"thrust": 0.0, "profile": "constant"}
     profiles: ClassVar[Mapping[str, float]] = {"constant": 0.0, "energy": 1.0}

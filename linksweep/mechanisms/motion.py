@@ -32,8 +32,8 @@ class CrankDriven(ByContent):
     """A mechanism whose crank turns as the scene says.
 
     `motion` are the words of a scene that it takes besides gravity; the first must be given, `defaults` stand for the
-    others. `position` says what the index is, `spot` names a value of it in a sentence. `round_trip` says what the
-    status of peaks tells, with `round_meanings` for 0, 1, 2 and 3.
+    others. `position` says what the index is, `spot` names a value of it in a sentence, `pace` is the quantity that its
+    rate goes with. `round_trip` says what the status of peaks tells, with `round_meanings` for 0, 1, 2 and 3.
     """
 
     branch: str
@@ -42,6 +42,7 @@ class CrankDriven(ByContent):
     period: ClassVar[float] = 360.0
     position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
     spot: ClassVar[str] = "crank angle"
+    pace: ClassVar[str] = "omega2"
     motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
     defaults: ClassVar[Mapping[str, str]] = {"drive": "crank"}
     profiles: ClassVar[Mapping[str, float]] = {}

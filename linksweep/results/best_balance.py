@@ -46,12 +46,13 @@ MOST = Rule("mass", above=0.0)
 
 class Aim(NamedTuple):
     """A size to be made small: its samples (component, angle) are `base + change @ added`, `added` being m, mx, my and
-    J that the counterweights add to each link."""
+    J that the counterweights add to each link; each is a `share` of the cycle's time."""
 
     word: str
     weight: float
     base: Array
     change: Array
+    share: Array
 
     def samples(self, added: Array) -> Array:
         return self.base + self.change @ added
@@ -59,7 +60,7 @@ class Aim(NamedTuple):
     def size(self, added: Array) -> float:
         """Largest magnitude, or root mean square."""
         squares = (self.samples(added) ** 2).sum(axis=0)
-        return float(np.sqrt(squares.max() if self.word == "peak" else squares.mean()))
+        return float(np.sqrt(squares.max() if self.word == "peak" else (squares * self.share).sum()))
 
 
 def best_counterweights(
@@ -76,7 +77,7 @@ def best_counterweights(
     ----------
     scene : Scene of one design, without friction
     minimize : weights of what is to be small, {"F32_peak": 1.0, "T12_ripple": 0.5, "Fs_rms": 1.0, "Ms_peak": 0.2}: of
-        a quantity its `_peak` (largest magnitude), `_rms`, or `_ripple` (root mean square about its mean)
+        a quantity its `_peak` (largest magnitude), `_rms` over time, or `_ripple` (root mean square about its mean)
     radius : where the counterweights sit [m]: a number for all links on ground pins, or one for each link that may have
         one, {"crank": 0.05}
     most : largest mass [kg], a number or one for each of these links; by default as large as it takes
@@ -151,14 +152,17 @@ def _aims(
     found, cycle = regressor(scene, names, theta2, threads), sweep(scene, theta2, names, threads=threads)
     labels = [f"{link}.{word}" for link in links for word in OF_LINK]
     there = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
+    share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[there]
+    share = share / share.sum()
     aims = []
     for (name, word), weight in wanted.items():
         base = np.stack([_over_angles(cycle[part], cycle)[there] for part in components[name]])
         rows = [_over_angles(found[part].sel(parameter=labels), cycle)[there] for part in components[name]]
         change = np.stack(rows)
         if word == "ripple":
-            base, change = base - base.mean(axis=1, keepdims=True), change - change.mean(axis=1, keepdims=True)
-        aims.append(Aim(word, weight, base, change))
+            base = base - (base * share).sum(axis=1, keepdims=True)
+            change = change - (change * share[:, None]).sum(axis=1, keepdims=True)
+        aims.append(Aim(word, weight, base, change, share))
     return aims
 
 
@@ -199,13 +203,13 @@ def _norm(aim: Aim, added: Array, power: float) -> float:
         return aim.size(added)
     magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
     largest = float(magnitude.max()) or 1.0
-    return largest * float(((magnitude / largest) ** power).mean() ** (1.0 / power))
+    return largest * float(((magnitude / largest) ** power * aim.share).sum() ** (1.0 / power))
 
 
 def _weighted(aim: Aim, added: Array, scale: float, power: float) -> Array:
     """Rows (change | −base) whose sum of squares has the gradient of the norm's square."""
     magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
-    weights = np.full(magnitude.shape, scale / np.sqrt(len(magnitude)))
+    weights = scale * np.sqrt(aim.share)
     norm = _norm(aim, added, power)
     if aim.word == "peak" and norm > 0.0:
         weights = weights * (magnitude / norm) ** (0.5 * power - 1.0)

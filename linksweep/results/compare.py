@@ -11,11 +11,16 @@ import xarray as xr
 from linksweep.mechanisms.validate import refuse
 from linksweep.results.bearings import joined
 from linksweep.results.compute import quantity_problems, require_scene
+from linksweep.results.over_time import mean_over_time
 from linksweep.results.record import origin_attributes
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
-SIZES = {"peak": "largest magnitude", "rms": "root mean square", "ripple": "root mean square about its mean"}
+SIZES = {
+    "peak": "largest magnitude",
+    "rms": "root mean square over time",
+    "ripple": "root mean square over time about its mean",
+}
 
 
 def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: int | None = None) -> xr.Dataset:
@@ -63,8 +68,8 @@ def _sizes(cycle: xr.Dataset, wanted: list[tuple[str, str]]) -> dict[str, xr.Dat
     found = {}
     for name, word in wanted:
         signal = cycle[name].broadcast_like(cycle["theta2"])
-        signal = signal - signal.mean("theta2") if word == "ripple" else signal
-        size = abs(signal).max("theta2") if word == "peak" else np.sqrt((signal * signal).mean("theta2"))
+        signal = signal - mean_over_time(signal, cycle) if word == "ripple" else signal
+        size = abs(signal).max("theta2") if word == "peak" else np.sqrt(mean_over_time(signal * signal, cycle))
         found[f"{name}_{word}"] = xr.DataArray(size)
     return found
 

@@ -12,7 +12,7 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.superpose import superposed
 from linksweep.mechanisms.validate import name_problems, refuse
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.scene import Scene
+from linksweep.scene.scene import Inputs, Scene
 
 
 def requested(path: str, names: Any) -> list[str]:
@@ -64,6 +64,13 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     """Whether each design can be assembled at every angle (0), at some (1) or at none (2)."""
     at_one = crank_grid(1, scene.period, scene.mechanism.index)
     return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
+
+
+def changing_pace(scene: Scene, inputs: Inputs) -> tuple[str, ...]:
+    """The quantity that says how fast the index runs, where that changes on the way round; else none."""
+    request = plan(scene.table, (scene.mechanism.pace,), inputs.forms)
+    changes = scene.mechanism.index in request.dims(request.outputs[scene.mechanism.pace])
+    return (scene.mechanism.pace,) if changes else ()
 
 
 def surely_ok(scene: Scene) -> bool:

@@ -11,6 +11,8 @@ from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.validate import refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.peaks import peaks
+from linksweep.results.quadrature import cycle_time
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
@@ -24,10 +26,10 @@ class Entry(NamedTuple):
 
 
 ENTRIES = (
-    Entry("effort_mean", "{drive}_mean", "mean over the cycle of the drive's torque or force"),
-    Entry("effort_rms", "{drive}_rms", "root mean square over the cycle of the drive's torque or force"),
+    Entry("effort_mean", "{drive}_mean", "mean over time of the drive's torque or force"),
+    Entry("effort_rms", "{drive}_rms", "root mean square over time of the drive's torque or force"),
     Entry("effort_peak", "{drive}_peak", "largest magnitude of the drive's torque or force"),
-    Entry("power_mean", "power_mean", "mean power of the drive"),
+    Entry("power_mean", "power_mean", "mean power of the drive over time"),
     Entry("power_max", "power_max", "largest power that the drive feeds"),
     Entry("power_min", "power_min", "least power of the drive; negative where the mechanism drives it"),
     Entry("work", "power_mean", "work of the drive in a cycle", work=True),
@@ -47,7 +49,7 @@ def duty(scene: Scene, threads: int | None = None) -> xr.Dataset:
 
     Parameters
     ----------
-    scene : Scene of a machine whose crank turns steadily: omega2 is not 0 and does not change with theta2
+    scene : Scene of a machine whose crank turns in one direction: omega2 is nowhere 0
     threads : at most so many (default: all cores)
 
     Returns
@@ -58,13 +60,14 @@ def duty(scene: Scene, threads: int | None = None) -> xr.Dataset:
     - `power_mean`, `power_max`, `power_min` [W]
     - `work`, `work_fed`, `work_regenerated` [J] in a cycle: of one turn, or two of a four-stroke engine; `work` is
       `work_fed` less `work_regenerated`
-    - `work_of_loads`, and of a slider-crank `work_of_friction` [J]; with `work` they add up to 0 where alpha2 is 0
+    - `work_of_loads`, and of a slider-crank `work_of_friction` [J]; with `work` they add up to 0 where alpha2 is that
+      of omega2
     - `status` as in `peaks`; where a revolution is not whole, there is no work of a cycle (NaN)
 
     Raises
     ------
     ValueError
-        For a car in a loop, and a crank that stands still or changes its speed.
+        For a car in a loop, and a crank that stands still or turns back.
 
     Examples
     --------
@@ -74,14 +77,14 @@ def duty(scene: Scene, threads: int | None = None) -> xr.Dataset:
     ('J', True)
     """
     require_scene(scene)
-    refuse(steady_problems(scene))
+    refuse(turning_problems(scene))
     drive = scene.mechanism.drives[scene.drive]
     entries = (*ENTRIES, LOSS) if "friction_power" in scene.table.quantity else ENTRIES
     sources = {entry.source.format(drive=drive): entry for entry in entries}
     wanted = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
     found = peaks(scene, of=list(dict.fromkeys(wanted)), threads=threads)
-    period = np.radians(scene.period) / abs(scene.omega2)
-    variables = {entry.name: _value(entry, found[entry.source.format(drive=drive)], period) for entry in entries}
+    time = cycle_time(scene, threads)
+    variables = {entry.name: _value(entry, found[entry.source.format(drive=drive)], time) for entry in entries}
     whole = found["status"] == 0
     for entry in entries:
         if entry.work and not bool(whole.all()):
@@ -95,12 +98,23 @@ def _value(entry: Entry, found: xr.DataArray, time: Any) -> xr.DataArray:
     return value.assign_attrs(units="J" if entry.work else found.units, long_name=entry.long_name)
 
 
-def steady_problems(scene: Scene) -> list[str]:
-    """Why a scene has no crank that turns steadily."""
+def turning_problems(scene: Scene) -> list[str]:
+    """Why a scene has no crank that turns in one direction."""
     kind = type(scene.mechanism).__name__
     if kind == LoopTrack.__name__:
         return [f"scene.mechanism is a {kind}, which has no crank"]
-    omega2, index = scene.omega2, scene.mechanism.index
-    if (callable(omega2) and not hasattr(omega2, "dims")) or index in getattr(omega2, "dims", ()):
-        return [f"omega2 changes with {index}: a mean over the cycle takes a steady crank; give its mean speed"]
-    return ["omega2 = 0 rad/s: must turn; give the speed of the crank"] if np.any(np.equal(omega2, 0.0)) else []
+    grid = crank_grid(round(2.0 * scene.period), scene.period, scene.mechanism.index)
+    omega2 = scene.at(grid).omega2 if scene.changes_speed else scene.omega2
+    if np.any(np.equal(omega2, 0.0)):
+        return ["omega2 = 0 rad/s: must turn; give the speed of the crank"]
+    if scene.changes_speed and np.any(omega2.min(grid.dim) * omega2.max(grid.dim) < 0.0):
+        return [f"omega2: changes its sign over {grid.dim}: such a crank does not come round; give one sign"]
+    return []
+
+
+def steady_problems(scene: Scene) -> list[str]:
+    """Why a scene has no crank that turns steadily."""
+    if scene.changes_speed:
+        index = scene.mechanism.index
+        return [f"omega2: changes with {index}, but its flywheel makes the speed change; give the mean speed"]
+    return turning_problems(scene)

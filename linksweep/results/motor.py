@@ -11,6 +11,7 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import Number, Rule, number_problems, refuse, said
 from linksweep.results.compute import require_scene
+from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -90,7 +91,7 @@ def motor_load(
     - `available_torque` [N m]: the most that the motor gives at that speed
     - `torque_margin` [N m]: available less |motor_torque|; negative where the motor is too weak
     - `reflected_inertia` [kg m²]: the rotor's inertia as the driven link feels it, inertia·ratio²
-    - `motor_torque_rms` [N m]: root mean square over the angles, what heats the motor
+    - `motor_torque_rms` [N m]: root mean square over time, what heats the motor
 
     Raises
     ------
@@ -127,7 +128,7 @@ def motor_load(
         "available_torque": (available, "N m", "the most torque that the motor gives at its speed"),
         "torque_margin": (available - abs(needed), "N m", "available torque less that needed"),
         "reflected_inertia": (xr.DataArray(motor.inertia * ratio**2), "kg m2", "rotor inertia at the driven link"),
-        "motor_torque_rms": (np.sqrt((needed**2).mean(index)), "N m", "rms of the motor's torque"),
+        "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
     }
     variables = {name: v.assign_attrs(units=unit, long_name=words) for name, (v, unit, words) in made.items()}
     attributes = cycle.attrs | {"command": "linksweep.motor_load(scene, ...)"}

@@ -33,9 +33,9 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
 
     Returns
     -------
-    Dataset with the dim `order` (0, 1, 2, … n; 0 is the mean) in place of theta2. For each signal `Fsx_amplitude`
-    and, in its unit, the coefficients `Fsx_cos`, `Fsx_sin`; and `Fsx_phase` [degree], the angle k·θ2 at which
-    the order is largest. Where a sample is not ok, that design's orders are NaN.
+    Dataset with the dim `order` (0, 1, 2, … n; 0 is the mean over theta2) in place of theta2. For each signal
+    `Fsx_amplitude` and, in its unit, the coefficients `Fsx_cos`, `Fsx_sin`; and `Fsx_phase` [degree], the angle k·θ2 at
+    which the order is largest. Where a sample is not ok, that design's orders are NaN.
 
     Raises
     ------

@@ -15,6 +15,8 @@ from linksweep.engine.writer import Reduction
 from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
 from linksweep.results.compute import (
     assembly_of,
+    changing_pace,
+    compute,
     only_where,
     planned,
     quantity_problems,
@@ -26,6 +28,7 @@ from linksweep.results.exact import Found, exact_peaks, peaks_where
 from linksweep.results.lazy import by_blocks
 from linksweep.results.quadrature import Power, means
 from linksweep.results.record import design_coordinates, flags, plain, provenance, variable
+from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
@@ -61,9 +64,9 @@ def peaks(
     Parameters
     ----------
     scene : Scene
-    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over the revolution, "F32_bound" how
-        much larger the peak could be than what was found, "F32_samples" how many crank angles were looked at. Default:
-        all pins and the torque
+    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much
+        larger the peak could be than what was found, "F32_samples" how many crank angles were looked at. Default: all
+        pins and the torque
     theta2 : None; or a count of angles, or any array of angles [degree], for the largest of these samples instead
     threads : at most so many (default: all cores); the numbers do not depend on it
     solver : "fast" or, with theta2, "superposed", as in `linksweep.sweep`
@@ -175,15 +178,36 @@ def _of_samples(
     exact = [f"{item.quantity.name}_{item.summary}" for item in wanted if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
     largest = {s: Reduction("largest_sample", s) for item in wanted for s in item.signals}
-    averages = {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for item in wanted for p in item.powers}
+    powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
+    pace = changing_pace(sampled, sampled.inputs)
+    averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
     request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
-    reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
+    reduced = {}
+    if reductions:
+        reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
     found = {}
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
         found[signal] = Found(value, angle, value, value)
-    return found, {power: reduced[reduction][0] for power, reduction in averages.items()}
+    means = {power: reduced[reduction][0] for power, reduction in averages.items()}
+    return found, means | (_over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {})
+
+
+def _over_time(
+    sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, threads: int | None, solver: str
+) -> Averages:
+    """Means of a grid's samples, each for the time that it stands for."""
+    names = tuple(dict.fromkeys([name for name, _ in powers] + [pace]))
+    fields, averages = compute(sampled, grid, names, threads, solver=solver), {}
+    for name, power in powers:
+        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*fields[name].dims, *fields[pace].dims})
+        value, speed = laid(fields[name], dims), np.abs(laid(fields[pace], dims))
+        with np.errstate(all="ignore"):
+            known = ~np.isnan(value / speed)
+            total, time = np.where(known, value**power / speed, 0.0), np.where(known, 1.0 / speed, 0.0)
+            averages[name, power] = Field(dims[:-1], total.sum(axis=-1) / time.sum(axis=-1))
+    return averages
 
 
 def _angles_missing(scene: Scene) -> list[str]:
@@ -256,10 +280,10 @@ def _named(
     name, units, said = quantity.name, quantity.units, quantity.long_name
     largest = [found[signal] for signal in item.signals]
     if summary == "mean":
-        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over the revolution of: {said}"
+        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over time of: {said}"
     elif summary == "rms":
         mean_square = averages[item.powers[0]]
-        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over the revolution of: {said}"
+        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over time of: {said}"
     elif summary == "bound":
         bound = _map(_largest, *(_bound(peak, quantity) for peak in largest))
         yield f"{name}_bound", bound, units, f"how much larger the peak could be of: {said}"

@@ -1,24 +1,31 @@
-"""Means over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
+"""Integrals over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
 
-The revolution is cut at jumps and, more densely, about the pinches; a piece is halved until its two rules agree. One
-that never does reaches to where the quantity grows without bound, and so fast that it has no mean: that is infinite.
-Where a quantity is not known (jammed, off the track) it is left out, of the mean as of the length. Arcs are followed
-by x with θ2 = middle + half·sin x, as in `linksweep.results.paths`.
+The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree. One
+that never does reaches to where the integrand grows without bound, and so fast that it has no integral: that is
+infinite. Where a quantity is not known (jammed, off the track) it is left out, of a mean also as to the time. Arcs are
+followed by x with θ2 = middle + half·sin x, as in `linksweep.results.paths`.
+
+    mean of q over time = ∫ q dt / ∫ dt,        dt = dθ2/|ω2|        (a car in a loop: dθ/|v|)
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+import xarray as xr
 
 from linksweep.engine.run import Field
 from linksweep.results.between import Array, Group, empty, groups
+from linksweep.results.compute import changing_pace
 from linksweep.results.paths import Paths, arcs, turns
 from linksweep.scene.scene import Scene
 
 Power = tuple[str, int]
 """A quantity and the power whose mean is wanted."""
+Key = TypeVar("Key")
 
 HALVINGS = 45
 TOLERANCE = 1e-12
@@ -69,8 +76,15 @@ class Pieces(NamedTuple):
         return Pieces(np.tile(self.path, 2), np.append(self.start, middle), np.append(middle, self.end))
 
 
+class Integrand(NamedTuple):
+    """What is integrated: a function of the values of some quantities, 0 where these are not known."""
+
+    names: tuple[str, ...]
+    height: Callable[..., Array]
+
+
 class Rules(NamedTuple):
-    """Integrals (row, piece) by both rules, and of the magnitude; rows: a power and its known length, in turn.
+    """Integrals (row, piece) by both rules, and of the magnitude; a row for each integrand.
 
     `blur` is what the last digit of the angle makes of an integral: as much as the rows go up and down.
     """
@@ -82,37 +96,76 @@ class Rules(NamedTuple):
 
 
 def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
-    """Means of powers of quantities over the revolution, for every design; NaN where no angle is ok."""
-    names = tuple(dict.fromkeys(name for name, _ in powers))
-    fields = empty(scene, names)
-    found = {power: Field(fields[power[0]].dims, fields[power[0]].values.copy()) for power in powers}
+    """Means over time of powers of quantities, for every design; NaN where no angle is ok."""
+    pace = changing_pace(scene, scene.at_one_angle.inputs)
+    weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
+    times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
+    found = integrals(scene, weighted | times, threads=threads)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = {power: found[power, True].values / found[power, False].values for power in powers}
+    return {power: Field(found[power, True].dims, values) for power, values in mean.items()}
+
+
+def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
+    return np.where(np.isfinite(value / pace), value**power / np.abs(pace), 0.0)
+
+
+def _time(value: Array, pace: Array | float = 1.0) -> Array:
+    """Time that a small angle takes, over that angle, where the value is known."""
+    return np.where(np.isfinite(value / pace), 1.0 / np.abs(pace), 0.0)
+
+
+def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
+    """Time that the crank takes for the whole cycle [s]."""
+    if not scene.changes_speed:
+        return xr.DataArray(np.radians(scene.period) / abs(scene.omega2))
+    time = Integrand((scene.mechanism.pace,), lambda pace: np.radians(1.0) / abs(pace))
+    (field,) = integrals(scene, {"time": time}, threads).values()
+    return xr.DataArray(field.values, dims=field.dims)
+
+
+def integrals(scene: Scene, integrands: Mapping[Key, Integrand], threads: int | None = None) -> dict[Key, Field]:
+    """Integrals over the crank angle [degree] of the whole cycle, for every design; NaN where no angle is ok."""
+    names = tuple(dict.fromkeys(name for integrand in integrands.values() for name in integrand.names))
+    found = {key: _nothing(scene, integrand.names) for key, integrand in integrands.items()}
     for group in groups(scene, (*names, "assembly")):
         (assembly,) = group.constants("assembly")
         for kind, paths_of in ((1.0, arcs), (0.0, turns)):
             if np.any(assembly == kind):
                 part = group.some(assembly == kind)
-                _put(part, found, paths_of(part), threads)
+                _put(part, found, integrands, paths_of(part), threads)
     return found
 
 
-def _put(group: Group, found: dict[Power, Field], paths: Paths, threads: int | None) -> None:
+def _nothing(scene: Scene, names: tuple[str, ...]) -> Field:
+    """NaN for every design that one of these quantities tells from others."""
+    fields, sizes = empty(scene, names).values(), scene.at_one_angle.inputs.sizes
+    dims = tuple(dict.fromkeys(dim for field in fields for dim in field.dims))
+    return Field(dims, np.full(tuple(sizes[dim] for dim in dims), np.nan))
+
+
+def _put(
+    group: Group,
+    found: Mapping[Key, Field],
+    integrands: Mapping[Key, Integrand],
+    paths: Paths,
+    threads: int | None,
+) -> None:
     if not len(paths.row):
         return
     with np.errstate(invalid="ignore"):  # without bound both ways: NaN
-        integrals = _integrals(group, tuple(found), paths, threads)
-    for k, field in enumerate(found.values()):
-        total, length = _by_owner(integrals[2 * k : 2 * k + 2], paths.row, len(group.designs))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            mean = total / length
-        field.values[tuple(group.places[dim] for dim in field.dims)] = mean if field.dims else mean[0]
+        along = _integrals(group, tuple(integrands.values()), paths, threads)
+        totals = _by_owner(along, paths.row, len(group.designs))
+    for field, total in zip(found.values(), totals, strict=True):
+        field.values[tuple(group.places[dim] for dim in field.dims)] = total if field.dims else total[0]
 
 
-def _integrals(group: Group, powers: tuple[Power, ...], paths: Paths, threads: int | None) -> Array:
-    """For each power the integral over each path, and the length over which it is known, row by row."""
+def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, threads: int | None) -> Array:
+    """Integrals (integrand, path) over each path."""
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
-    done = np.zeros((2 * len(powers), count))
+    done = np.zeros((len(integrands), count))
     for _ in range(HALVINGS):
-        rules = _rules(group, powers, paths, pieces, threads)
+        rules = _rules(group, integrands, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
         rest = _burst(rules, _disagree(rules, scale[:, pieces.path]), scale, pieces.path)
         settled = ~rest.any(axis=0)
@@ -160,23 +213,21 @@ def _first_pieces(paths: Paths) -> Pieces:
     return Pieces(path, paths.cuts[:, :-1].ravel(), paths.cuts[:, 1:].ravel())
 
 
-def _rules(group: Group, powers: tuple[Power, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:
+def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:
     middle, half = 0.5 * (pieces.start + pieces.end), 0.5 * (pieces.end - pieces.start)
     x = (middle[:, None] + half[:, None] * POINTS).ravel()
     path = np.repeat(pieces.path, len(POINTS))
-    names = tuple(dict.fromkeys(name for name, _ in powers))
+    names = tuple(dict.fromkeys(name for integrand in integrands for name in integrand.names))
     values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x), threads), strict=True))
-    rows = []
-    for name, power in powers:
-        known = np.isfinite(values[name])
-        rows += [np.where(known, values[name], 0.0) ** power, known]
+    with np.errstate(all="ignore"):  # what is not known has a height of 0
+        rows = [integrand.height(*(values[name] for name in integrand.names)) for integrand in integrands]
     heights = np.stack(rows).reshape(len(rows), len(half), len(POINTS))
     blur = LAST_DIGIT * np.abs(np.diff(heights, axis=-1)).sum(axis=-1)
     samples = heights * paths.stretch(path, x).reshape(-1, len(POINTS)) * half[:, None]
     # no matrix products: how they sum, and so the last bit, depends on how many pieces there are
-    outer, inner, size = ((part * weights).sum(axis=-1) for part, weights in _weighted(samples))
+    outer, inner, size = ((part * weights).sum(axis=-1) for part, weights in _by_rules(samples))
     return Rules(outer, inner, size, blur)
 
 
-def _weighted(samples: Array) -> tuple[tuple[Array, Array], ...]:
+def _by_rules(samples: Array) -> tuple[tuple[Array, Array], ...]:
     return (samples, OUTER), (samples, INNER), (np.abs(samples), OUTER)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
 from linksweep.results.check import check
-from linksweep.results.duty import duty, steady_problems
+from linksweep.results.duty import duty, steady_problems, turning_problems
 from linksweep.results.flywheel import flywheel
 from linksweep.results.geometry import geometry
 from linksweep.results.peaks import peaks
@@ -84,9 +84,9 @@ def results_of(scene: Scene, part: Range | None = None) -> Results:
     if loop or part is not None:
         return found
     found = found._replace(geometry=geometry(scene))
-    if steady_problems(scene) or not found.whole:
+    if turning_problems(scene) or not found.whole:
         return found
-    return found._replace(duty=duty(scene), flywheel=_flywheel(scene))
+    return found._replace(duty=duty(scene), flywheel=None if steady_problems(scene) else _flywheel(scene))
 
 
 def _angles(first: float, last: float) -> np.ndarray:

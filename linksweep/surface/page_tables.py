@@ -61,7 +61,7 @@ def _where(results: Results, name: str) -> str:
 
 
 def drive(results: Results) -> Markup:
-    """Power; and of a crank that turns steadily, work and flywheel."""
+    """Power; of a crank that comes round, work; and of one that turns steadily, its flywheel."""
     if results.loop:
         return Markup()
     ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.results.balancing import Counterweight
+from linksweep.results.over_time import mean_over_time
 from linksweep.surface import signals
 from linksweep.surface.report import aligned
 
@@ -48,7 +49,8 @@ def bearing_table(found: xr.Dataset) -> str:
 def _summed(found: xr.Dataset, name: str, how: str) -> np.ndarray:
     values = found[name]
     if how:
-        values = getattr(values.broadcast_like(found["theta2"]), how)("theta2")
+        samples = values.broadcast_like(found["theta2"])
+        values = samples.max("theta2") if how == "max" else mean_over_time(samples, found)
     return np.broadcast_to(values.values, found.sizes["pin"]) / MEGA.get(name, 1.0)
 
 

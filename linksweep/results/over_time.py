@@ -1,0 +1,19 @@
+"""Means of samples over time: at equal steps of the crank angle, each stands for the time that the crank takes for it.
+
+mean of q over time = ∑ q/|ω2| / ∑ 1/|ω2|
+"""
+
+from __future__ import annotations
+
+import xarray as xr
+
+
+def mean_over_time(signal: xr.DataArray, cycle: xr.Dataset, index: str = "theta2") -> xr.DataArray:
+    """Mean of a signal over a cycle's samples, of those that are not NaN.
+
+    Where omega2 changes with the index, the cycle has it as a coordinate; a steady crank takes as long for each sample.
+    """
+    speed = cycle.get("omega2")
+    if speed is None or index not in speed.dims:
+        return signal.mean(index)
+    return signal.weighted((1.0 / abs(speed)).fillna(0.0)).mean(index)
