@@ -100,14 +100,18 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
         return count
     for k in range(summits):
         j = flags[k]
-        left, value, right = neighbour(row, j, -1, joined), row[j], neighbour(row, j, 1, joined)
-        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[j])
+        first = j
+        while first > 0 and x[first - 1] == x[j]:
+            first -= 1
+        left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
+        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[first])
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
-            lanes[XA, count], lanes[FA, count] = before[j], left
+            lanes[XA, count], lanes[FA, count] = before[first], left
             lanes[XB, count], lanes[FB, count] = x[j], value
             lanes[XC, count], lanes[FC, count] = after[j], right
             lanes[FAR, count], lanes[TAG, count] = far[j], float(tag)
-            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * (after[j] - before[j]), after[j] - before[j]
+            width = after[j] - before[first]
+            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * width, width
             lanes[FLOOR, count] = floor
             lanes[VERTEX, count] = math.nan
             inner = even and 2 <= j % (n // 2) < n // 2 - 2

@@ -58,6 +58,17 @@ class LineForm(Between):
             Row(planar.along, pull, (f"{name}_tension", *unit)),
             *(Row(planar.opposite, (f"{name}_to_F{axis}",), (f"{name}_from_F{axis}",)) for axis in "xy"),
             Row(springs.resisting_power, (f"{name}_power",), (f"{name}_tension", f"{name}_lengthening")),
+            *self._approach(name, line),
+        ]
+
+    def _approach(self, name: str, line: tuple[str, str]) -> list[Row | Total]:
+        """Where its ends come closest as the crank turns, and how narrow that is."""
+        ratio, (slope, width) = (f"{name}_dux", f"{name}_duy"), approach(name)
+        ends = (*_ratio(f"{name}_to", self.to), *_ratio(f"{name}_from", self.from_))
+        return [
+            Row(planar.difference, ratio, ends),
+            Row(planar.dot, (slope,), (*line, *ratio)),
+            Row(springs.turning_width, (width,), (f"{name}_length", *ratio)),
         ]
 
     def tension(self, name: str) -> Row:
@@ -73,6 +84,11 @@ class LineForm(Between):
             Quantity(f"{name}_tension", "N", f"tension of {self.said(name)}, negative where it pushes its ends apart"),
             Quantity(f"{name}_power", "W", f"power of {self.said(name)}, positive when it feeds the mechanism"),
         ]
+
+
+def approach(name: str) -> tuple[str, str]:
+    """Return the names of l·dl/dθ2, which rises through 0 where the ends come closest, and of the width there."""
+    return f"{name}_approach", f"{name}_width"
 
 
 @dataclass(frozen=True)
@@ -156,6 +172,7 @@ def _end(end: str, body: Body) -> list[Row | Total]:
         Row(planar.turned, arm, (f"{end}_at_x", f"{end}_at_y", *body.axes)),
         Row(planar.vector_sum, (f"{end}_x", f"{end}_y"), (*body.pin_position, *arm)),
         Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *arm)),
+        Row(planar.point_velocity, (f"{end}_ux", f"{end}_uy"), (*body.pin_ratio, body.ratio, *arm)),
         Row(planar.cross, (f"{end}_moment",), (*arm, *force)),
         Row(planar.dot, (f"{end}_power",), (*force, *velocity)),
     ]
@@ -167,6 +184,11 @@ def _position(end: str) -> Pair:
 
 def _velocity(end: str, link: str) -> Pair:
     return (0.0, 0.0) if link == GROUND else (f"{end}_vx", f"{end}_vy")
+
+
+def _ratio(end: str, link: str) -> Pair:
+    """Velocity of an end per rate of the crank."""
+    return (0.0, 0.0) if link == GROUND else (f"{end}_ux", f"{end}_uy")
 
 
 def _line(body: Body | None) -> Pair:

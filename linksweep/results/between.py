@@ -118,6 +118,25 @@ def quantities_at(
     return np.stack([np.broadcast_to(found[name].values, angles.shape) for name in names])
 
 
+Point = tuple[Array, Array]
+"""Angles [degree], and the values of a quantity there."""
+
+
+def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, steps: int) -> Array:
+    """Return angles near which a quantity of these designs crosses 0 between two points, by Illinois's false position.
+
+    Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
+    """
+    (a, f_a), (b, f_b) = start, end
+    for _ in range(steps):
+        x = b - f_b * (b - a) / (f_b - f_a)
+        (f,) = group.values((name,), rows, x)
+        beyond = (f < 0.0) == (f_b < 0.0)
+        a, f_a = np.where(beyond, a, b), np.where(beyond, 0.5 * f_a, f_b)
+        b, f_b = x, f
+    return b
+
+
 def _inputs_at(scene: Scene, grid: Grid) -> tuple[Inputs, Array]:
     """The scene's numbers at the different angles of a grid, and which of these each angle is."""
     if scene.at_one_angle is scene:

@@ -17,9 +17,19 @@ from linksweep.engine.find_peaks import Peak, find_peaks, search_functions
 from linksweep.engine.plan import plan
 from linksweep.engine.run import Field
 from linksweep.engine.search_kernel import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
+from linksweep.results.approaches import with_narrow_approaches
 from linksweep.results.between import Array, Group, Places, empty, groups, in_period
 from linksweep.results.compute import compute, only_where
-from linksweep.results.paths import QUARTER, Paths, about_breaks, arcs, limits, turns
+from linksweep.results.paths import (
+    QUARTER,
+    Paths,
+    about_approaches,
+    about_approaches_on_arcs,
+    about_breaks,
+    arcs,
+    limits,
+    turns,
+)
 from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
@@ -33,6 +43,8 @@ JUMPS_AT_ONCE = 4096
 """Designs whose breaks are looked at together."""
 PLACE = 1e-6
 """How near to the end of a period the angle of a peak counts as its start [degree]: less than it is known to."""
+WHOLLY, PARTLY = 0.0, 1.0
+"""Assembly of a design: at every angle, or at some."""
 PathsOf = Callable[[Group], Paths]
 
 
@@ -54,9 +66,9 @@ def exact_peaks(
         found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
         for group in groups(scene, names):
             (kinds,) = group.constants("assembly")
-            for kind, paths_of in ((0.0, turns), (1.0, arcs)):
+            for kind in (WHOLLY, PARTLY):
                 if np.any(kinds == kind):
-                    _follow(group.some(kinds == kind), found, paths_of, threads)
+                    _follow_all(group.some(kinds == kind), found, _paths(scene, kind), threads)
         return found
     partly = _with_arcs(scene, names, _designs_where(scene, assembly, 1.0))
     found = _fused(scene, signals, threads)
@@ -67,9 +79,19 @@ def exact_peaks(
         whole = _designs_where(scene, assembly, 0.0)
         for group in groups(scene, names, whole, JUMPS_AT_ONCE):
             _follow(group, found, about_breaks, threads)
+    if scene.approaches():
+        narrow = np.intersect1d(with_narrow_approaches(scene, threads), _designs_where(scene, assembly, 0.0))
+        for group in groups(scene, names, narrow):
+            _follow(group, found, about_approaches, threads)
     for group in groups(scene, names, partly):
-        _follow(group, found, arcs, threads)
+        _follow_all(group, found, _paths(scene, PARTLY), threads)
     return found
+
+
+def _paths(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
+    """Return all paths along which designs of one kind of assembly are searched."""
+    along, close = {WHOLLY: (turns, about_approaches), PARTLY: (arcs, about_approaches_on_arcs)}[kind]
+    return (along, close) if scene.approaches() else (along,)
 
 
 def _nothing(field: Field) -> Found:
@@ -144,6 +166,11 @@ class Best(NamedTuple):
     angle: Array
     beyond: Array
     samples: Array
+
+
+def _follow_all(group: Group, found: dict[str, Found], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
+    for paths_of in all_paths:
+        _follow(group, found, paths_of, threads)
 
 
 def _follow(group: Group, found: dict[str, Found], paths_of: PathsOf, threads: int | None) -> None:
@@ -222,7 +249,8 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
     ratio = (lanes[search.XC] - x) / (x - lanes[search.XA])
     promise = search.might_reach(lanes[search.FA], lanes[search.FB], lanes[search.FC], ratio) > peak[tag]
     path = tag // signals
-    return promise & ((paths.ends != "pass") | (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
+    known = (lanes[search.FA] > -np.inf) & (lanes[search.FC] > -np.inf)
+    return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
 
 
 def _kept(lanes: Array, which: Array) -> int:

@@ -13,11 +13,14 @@ import numpy as np
 
 from linksweep.engine.find_peaks import grades
 from linksweep.engine.search import GRADES
-from linksweep.results.between import Array, Group, in_period
+from linksweep.results.approaches import REACH, Approaches, approaches
+from linksweep.results.between import Array, Group, crossing, in_period
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
 PER_ARC = 192
+PER_APPROACH = 5.0
+"""Between the samples of a turn among which closest approaches are looked for [degree]."""
 ASIDE = 1e-9
 """How far beside a jump its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
@@ -72,13 +75,20 @@ def turns(group: Group) -> Paths:
     even = np.broadcast_to(even, (len(group.designs), len(even)))
     pinched = _samples_of_period(group)
     sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
+    close = _cuts_at_approaches(group, _evenly_too(group))
     x, cuts = (
-        np.sort(in_period(np.concatenate(parts, axis=1), period), axis=1)
-        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], jumps))
+        _in_order(in_period(np.concatenate(parts, axis=1), period))
+        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], jumps, close))
     )
     before, after = _neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
     return Paths(np.arange(len(x)), x, before, after, cuts)
+
+
+def _in_order(x: Array) -> Array:
+    """Return places (path, place) in order; in place of those that are not known, the first once more."""
+    x = np.sort(x, axis=1)
+    return np.sort(np.where(np.isnan(x), x[:, :1], x), axis=1)
 
 
 def _neighbours(x: Array, period: float) -> tuple[Array, Array]:
@@ -123,8 +133,8 @@ def _breaks(group: Group) -> Array:
 
 
 def _for_each(group: Group, found: list[Array]) -> Array:
-    """Angles (design, angle); a design with fewer than others has some of its own twice, or angle 0: any does."""
-    return np.nan_to_num(np.stack(found, axis=1)) if found else np.empty((len(group.designs), 0))
+    """Angles (design, angle), NaN where a design has fewer than others."""
+    return np.stack(found, axis=1) if found else np.empty((len(group.designs), 0))
 
 
 def _jumps(group: Group) -> list[Array]:
@@ -144,13 +154,9 @@ def _changes_of_sign(group: Group, name: str) -> Array:
     row, before = np.nonzero((values < 0.0) & (following > 0.0) | (values > 0.0) & (following < 0.0))
     if not len(row):
         return np.empty((0, designs))
-    a, f_a, f_b = angles[row, before], values[row, before], following[row, before]
-    b = a + np.mod(angles[row, (before + 1) % count] - a, group.scene.period)
-    for _ in range(KINK_STEPS):
-        x = b - f_b * (b - a) / (f_b - f_a)
-        (f,) = group.values((name,), row, x)
-        nearer_b = (f < 0.0) == (f_a < 0.0)
-        a, f_a, b, f_b = (np.where(nearer_b, *ends) for ends in ((x, a), (f, f_a), (b, x), (f_b, f)))
+    start = angles[row, before]
+    end = start + np.mod(angles[row, (before + 1) % count] - start, group.scene.period)
+    x = crossing(group, name, row, (start, values[row, before]), (end, following[row, before]), KINK_STEPS)
     nth = np.arange(len(row)) - np.searchsorted(row, row)
     table = np.full((nth.max() + 1, designs), np.nan)
     table[nth, row] = x
@@ -161,9 +167,43 @@ def about_breaks(group: Group) -> Paths:
     """A window about every break of each of these designs, wide enough to reach other samples on both sides."""
     breaks = _breaks(group)
     row = np.repeat(np.arange(len(breaks)), breaks.shape[1])
-    x = breaks.reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE])
+    x = np.nan_to_num(breaks).reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE])
     before, after = _neighbours(x, 2.0 * BESIDE[-1] + 1.0)
     return Paths(row, x, before, after, x, ends="pass")
+
+
+def about_approaches(group: Group) -> Paths:
+    """Return a window about every closest approach of the ends of a spring or damper of each of these designs."""
+    return _windows(approaches(group, _evenly_too(group)))
+
+
+def about_approaches_on_arcs(group: Group) -> Paths:
+    """Return such windows for designs that move over part of a turn."""
+    first, last = limits(group)
+    row, which = np.nonzero(np.isfinite(first))
+    middle, half = 0.5 * (first + last)[row, which], 0.5 * (last - first)[row, which]
+    close = approaches(group.some(row), middle[:, None] + half[:, None] * np.sin(_even_on_arc()))
+    return _windows(close._replace(row=row[close.row]))
+
+
+def _windows(close: Approaches) -> Paths:
+    x = close.samples()
+    before, after = _neighbours(x, 2.0 * REACH + 1.0)
+    return Paths(close.row, x, before, after, x, ends="pass")
+
+
+def _evenly_too(group: Group) -> Array:
+    """Samples (design, sample) of the period [degree], graded about the pinches and even, in order."""
+    even = np.arange(0.0, group.scene.period, PER_APPROACH)
+    even = np.broadcast_to(even, (len(group.designs), len(even)))
+    return np.sort(np.concatenate([_samples_of_period(group), even], axis=1), axis=1)
+
+
+def _cuts_at_approaches(group: Group, angles: Array) -> Array:
+    """Return cuts (design, cut) at the closest approaches between some angles [degree]; NaN where others have more."""
+    if not group.scene.approaches():
+        return np.empty((len(group.designs), 0))
+    return approaches(group, angles).by_design(len(group.designs))[:, ::7]
 
 
 # -------------------------------------------------------------------------------------------------- arcs
@@ -197,24 +237,34 @@ def _ok_somewhere(group: Group, paths: Paths) -> Array:
 def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array]:
     """Samples and cuts in x of arcs, one for each of the group's designs: even ones, and more towards both ends, about
     the pinches that the arc passes, and beside breaks."""
-    even = (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
+    even = _even_on_arc()
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
     given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
-    pinched, sides, jumps = (_on_arc(angles, middle, half) for angles in given)
+    pinched, sides, jumps = (_anywhere_beyond(_on_arc(angles, middle, half)) for angles in given)
     x = np.sort(np.concatenate([shared, pinched, sides], axis=1), axis=1)
+    close = _on_arc(_cuts_at_approaches(group, middle[:, None] + half[:, None] * np.sin(even)), middle, half)
     # none near the ends: what has a mean is smooth there, and rounding spoils what lies nearer
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
-    return x, np.sort(np.concatenate([shared, pinched[:, ::2], jumps], axis=1), axis=1)
+    return x, _in_order(np.concatenate([shared, pinched[:, ::2], jumps, close], axis=1))
+
+
+def _even_on_arc() -> Array:
+    return (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
 
 
 def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
-    """x of angles on arcs; of those beyond, any other places."""
+    """x of angles on arcs; NaN of those beyond."""
     away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
-    anywhere = (np.arange(angles.shape[1]) + 0.3) * (np.pi / (angles.shape[1] + 1)) - QUARTER
     with np.errstate(invalid="ignore"):
         x = np.arcsin(away / half[:, None])
-    return np.where(np.abs(x) < QUARTER - NEAREST, x, anywhere)
+    return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
+
+
+def _anywhere_beyond(x: Array) -> Array:
+    """Return places on arcs with any other ones for those that are not known."""
+    anywhere = (np.arange(x.shape[1]) + 0.3) * (np.pi / (x.shape[1] + 1)) - QUARTER
+    return np.where(np.isnan(x), anywhere, x)
 
 
 def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:

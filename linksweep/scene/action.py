@@ -59,6 +59,11 @@ class Action(ByContent):
         """Return the crank angles [degree] at which its force or torque jumps, kinks or is narrow; NaN for none."""
         return ()
 
+    def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
+        """Return the names of pairs of quantities: one rises through 0 where its force may turn over quickly, the other
+        says within which angle of the crank [rad]."""
+        return ()
+
     def sampled(self, path: str, revolution: Revolution) -> Action:
         """The same with all that changes over the revolution at its angles; itself where nothing does."""
         return self

@@ -219,6 +219,10 @@ class Scene(ByContent):
             every = (*self.mechanism.jumps(), *of_loads)
         return tuple({content(angle): angle for angle in every}.values())  # friction and gas share dead centres
 
+    def approaches(self) -> tuple[tuple[str, str], ...]:
+        """Return the names of pairs of quantities that tell where loads turn over quickly, and how narrow that is."""
+        return tuple(pair for k, load in enumerate(self.loads, 1) for pair in load.approaches(f"load{k}"))
+
     @cached_property
     def at_one_angle(self) -> Scene:
         """The scene at one angle, for what does not depend on it; the scene itself where nothing changes with it."""

@@ -8,7 +8,14 @@ from typing import Any
 
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.spring_forms import GROUND, DamperForm, SpringForm, TorsionDamperForm, TorsionSpringForm
+from linksweep.mechanisms.spring_forms import (
+    GROUND,
+    DamperForm,
+    SpringForm,
+    TorsionDamperForm,
+    TorsionSpringForm,
+    approach,
+)
 from linksweep.mechanisms.validate import Number, Rule, choice_problems, number_problems, parameter, problems, said
 from linksweep.scene.action import Action
 from linksweep.scene.loads import AT
@@ -29,6 +36,9 @@ class _Line(Action):
         found = [problem for at, end in ends.items() for problem in _end_problems(at, end, links)]
         same = [] if found else _same_link(f"{path}.to[1]", self.from_[0], self.to[0])
         return found + same + problems(self, path + ".")
+
+    def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
+        return (approach(name),)
 
     def ends(self, name: str) -> dict[str, Number]:
         """Its ends' numbers: in ground axes from A, or in their links' axes from their first pins."""
