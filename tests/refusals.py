@@ -56,7 +56,7 @@ def refusal(call, *arguments, **options) -> list[str]:
         call(*arguments, **options)
     lines = str(refused.value).split("\n")
     for line in lines:
-        assert re.match(r"[a-z]\w*(\[\d\])?(\.\w+(\[\d\])?)?( = |: | has | is | holds | depends )", line), line
+        assert re.match(r"[a-z]\w*(\[\d\])?(\.\w+(\[\d\])?)*( = |: | has | is | holds | depends )", line), line
         assert " at 0x" not in line
         assert len(line) < 250 or "there are theta3" in line
         assert line == line.strip()

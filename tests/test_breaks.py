@@ -33,7 +33,7 @@ def test_breaks_are_equal_in_any_form_and_shown():
     one, other = pushed(1.0, [10, 20.5]), pushed(1.0, np.array([10.0, 20.5]))
     assert one == other and hash(one) == hash(other)
     assert one != pushed(1.0)
-    assert "breaks=(10, 20.5)" in repr(one)
+    assert "breaks=(10.0, 20.5)" in repr(one)
     assert one.jumps() == (10.0, 20.5)
 
 

@@ -304,7 +304,7 @@ def test_a_motor_on_the_rocker_and_ratios_as_a_design():
     [
         ({"speeds": (0.0, 1.0), "torques": (1.0,)}, "torques has 1 values for 2 speeds"),
         ({"speeds": (1.0, 2.0), "torques": (1.0, 1.0)}, "must grow from 0"),
-        ({"speeds": (0.0, 1.0), "torques": (1.0, -1.0)}, r"torques\[2\] = -1: must be at least 0"),
+        ({"speeds": (0.0, 1.0), "torques": (1.0, -1.0)}, r"torques\[2\] = -1 N m: must be at least 0"),
         ({"speeds": (0.0, 1.0), "torques": (1.0, 1.0), "inertia": -1.0}, "inertia = -1"),
     ],
 )

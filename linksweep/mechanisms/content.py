@@ -1,15 +1,20 @@
-"""Equality by content, also of what holds DataArrays: the same class, the same numbers, the same dims and labels."""
+"""Dataclasses of numbers: float64 whatever they were made of, and equal by content, also where they hold DataArrays."""
 
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from linksweep.mechanisms.conversion import take_numbers
 from linksweep.mechanisms.validate import is_array
 
 
 class ByContent:
-    """A dataclass(frozen=True, eq=False) of this is equal to another of its class that has the same content."""
+    """A dataclass(frozen=True, eq=False) of this has numbers of float64, and is equal to another of its class that has
+    the same content: numbers, dims and labels. One with a `__post_init__` of its own calls this one first."""
+
+    def __post_init__(self) -> None:
+        take_numbers(self)
 
     def __eq__(self, other: object) -> bool:
         return content(self) == content(other) if type(other) is type(self) else NotImplemented
@@ -24,5 +29,5 @@ def content(value: Any) -> Any:
         return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
     if is_array(value):
         labels = [(dim, value[dim].values.tolist()) for dim in value.dims if dim in value.coords]
-        return value.dims, value.astype(float).values.tobytes(), repr(labels)
+        return value.dims, value.values.tobytes(), repr(labels)
     return tuple(map(content, value)) if isinstance(value, tuple | list) else value

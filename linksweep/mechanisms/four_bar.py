@@ -101,6 +101,7 @@ class FourBar(CrankDriven):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         refuse(link_problems(self, *self.links) + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 

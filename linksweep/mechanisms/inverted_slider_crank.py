@@ -152,6 +152,7 @@ class InvertedSliderCrank(CrankDriven):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         refuse(link_problems(self, "crank", "rocker") + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 

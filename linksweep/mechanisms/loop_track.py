@@ -78,6 +78,7 @@ class LoopTrack(ByContent):
     pinch_angle: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         refuse(problems(self))
 
     def always_ok(self, drive: str) -> bool:

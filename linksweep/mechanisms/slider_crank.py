@@ -132,6 +132,7 @@ class SliderCrank(CrankDriven):
     )
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         refuse(link_problems(self, "crank", "rod") + problems(self) + self.branch_problems())
         refuse(self._never_closes())
 

@@ -90,21 +90,10 @@ def problems(owner: Any, prefix: str = "") -> list[str]:
     ]
 
 
-def as_pair(value: Any) -> Any:
-    """A bare array of two numbers as the pair that it can only be; anything else as it is."""
-    return tuple(value.tolist()) if isinstance(value, np.ndarray) and value.shape == (2,) else value
-
-
 def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) -> list[str]:
     if not (isinstance(pair, tuple | list) and len(pair) == 2):
         return [f"{path} = {said(pair)}: must be a pair {meaning}"]
     return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
-
-
-def as_tuple(value: Any) -> Any:
-    """Return a list or a bare row of numbers as a tuple; anything else as it is."""
-    row = isinstance(value, np.ndarray) and value.ndim == 1
-    return tuple(value.tolist() if row else value) if row or isinstance(value, list) else value
 
 
 def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
@@ -117,6 +106,9 @@ def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
 
 
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
+    if is_quantity(value):
+        units = (value.data if is_array(value) else value).units
+        return [f"{path} has the unit {units}: must be {rule.number}, or in a unit of that kind"]
     if is_array(value):
         return _array_problems(path, value, rule)
     if callable(value):
@@ -130,7 +122,7 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
         return [f"{path} = {value}: must be {rule.number}, not a truth value"]
     if isinstance(value, str):
         return [f"{path} = {value!r}: must be {rule.number}, not text; numbers with units stand in scene files"]
-    number = _as_float(value)
+    number = as_float(value)
     if number is None:
         return [f"{path} = {said(value)}: must be {rule.number}, or an xarray.DataArray of them"]
     if rule.broken_by(np.asarray(number)):
@@ -143,14 +135,23 @@ def is_array(value: Any) -> bool:
     return all(hasattr(value, name) for name in ("dims", "coords", "dtype"))
 
 
+def is_quantity(value: Any) -> bool:
+    """Whether a value is a quantity of pint, or an array of them: known by what it can do, since pint is slow to wake.
+
+    Where numbers enter, quantities are converted; one that still is one is of another kind.
+    """
+    data = value.data if is_array(value) else value
+    return all(hasattr(data, name) for name in ("magnitude", "units", "to_root_units"))
+
+
 def is_lazy(value: Any) -> bool:
     """Whether it is an array whose numbers dask is yet to compute: they are checked when it has, not at the door."""
     return getattr(value, "chunks", None) is not None
 
 
-def _as_float(value: Any) -> float | None:
+def as_float(value: Any) -> float | None:
     """A real number as a float, infinite where it is too large for one; None for anything else."""
-    if not isinstance(value, numbers.Real) or isinstance(value, np.timedelta64):
+    if not isinstance(value, numbers.Real) or isinstance(value, bool | np.timedelta64):
         return None
     real: Any = value
     try:

@@ -32,7 +32,6 @@ from linksweep.mechanisms.validate import (
     Number,
     Rule,
     choice_problems,
-    number_problems,
     pair_problems,
     parameter,
     problems,
@@ -41,6 +40,7 @@ from linksweep.mechanisms.validate import (
 )
 from linksweep.results.compute import require_scene
 from linksweep.results.regressor import Placed, mass_of, moments, own_links
+from linksweep.scene.checked_number import checked_number, said_unit_problems
 from linksweep.scene.loads import AT
 from linksweep.scene.scene import Scene
 
@@ -79,12 +79,14 @@ class Counterweight(ByContent):
     inertia: Number = parameter("inertia", 0.0, at_least=0.0)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         named = f'link = {said(self.link)}: must be a name, such as "crank"'
         refuse(
             [named] * (not isinstance(self.link, str))
             + problems(self)
             + pair_problems("at", self.at, AT, "(distance in m, angle in degrees)")
         )
+        refuse(said_unit_problems(self))
 
 
 def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -> Scene:
@@ -191,8 +193,8 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
     slides = isinstance(mechanism, SliderCrank)
     wholly = f"fraction = {said(fraction)}: must be left out, a {kind} is balanced wholly"
     refuse([wholly] if fraction is not None and not slides else [])
-    refuse(number_problems("fraction", fraction, Rule("dimensionless")) if fraction is not None else [])
-    lacking = _lacking(mechanism, 0.5 if fraction is None else fraction)
+    share = checked_number("fraction", 0.5 if fraction is None else fraction, Rule("dimensionless"))
+    lacking = _lacking(mechanism, share)
     radii = by_link("radius", radius, list(lacking))
     return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]
 
@@ -200,13 +202,11 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
 def by_link(word: str, given: Any, links: list[str], rule: Rule = RADIUS) -> dict[str, Number]:
     """A number for each link: one for all, or by name."""
     if not isinstance(given, Mapping):
-        refuse(number_problems(word, given, rule))
-        return dict.fromkeys(links, given)
+        return dict.fromkeys(links, checked_number(word, given, rule))
     by_link = dict(given)
     refuse([p for link in by_link for p in choice_problems(word, link, links)])
     refuse([f"{word}.{link}: missing; give it {rule.number}" for link in links if link not in by_link])
-    refuse([p for link, number in by_link.items() for p in number_problems(f"{word}.{link}", number, rule)])
-    return by_link
+    return {link: checked_number(f"{word}.{link}", number, rule) for link, number in by_link.items()}
 
 
 def _first_moment(link: Any) -> Any:

@@ -35,6 +35,7 @@ from linksweep.mechanisms.validate import (
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import said_unit_problems
 from linksweep.scene.scene import Scene
 
 EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
@@ -90,7 +91,9 @@ class Bearing(ByContent):
     kind: str = "ball"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         refuse(problems(self) + choice_problems("kind", self.kind, EXPONENTS))
+        refuse(said_unit_problems(self))
 
     @property
     def exponent(self) -> float:

@@ -22,12 +22,13 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.quantity import Quantity
-from linksweep.mechanisms.validate import Rule, name_problems, number_problems, refuse, said
+from linksweep.mechanisms.validate import Rule, name_problems, refuse, said
 from linksweep.results.balancing import Counterweight, by_link
 from linksweep.results.compare import sizes_named
 from linksweep.results.compute import require_scene
 from linksweep.results.regressor import OF_LINK, own_links, regressor
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_number
 from linksweep.scene.scene import Scene
 from linksweep.scene.selection import design_sizes
 
@@ -127,8 +128,8 @@ def _wanted(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
     form = 'must be weights by name, as {"F32_peak": 1.0, "T12_ripple": 0.5}'
     refuse([f"minimize = {said(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
     sizes = sizes_named("minimize", scene, minimize)
-    refuse([p for name, weight in minimize.items() for p in number_problems(f"minimize.{name}", weight, WEIGHT)])
-    return dict(zip(sizes, map(float, minimize.values()), strict=True))
+    weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
+    return dict(zip(sizes, map(float, weights), strict=True))
 
 
 def _bounds(most: Any, links: list[str]) -> dict[str, float]:

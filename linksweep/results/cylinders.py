@@ -22,6 +22,7 @@ import xarray as xr
 
 from linksweep.mechanisms import SliderCrank
 from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.conversion import to_float64
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import Rule, is_array, number_problems, refuse, said
 from linksweep.results.record import index_coordinate, origin_attributes
@@ -97,7 +98,7 @@ class MultiCylinder(ByContent):
         value: Any = getattr(self, word)
         if is_array(value) or isinstance(value, str) or not isinstance(value, Iterable):
             return [f"{word} = {said(value)}: must be a list of numbers, one for each cylinder"]
-        numbers = tuple(value)
+        numbers = tuple(to_float64(number, rule.kind) for number in value)
         if word != "crank_angles":
             numbers = numbers or (0.0,) * len(self.crank_angles)
         object.__setattr__(self, word, numbers)

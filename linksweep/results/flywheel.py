@@ -20,10 +20,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import Number, Rule, is_array, number_problems, refuse
+from linksweep.mechanisms.validate import Number, Rule, refuse, said
 from linksweep.results.compute import require_scene
 from linksweep.results.duty import steady_problems
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_number
 from linksweep.scene.scene import Scene
 
 FLUCTUATION = Rule("dimensionless", above=0.0)
@@ -75,6 +76,11 @@ def flywheel(
     """
     require_scene(scene)
     refuse(_problems(scene, fluctuation, inertia))
+    if inertia is None:
+        fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
+        refuse(_too_large(fluctuation))
+    else:
+        inertia = checked_number("inertia", inertia, INERTIA)
     steady = replace(scene, alpha2=0.0)
     cycle = sweep(steady, theta2, outputs=["reduced_torque", "reduced_inertia"])
     index, mean = scene.mechanism.index, abs(scene.omega2)
@@ -102,16 +108,13 @@ def flywheel(
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
     found = steady_problems(scene)
     if (fluctuation is None) == (inertia is None):
-        return [*found, "give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]"]
-    if inertia is None:
-        return found + number_problems("fluctuation", fluctuation, FLUCTUATION) + _too_large(fluctuation)
-    return found + number_problems("inertia", inertia, INERTIA)
+        found.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
+    return found
 
 
-def _too_large(fluctuation: Any) -> list[str]:
+def _too_large(fluctuation: Number) -> list[str]:
     """With 2, the crank would stand still at its least speed."""
-    plain = is_array(fluctuation) or isinstance(fluctuation, int | float)
-    return [f"fluctuation = {fluctuation}: must be less than 2"] if plain and np.any(fluctuation >= 2.0) else []
+    return [f"fluctuation = {said(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
 
 
 def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:

@@ -25,13 +25,14 @@ import xarray as xr
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import as_pair, choice_problems, pair_problems, refuse
+from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.physics import planar
 from linksweep.results.check import check
 from linksweep.results.compute import compute, require_scene
 from linksweep.results.peaks import peaks
 from linksweep.results.record import variable
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_pair
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.loads import AT
 from linksweep.scene.scene import Scene
@@ -174,8 +175,8 @@ def coupler_curve(
     bodies = {body.role: body for body in scene.mechanism.bodies}
     refuse([] if bodies else [f"scene is of a {type(scene.mechanism).__name__}, which has no links: give another"])
     role = next(name for name in ("coupler", "rod", "rocker") if name in bodies) if link is None else link
-    at = as_pair(at)
-    refuse(choice_problems("link", role, bodies) + pair_problems("at", at, AT, "(distance in m, angle in degrees)"))
+    refuse(choice_problems("link", role, bodies))
+    at = checked_pair("at", at, AT, "(distance in m, angle in degrees)")
     body, cycle = bodies[role], sweep(scene, theta2, ["status"], threads=threads)
     k = body.number
     position, velocity, acceleration = (

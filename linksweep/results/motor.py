@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.conversion import all_to_float64, to_float64
 from linksweep.mechanisms.validate import Number, Rule, number_problems, refuse, said
 from linksweep.results.compute import require_scene
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import array_unit_problems, checked_number
 from linksweep.scene.scene import Scene
 
 INERTIA = Rule("inertia", at_least=0.0)
+CURVE = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torque", at_least=0.0)}
 RATIO = Rule("dimensionless", above=0.0)
 EFFICIENCY = Rule("dimensionless", above=0.0)
 DRIVEN = {"T12": 2, "T13": 3, "T14": 4}
@@ -51,16 +54,18 @@ class Motor:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "inertia", to_float64(self.inertia, INERTIA.kind))
         found = number_problems("inertia", self.inertia, INERTIA)
-        curves = [np.asarray(curve, dtype=object).ravel() for curve in (self.speeds, self.torques)]
-        for name, curve in zip(("speeds", "torques"), curves, strict=True):
-            rules = [number_problems(f"{name}[{k}]", value, Rule("dimensionless", at_least=0.0))
-                     for k, value in enumerate(curve.tolist(), 1)]  # fmt: skip
-            found += [problem for problems in rules for problem in problems]
-        if len(curves[0]) != len(curves[1]) or len(curves[0]) < 2:
-            found.append(f"torques has {len(curves[1])} values for {len(curves[0])} speeds: give as many, two at least")
-        elif not found and (curves[0][0] != 0.0 or np.any(np.diff(curves[0].astype(float)) <= 0.0)):
-            found.append(f"speeds = {said(list(curves[0]))}: must grow from 0")
+        for name, rule in CURVE.items():
+            points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
+            found += array_unit_problems(name, getattr(self, name), rule.kind)
+            found += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
+            object.__setattr__(self, name, tuple(points))
+        count = len(self.speeds)
+        if len(self.torques) != count or count < 2:
+            found.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
+        elif not found and (self.speeds[0] != 0.0 or np.any(np.diff(self.speeds) <= 0.0)):
+            found.append(f"speeds = {said(list(self.speeds))}: must grow from 0")
         refuse(found)
 
     def torque_at(self, speed: Any) -> Any:
@@ -113,7 +118,9 @@ def motor_load(
     (True, 0.02)
     """
     require_scene(scene)
-    refuse(_problems(scene, motor, ratio, efficiency))
+    refuse(_problems(scene, motor))
+    ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
+    refuse([f"efficiency = {said(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
     omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
     cycle = sweep(scene, theta2, outputs=[torque, omega, alpha])
@@ -135,12 +142,9 @@ def motor_load(
     return cycle[["status"]].assign(variables).assign_attrs(attributes)
 
 
-def _problems(scene: Scene, motor: Any, ratio: Any, efficiency: Any) -> list[str]:
+def _problems(scene: Scene, motor: Any) -> list[str]:
     found = [] if isinstance(motor, Motor) else [f"motor = {said(motor)}: must be a Motor"]
     torque = scene.mechanism.drives.get(scene.drive)
     if torque not in DRIVEN:
         found.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
-    found += number_problems("ratio", ratio, RATIO) + number_problems("efficiency", efficiency, EFFICIENCY)
-    if not found and np.any(np.asarray(efficiency) > 1.0):
-        found.append(f"efficiency = {said(efficiency)}: must be at most 1")
     return found

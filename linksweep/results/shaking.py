@@ -6,7 +6,8 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms.validate import Rule, as_pair, pair_problems, refuse, said
+from linksweep.mechanisms.validate import Rule, refuse, said
+from linksweep.scene.checked_number import checked_pair
 
 POINT = (Rule("length"), Rule("length"))
 
@@ -40,8 +41,7 @@ def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.Da
     missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
     advice = 'sweep with outputs=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])
-    about = as_pair(about)
-    refuse(pair_problems("about", about, POINT, "(x, y) in m from A"))
+    about = checked_pair("about", about, POINT, "(x, y) in m from A")
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
     where = "the point given" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"
     long_name = f"shaking moment of the moving links' inertia on the ground about {where}, counter-clockwise"

@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
-from linksweep.mechanisms.validate import Rule, number_problems, refuse
+from linksweep.mechanisms.validate import Rule, refuse
 from linksweep.results.between import quantities_at
 from linksweep.results.breakdown import forces_of, has_friction
 from linksweep.results.changed import quantities_with
@@ -25,10 +25,11 @@ from linksweep.results.compute import quantity_problems, requested, require_scen
 from linksweep.results.peaks import peaks
 from linksweep.results.record import design_coordinates
 from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_number
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
-LIMIT = Rule("dimensionless", above=0.0)
+LIMITS = {"N": Rule("force", above=0.0), "N m": Rule("torque", above=0.0)}
 CUTS = 30
 SAMPLES = 720
 CLOSE = 1e-12
@@ -126,7 +127,8 @@ def speed_limit(scene: Scene, of: str, below: float) -> xr.Dataset:
     (name,) = requested("of", of)[:1] or [""]
     refuse(_problems(scene))
     refuse(_branch_problems(scene))
-    refuse([*quantity_problems("of", name, forces_of(scene), scene), *number_problems("below", below, LIMIT)])
+    refuse(quantity_problems("of", name, forces_of(scene), scene))
+    below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = (f"{name}x", f"{name}y") if scene.table.quantity[name].squared else (name,)
     unit_speed = replace(scene, omega2=_one_each(scene))
     squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import xarray as xr
 
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms.bodies import Equation
+from linksweep.mechanisms.conversion import to_float64
 from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.results.compute import blank, compute, require_scene, sample_status
 from linksweep.results.record import cycle_coordinates, index_coordinate, provenance, status_attributes
@@ -94,7 +94,8 @@ def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
 
 def as_angles(theta2: Any) -> Any:
     """Return angles, a single number as one of them: elsewhere it is a count."""
-    return [theta2] if isinstance(theta2, Real) and not isinstance(theta2, bool | np.bool_) else theta2
+    angle = to_float64(theta2, "angle")
+    return [angle] if isinstance(angle, float) else theta2
 
 
 def of_form(scene: Scene, form: str) -> System:

@@ -21,9 +21,10 @@ import xarray as xr
 
 from linksweep.mechanisms import SliderCrank
 from linksweep.mechanisms.content import ByContent
+from linksweep.mechanisms.conversion import all_to_float64
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, said
+from linksweep.mechanisms.validate import Number, as_float, is_lazy, parameter, problems, said
 from linksweep.scene.dimensions import dims_of
 from linksweep.scene.paths import along, bare, numbers
 
@@ -65,7 +66,7 @@ class OttoCycle(ByContent):
 
     @property
     def period(self) -> float:
-        return 180.0 * self.strokes
+        return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
         found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
@@ -114,7 +115,7 @@ class DieselCycle(ByContent):
 
     @property
     def period(self) -> float:
-        return 180.0 * self.strokes
+        return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
         found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
@@ -171,7 +172,7 @@ def _opened(engine: SliderCrank, angles: np.ndarray) -> np.ndarray:
 
 def _labelled(cycle: Cycle, engine: SliderCrank, theta2: Any, turning: Number) -> xr.DataArray:
     """Pressure over crank angles [degree], with all labels."""
-    angles = np.asarray(getattr(theta2, "values", theta2), dtype=float)
+    angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
     pressure = pressure_over(cycle, engine, angles, turning)
     arrays = [number for owner in (cycle, engine) for _, number, _ in numbers(owner)] + [turning]
     labels = {
@@ -200,6 +201,6 @@ def _below(peak: Number, compressed: Number) -> str:
 
 
 def _stroke_problems(path: str, strokes: object) -> list[str]:
-    if isinstance(strokes, int | float) and not isinstance(strokes, bool) and strokes in (2, 4):
+    if as_float(strokes) in (2.0, 4.0):
         return []
     return [f"{path}.strokes = {said(strokes)}: must be 4 or 2"]

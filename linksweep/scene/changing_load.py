@@ -8,7 +8,6 @@ from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.validate import (
     Number,
     Rule,
-    as_tuple,
     choice_problems,
     is_array,
     plain_numbers_problems,
@@ -32,9 +31,8 @@ class ChangingLoad(Action):
         """Those of its numbers that may change over the revolution."""
         raise NotImplementedError
 
-    def take_breaks_and_interpolation(self) -> None:
-        """Take any list as breaks, and the interpolation of the arrays where the load itself has none."""
-        object.__setattr__(self, "breaks", as_tuple(self.breaks))
+    def __post_init__(self) -> None:
+        super().__post_init__()
         if self.interpolation is None:
             object.__setattr__(self, "interpolation", next(iter(self._of_arrays()), None))
 

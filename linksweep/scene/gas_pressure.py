@@ -66,9 +66,6 @@ class GasPressure(ChangingLoad):
 
     in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
 
-    def __post_init__(self) -> None:
-        self.take_breaks_and_interpolation()
-
     @property
     def changing(self) -> tuple[Any, ...]:
         return self.pressure, self.crankcase

@@ -8,14 +8,19 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.run import Grid
+from linksweep.mechanisms.conversion import all_to_float64
 from linksweep.mechanisms.degrees import cos_sin_rests
-from linksweep.mechanisms.validate import said
+from linksweep.mechanisms.validate import refuse, said
+from linksweep.scene.units import unit_problems
 
 NAMES = ("cos2", "sin2", "cos2_rest", "sin2_rest", "radians2")
 
 
 def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
-    """The grid of a count (arange(N)·360/N) or of given angles [degree]. Raises ValueError for anything else."""
+    """The grid of a count (arange(N)·360/N) or of given angles [degree], in degrees or as quantities of pint.
+
+    Raises ValueError for anything else.
+    """
     if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
         if theta2 < 1:
             raise ValueError(f"theta2 = {said(theta2)}: a count of angles must be at least 1")
@@ -29,8 +34,9 @@ def _uniform(count: int, period: float, dim: str) -> Grid:
 
 
 def _angles(theta2: Any) -> np.ndarray:
+    refuse(unit_problems("theta2", getattr(theta2, "attrs", {}).get("units"), "angle"))
     try:
-        angles = np.asarray(getattr(theta2, "values", theta2))
+        angles = np.asarray(all_to_float64(theta2, "angle"))
     except ValueError:  # rows that differ in length
         angles = np.empty(0)
     if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:

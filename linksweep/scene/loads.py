@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from linksweep.mechanisms.actions import LoadForm
+from linksweep.mechanisms.conversion import PAIRS, as_pair
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, Rule, as_pair, choice_problems, pair_problems, parameter, problems
+from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_problems, parameter, problems
 from linksweep.scene.action import Revolution, with_values
 from linksweep.scene.changing_load import ChangingLoad
 
@@ -61,13 +62,12 @@ class Load(ChangingLoad):
     interpolation: str | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "force", as_pair(self.force))
-        object.__setattr__(self, "at", as_pair(self.at))
+        object.__setattr__(self, "force", as_pair(self.force, PAIRS["force"]))
         on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
         if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
             object.__setattr__(self, "force", (self.force, 0.0))
             object.__setattr__(self, "frame", "link")
-        self.take_breaks_and_interpolation()
+        super().__post_init__()
 
     @property
     def changing(self) -> tuple[Any, ...]:

@@ -9,12 +9,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from linksweep.mechanisms.conversion import kinds_of
 from linksweep.mechanisms.validate import is_array
 from linksweep.scene.action import Owner, with_sound, with_values
 from linksweep.scene.dimensions import laid
-
-PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
-"""Kinds of the numbers that come in pairs."""
 
 
 def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
@@ -29,7 +27,7 @@ def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
         elif _has_parts(value):
             yield from numbers(value, "" if item.name == "mechanism" else path + ".")
         elif isinstance(value, tuple | list):
-            kinds = zip(value, _kinds(item.name, value), strict=False)
+            kinds = zip(value, kinds_of(item.name, value), strict=False)
             yield from ((f"{path}[{k}]", number, kind) for k, (number, kind) in enumerate(kinds, 1))
 
 
@@ -79,10 +77,3 @@ def _replaced(value: Any, path: str, values: Mapping[str, Any]) -> Any:
 
 def _has_parts(value: Any) -> bool:
     return is_dataclass(value) and not isinstance(value, type)
-
-
-def _kinds(name: str, value: tuple | list) -> tuple[str, ...]:
-    """Kinds of the items of a pair, or of the end of a spring: a link, then a point of the ground or of the link."""
-    if name in ("from_", "to"):
-        return ("", "length", "length" if value[0] == "ground" else "angle")
-    return PAIRS.get(name, ("",) * len(value))

@@ -62,7 +62,7 @@ def sample(
     refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
     own = free(scene)
     refuse(_problems(scene, parameters, n, method, seed, dim, own))
-    points = _points(method, len(parameters), n, seed)
+    points = _points(method, len(parameters), int(n), seed)
     values, problems = {}, []
     for levels, (path, given) in zip(points, parameters.items(), strict=True):
         try:

@@ -20,7 +20,6 @@ from linksweep.mechanisms.validate import (
     UNITS,
     Number,
     Rule,
-    as_pair,
     choice_problems,
     is_array,
     pair_problems,
@@ -31,13 +30,13 @@ from linksweep.mechanisms.validate import (
 )
 from linksweep.scene.acceleration import acceleration, acceleration_problems
 from linksweep.scene.action import Action, Revolution, with_sound
+from linksweep.scene.checked_number import said_unit_problems
 from linksweep.scene.dimensions import dimension_problems, side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.interpolation import CUBIC
 from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function
 from linksweep.scene.paths import bare, numbers
-from linksweep.scene.units import unit_problems
 
 ACCELERATION = Rule("acceleration")
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
@@ -76,8 +75,9 @@ class Scene(ByContent):
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
     theta2, as a DataArray or a function of theta2 [degree]. One that takes two turns of the crank to come round makes
     the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the parameter's own unit; one
-    that says another in attrs["units"] is refused, not converted. Where one is dask's, results are lazy too, chunk by
-    chunk of the designs, and its values are judged when they are computed.
+    that says another in attrs["units"] is refused, not converted. Quantities of pint, and arrays of them, are
+    converted; numbers of any dtype become float64. Where one is dask's, results are lazy too, chunk by chunk of the
+    designs, and its values are judged when they are computed.
 
     Raises
     ------
@@ -106,11 +106,11 @@ class Scene(ByContent):
     profile: str = ""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         sound = isinstance(self.mechanism, MECHANISMS)
         known = " or ".join(kind.__name__ for kind in MECHANISMS)
         found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
         found += problems(self)
-        object.__setattr__(self, "gravity", as_pair(self.gravity))
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += self._take_motion() if sound else []
         found += self._take_loads()
@@ -118,7 +118,7 @@ class Scene(ByContent):
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
         # omega2 may be asked for as it was given; the loop's speed over theta is not the speed that was given
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
-        refuse(self._unit_problems() + self._interpolation_problems())
+        refuse(said_unit_problems(self) + self._interpolation_problems())
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
     def _take_motion(self) -> list[str]:
@@ -143,11 +143,6 @@ class Scene(ByContent):
         index = self.mechanism.index
         over = [path for path, array in self.arrays.items() if index in array.dims and "omega2" not in self.motion]
         return [f"{path} depends on {index}: it must be the same at every {self.mechanism.spot}" for path in over]
-
-    def _unit_problems(self) -> list[str]:
-        """Arrays that say another unit than that of the parameter that each is."""
-        arrays = [(path, value, kind) for path, value, kind in numbers(self) if path in self.arrays and kind]
-        return [p for path, array, kind in arrays for p in unit_problems(path, array.attrs.get("units"), kind)]
 
     def _interpolation_problems(self) -> list[str]:
         """Arrays that say how they go on between angles, and are none of a load over the angles."""
@@ -192,9 +187,7 @@ class Scene(ByContent):
         """The same as variables that say their unit, without what the user's arrays carry besides."""
         units = {path: UNITS.get(kind, "") for path, _, kind in numbers(self)}
         return {
-            path: xr.Variable(
-                array.dims, array.data.astype(float), {"units": units[path], "long_name": f"parameter {path}"}
-            )
+            path: xr.Variable(array.dims, array.data, {"units": units[path], "long_name": f"parameter {path}"})
             for path, array in self.arrays.items()
         }
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from linksweep.mechanisms.validate import said
+from linksweep.mechanisms.validate import as_float, is_quantity, said
 from linksweep.scene.units import quantity
 
 
@@ -60,7 +60,8 @@ class Normal:
 
         mean = 0.0 if self.mean is None else _value("mean", self.mean, kind)
         deviation = _positive("deviation", _value("deviation", self.deviation, kind))
-        least, most = ndtr((-_positive("within", self.within), self.within))
+        within = _positive("within", self.within)
+        least, most = ndtr((-within, within))
         return mean + deviation * ndtri(least + levels * (most - least))
 
 
@@ -138,7 +139,7 @@ def spread_of(given: Any) -> Spread:
         return given
     if isinstance(given, tuple):
         return _Range(given)
-    if isinstance(given, list) or (isinstance(given, np.ndarray) and given.ndim == 1):
+    if isinstance(given, list) or ((isinstance(given, np.ndarray) or is_quantity(given)) and np.ndim(given) == 1):
         return _Choice(list(given))
     quantiles = getattr(given, "ppf", None) or getattr(given, "icdf", None)
     if quantiles is None or isinstance(given, type):
@@ -165,6 +166,6 @@ def _value(name: str, value: Any, kind: str) -> float:
 
 
 def _positive(name: str, value: Any) -> float:
-    if isinstance(value, int | float) and value > 0.0:
-        return value
+    if (number := as_float(value)) is not None and number > 0.0:
+        return number
     raise ValueError(f"{name} = {said(value)}: must be greater than 0")

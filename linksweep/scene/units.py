@@ -22,10 +22,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
 from importlib.metadata import version
-from numbers import Real
 from typing import Any
 
 from linksweep.engine.cache import keep, recall
+from linksweep.mechanisms.conversion import to_float64
 from linksweep.mechanisms.validate import UNITS, did_you_mean
 
 
@@ -84,7 +84,8 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
     Parameters
     ----------
     value : float or str
-        A number passes through: it is in SI units already. A text is one decimal number, a space, one unit.
+        A number passes through: it is in SI units already; a quantity of pint is converted. A text is one decimal
+        number, a space, one unit.
     kind : str
         What is measured: a key of `KINDS`.
     unit : str, optional
@@ -108,9 +109,10 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
     try:
         if isinstance(value, str):
             return _scaled(*_parted(value.strip().replace("−", "-"), kind), kind)
-        if isinstance(value, bool) or not isinstance(value, Real):
+        number = to_float64(value, kind)
+        if not isinstance(number, float):
             raise ValueError(f'must be a number or a text such as "{KINDS[kind].example}"')
-        return _finite(value) if unit is None else _scaled(repr(_finite(value)), unit, kind)
+        return _finite(number) if unit is None else _scaled(repr(_finite(number)), unit, kind)
     except ValueError as error:
         raise ValueError(f"{shown(value)}: {error}") from None
 

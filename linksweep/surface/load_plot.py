@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.conversion import all_to_float64
 from linksweep.mechanisms.validate import name_problems, refuse
 from linksweep.results.peaks import peaks
 from linksweep.results.speed_limit import speed_limit
@@ -126,7 +127,8 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
     >>> ls.plot.over_speed(ls.example("press"), "F32", speeds=[10, 20, 30, 40, 50], below=500.0).get_xlabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
-    omega2 = xr.DataArray(np.asarray(speeds, dtype=float), dims="omega2")
+    values = np.asarray(all_to_float64(speeds, "angular_velocity"), dtype=float)
+    omega2 = xr.DataArray(values, dims="omega2")
     at_rest = replace(scene, omega2=0.0)
     name = f"{of}_peak"
     found = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]

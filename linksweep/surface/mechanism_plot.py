@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.conversion import to_float64
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -98,7 +99,7 @@ def mechanism(
 
 def _angle(theta2: Any) -> float:
     try:
-        return float(theta2)
+        return float(to_float64(theta2, "angle"))
     except (TypeError, ValueError):
         raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
 
