@@ -86,6 +86,16 @@ def test_loads_and_drive_have_no_say():
     assert ls.position_equation(held, ANGLES).equals(ls.position_equation(scene(**LENGTHS), ANGLES))
 
 
+def test_a_file_of_it_gives_the_whole_scene_back(tmp_path):
+    """With the loads that it needs not, and designs."""
+    push = ls.Load("coupler", force=(0.0, xr.DataArray([-80.0, -90.0], dims="push")), at=(0.1, 15.0))
+    crank = xr.DataArray([0.05, 0.08], dims="crank")
+    heavy = ls.Scene(scene(**LENGTHS | {"a": crank}).mechanism, 30.0, drive="rocker", loads=[push])
+    for whole in (ls.example("press"), heavy):
+        ls.save(ls.position_equation(whole, ANGLES), tmp_path / "page.nc")
+        assert ls.load_scene(tmp_path / "page.nc") == whole
+
+
 def test_other_machines_have_none():
     message = refusal(lambda: ls.position_equation(ls.example("engine"), 45.0))
     assert message == ["scene is of a SliderCrank: must be of a FourBar, whose position equation document 2 has"]

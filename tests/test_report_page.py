@@ -133,6 +133,16 @@ def test_what_is_printed_is_the_number_to_its_digits(press):
             assert read_back(text) == pytest.approx(value, rel=0.03 if "·10" in text else 6e-4, abs=0.051)
 
 
+def test_a_slider_has_its_centre_of_gravity_in_the_table_of_links():
+    """Its number, length, mass, inertia and place."""
+    crank, rod = ls.Bar(0.05, **STEEL), ls.Bar(0.15, **STEEL)
+    for place, said in (((0.0, 0.0), "on its first pin"), ((0.02, 30.0), "20 mm at 30°")):
+        slider = dict(zip(("slider_cg_distance", "slider_cg_angle"), place, strict=True))
+        table = page_inputs.links(ls.Scene(ls.SliderCrank(crank, rod, 0.5, **slider), 30.0))
+        cells = re.findall("<td>(.*?)</td>", str(table).replace("\u202f", " "))
+        assert said in cells
+
+
 def test_inputs_are_as_a_person_writes_them(press):
     found = Page(press)
     links = {row[0][0]: [cell[0].replace("\u202f", " ") for cell in row[1:]] for row in found.sections["Machine"]}

@@ -10,7 +10,7 @@ import xarray as xr
 from linksweep.mechanisms import FourBar
 from linksweep.mechanisms.validate import refuse
 from linksweep.results.compute import compute, require_scene
-from linksweep.results.record import variable
+from linksweep.results.record import provenance, variable
 from linksweep.results.sweep import sweep
 from linksweep.results.system import as_angles
 from linksweep.scene.grid import crank_grid
@@ -82,5 +82,7 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     found = {name: variable(fields[name], "1", formula, order) for name, formula in FORMULAS.items()}
     for name, formula in ROOTS.items():
         page[name].attrs["long_name"] += f"; {formula}"
+    sampled = scene.at(crank_grid(angles, scene.period, mechanism.index))
+    coordinates = {str(name): coordinate.variable for name, coordinate in page.coords.items()}
     command = f"linksweep.position_equation(scene, theta2={theta2})"
-    return xr.Dataset(found).merge(page).assign_attrs(page.attrs | {"command": command})
+    return xr.Dataset(found).merge(page).assign_attrs(provenance(sampled, command, coordinates))
