@@ -47,8 +47,6 @@ RISE = 1e-11
 """What may be left of a peak, relative to it."""
 NOISE = 1e-15
 """What a signal cannot tell from nothing, relative to its largest magnitude."""
-FAR_ABOVE = 1e3
-"""What is so far above all samples, with no number left between its neighbours, is a pole."""
 
 
 def place_halves(far):
@@ -274,15 +272,13 @@ def promise(a, f_a, b, f_b, c, f_c, first_width, floor):
 
 
 def settle(lanes, k, best, tag):
-    """Note what a closed lane has found: a peak, its place, and what may be left of it; or a pole."""
+    """Note what a closed lane has found: a peak, its place, and what may be left of it."""
     height, left, place = lanes[FB, k], lanes[LEFT, k], lanes[XB, k]
     if height < best[PEAK, tag]:
         return
     before, after = place - lanes[XA, k], lanes[XC, k] - place
-    if lanes[DONE, k] == 2.0:  # at a jump, a kink or a pole
+    if lanes[DONE, k] == 2.0:  # at a jump or a kink
         left = height - max(lanes[FA, k], lanes[FC, k])
-        if height > FAR_ABOVE / NOISE * lanes[FLOOR, k]:
-            best[PEAK, tag], left, height = math.inf, 0.0, 0.0
     else:
         rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
         step = 0.5 * (rise * after - fall * before) / (rise + fall)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,3 +25,6 @@ class Finding(NamedTuple):
 
 Findings = Callable[..., dict[str, Finding]]
 """A function of arrays of numbers, broadcast against each other, that returns findings by name."""
+
+Checks = tuple[tuple[Findings, tuple[Any, ...]], ...]
+"""Functions that find something in closed form, and the numbers that each takes."""

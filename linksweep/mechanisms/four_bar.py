@@ -22,8 +22,8 @@ from linksweep.mechanisms.bodies import (
     on_crank_pin,
     position_quantities,
 )
-from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.four_bar_limits import angles, classes
+from linksweep.mechanisms.finding import Checks
+from linksweep.mechanisms.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
     CrankDriven,
@@ -169,10 +169,15 @@ class FourBar(CrankDriven):
             *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque["rocker"]),
         )
 
-    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+    def findings(self) -> Checks:
         """What can be checked in closed form, and the numbers that each takes."""
         lengths = tuple(self.lengths().values())
         return (classes, lengths), (angles, (*lengths, self.ground_angle))
+
+    def dead_centre_findings(self, drive: str) -> Checks:
+        """Where the coupler, or the rocker, stands still."""
+        found = {"coupler": coupler_dead_centres, "rocker": rocker_dead_centres}
+        return ((found[drive], (*self.lengths().values(), self.ground_angle)),) if drive in found else ()
 
     @cached_property
     def closes_everywhere(self) -> bool:
@@ -295,16 +300,17 @@ def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
         "coupler": (("r4x", "r4y", "N4"), "ratio3", dyad_rrr.rrr_coupler_torque),
         "rocker": (("r3x", "r3y", "moment_r3"), "ratio4", dyad_rrr.rrr_rocker_torque),
     }[drive]
-    length = {"coupler": "rocker_length", "rocker": "coupler_length"}[drive]
+    leverage = ("leverage", "crank_length", {"coupler": "rocker_length", "rocker": "coupler_length"}[drive])
     crank, inverse = ("r2x", "r2y", "crank_length", "moment_r2"), "inverse_r4_cross_r3"
     return [
         Row(planar.opposite, ("moment_r3",), ("N3",)),
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
-        Row(dyad_rrr.rrr_driven_pin_force, ("F43x", "F43y", "pull", "push"), (*crank, *free, ratio, inverse)),
-        Row(torque, (FourBar.drives[drive],)),
         Row(dyad_rrr.rrr_leverage, ("leverage",), (ratio, inverse)),
+        Row(crank_driven.away_from_dead_centre, ("driven_ratio",), (ratio, *leverage)),
+        Row(dyad_rrr.rrr_driven_pin_force, ("F43x", "F43y", "pull", "push"), (*crank, *free, "driven_ratio", inverse)),
+        Row(torque, (FourBar.drives[drive],)),
         Row(dyad_rrr.rrr_status, ("closure",)),
-        Row(crank_driven.drive_status, ("status",), ("closure", "leverage", "crank_length", length)),
+        Row(crank_driven.drive_status, ("status",), ("closure", *leverage)),
     ]
 
 

@@ -7,6 +7,10 @@ With φ the angle from the line A→D to the crank, the four-bar closes while (s
 
 so that φ lies between ±φ_folded and ±φ_stretched. With 1 = cos² + sin² each is x·cos²(φ/2) + y·sin²(φ/2) = 0, whose x
 and y factor into sums of lengths: tan(φ/2) = √(−x/y), without the loss that acos has near 0 and 180.
+
+A driven rocker stands still where crank and coupler lie in one line, a driven coupler where crank and rocker are
+parallel. Both times the crank, made longer or shorter by the link in line with it, closes a triangle with d and the
+third link: with g = a ± b and h = c, or g = a ∓ c and h = b, is (d−g−h)(d−g+h) + 4dg·sin²(φ/2) = 0.
 """
 
 from __future__ import annotations
@@ -27,6 +31,12 @@ GRASHOF = (
     "change_point",
 )
 """By the shortest link: crank, ground, coupler, rocker; then no link turns fully; then the borderline between."""
+
+DEAD_CENTRES = {
+    "rocker": ("open_stretched", "open_folded", "crossed_stretched", "crossed_folded"),
+    "coupler": ("open_alike", "open_opposite", "crossed_alike", "crossed_opposite"),
+}
+"""By branch: how the coupler lies to the crank; whether crank and rocker point the same way."""
 
 TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
 
@@ -54,6 +64,38 @@ def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_an
         "arc_end": Finding(end, "crank angle at which it ends (may pass 360)", along=("arc", ())),
         "toggle_angle": Finding(toggles, "coupler and rocker in one line", along=("toggle", TOGGLES)),
     }
+
+
+def rocker_dead_centres(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
+) -> dict[str, Finding]:
+    """Crank angles at which the rocker turns round, and cannot drive."""
+    found = _crank_in_line(a + b, c, d), -_crank_in_line(a - b, c, d)
+    return _dead_centres(found, ground_angle, "rocker", "crank and coupler in one line")
+
+
+def coupler_dead_centres(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
+) -> dict[str, Finding]:
+    """Crank angles at which the coupler does not turn, and cannot drive."""
+    found = _crank_in_line(a - c, b, d), -_crank_in_line(a + c, b, d)
+    return _dead_centres(found, ground_angle, "coupler", "crank and rocker parallel")
+
+
+def _dead_centres(
+    found: tuple[np.ndarray, np.ndarray], ground_angle: np.ndarray, driven: str, said: str
+) -> dict[str, Finding]:
+    """From those of the open branch, of which those of the crossed one are the mirror image."""
+    angle = np.mod(np.stack([*found, *(-one for one in found)], axis=-1) + ground_angle[..., None], 360.0)
+    return {"dead_centre_angle": Finding(angle, said, along=("dead_centre", DEAD_CENTRES[driven]))}
+
+
+def _crank_in_line(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Angle φ in [0, 180] of the module's equation of dead centres; NaN where there is none."""
+    near, far = ((h - d) + g) * ((h + d) - g), ((d - h) + g) * ((d + h) + g)
+    with np.errstate(invalid="ignore"):
+        angle = 2.0 * np.degrees(np.arctan2(np.sqrt(near * np.sign(g)), np.sqrt(far * np.sign(g))))
+    return np.where(g == 0.0, np.nan, angle)
 
 
 class Limits(NamedTuple):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, NamedTuple
@@ -24,8 +23,8 @@ from linksweep.mechanisms.bodies import (
     on_crank_pin,
     position_quantities,
 )
-from linksweep.mechanisms.finding import Findings
-from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres
+from linksweep.mechanisms.finding import Checks
+from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres, rocker_dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
     CrankDriven,
@@ -218,13 +217,14 @@ class InvertedSliderCrank(CrankDriven):
                 row.coefficients[force] = (-factor, name)
         return (*crank, *block, *rocker)
 
-    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+    def findings(self) -> Checks:
         """What can be checked in closed form, and the numbers that each takes."""
         return (classes, self.lengths()), (angles, (*self.lengths(), self.ground_angle))
 
-    def driven_findings(self, motion: Mapping[str, Any]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
-        """The dead centres of a cylinder; a driven rocker's are where it turns round."""
-        return ((dead_centres, (*self.lengths(), self.ground_angle)),) if motion["drive"] == "cylinder" else ()
+    def dead_centre_findings(self, drive: str) -> Checks:
+        """Where the block stands still on its line; where the rocker turns round."""
+        found = {"cylinder": dead_centres, "rocker": rocker_dead_centres}
+        return ((found[drive], (*self.lengths(), self.ground_angle)),) if drive in found else ()
 
     @cached_property
     def closes_everywhere(self) -> bool:
@@ -318,7 +318,7 @@ def _forces(drive: str) -> list[Row | Total]:
 
     Torque or force of the drive come from virtual work, in which block and rocker turn together.
     """
-    unknown, _, ratio, _ = DRIVES[drive]
+    unknown, _, ratio, leverage = DRIVES[drive]
     work = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
     along_line = unknown.name if drive == "cylinder" else 0.0
     return [
@@ -330,9 +330,16 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(crank_driven.rocker_balance, ("F14x", "F14y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
         Row(crank_driven.work_on_crank, ("work",), work),
-        Row(crank_driven.balancing_drive, (unknown.name,), ("work", ratio)),
+        *_driven_ratio(drive),
+        Row(crank_driven.balancing_drive, (unknown.name,), ("work", "driven_ratio" if leverage else ratio)),
         *_status(drive),
     ]
+
+
+def _driven_ratio(drive: str) -> list[Row]:
+    """The driven part's rate per rate of the crank, where there is one that can vanish."""
+    _, _, ratio, leverage = DRIVES[drive]
+    return [Row(crank_driven.away_from_dead_centre, ("driven_ratio",), (ratio, *leverage))] if leverage else []
 
 
 def _normal_force(drive: str, along_line: Source) -> Row:

@@ -62,7 +62,8 @@ def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray
     start = np.where(whole, 0.0, np.mod(toggle + ground_angle, 360.0))
     end = start + np.where(whole, 360.0, 360.0 - 2.0 * toggle)
     toggles = np.mod(np.stack([toggle, -toggle], axis=-1) + ground_angle[..., None], 360.0)
-    reversals = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
+    swings = (a + np.abs(e) < d)[..., None]
+    reversals = np.where(swings, np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0), np.nan)
     return {
         "arc_start": Finding(start[..., None], "crank angle at which the assembled arc starts", along=("arc", ())),
         "arc_end": Finding(end[..., None], "crank angle at which it ends (may pass 360)", along=("arc", ())),
@@ -88,6 +89,12 @@ def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.n
     }
 
 
+def rocker_dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Where the rocker turns round, and cannot drive."""
+    angle = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
+    return {"dead_centre_angle": Finding(angle, "crank square to the rocker's line", along=("dead_centre", REVERSALS))}
+
+
 def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """By how much the crank's two parts of a turn differ from 180°; NaN where it does not turn fully."""
     short, long = np.minimum(a, d), np.maximum(a, d)
@@ -102,7 +109,6 @@ def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
 
 
 def _reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """φ at which the rocker turns round, on a trailing axis; NaN where it does not swing."""
+    """φ with the crank square to the rocker's line, on a trailing axis; NaN where it never is."""
     ahead, behind = arcsine(a - e, d), arcsine(a + e, d)
-    found = np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)
-    return np.where((a + np.abs(e) < d)[..., None], found, np.nan)
+    return np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)

@@ -11,7 +11,7 @@ from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.bodies import Equation
 from linksweep.mechanisms.content import ByContent
-from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.loop_track_limits import events, lap
 from linksweep.mechanisms.motion import OverDesigns, between_rows, straight_rows
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
@@ -117,7 +117,7 @@ class LoopTrack(ByContent):
         """Return the unknowns and rows of the square system as document 3 prints it."""
         return self.unknowns(drive), self.equations(drive)
 
-    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+    def findings(self) -> Checks:
         """Nothing can be said of the loop alone."""
         return ()
 
@@ -131,9 +131,13 @@ class LoopTrack(ByContent):
         """Where the car leaves the track or stalls [rad], from the bottom."""
         return ((events, self._numbers(motion)),)
 
-    def driven_findings(self, motion: Mapping[str, Number]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
+    def driven_findings(self, motion: Mapping[str, Number]) -> Checks:
         """What becomes of the car in one lap."""
         return ((lap, self._numbers(motion)),)
+
+    def output_findings(self) -> Checks:
+        """Nothing is transmitted."""
+        return ()
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("normal_force",)

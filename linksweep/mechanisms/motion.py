@@ -12,7 +12,7 @@ from linksweep.engine.run import Field
 from linksweep.mechanisms.bodies import Equation
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin_rests
-from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.validate import Number, choice_problems
 from linksweep.physics import crank_angle, planar
 
@@ -95,9 +95,17 @@ class CrankDriven(ByContent):
         """More numbers that the physics wires by, which depend on how it is driven."""
         return ()
 
-    def driven_findings(self, motion: Mapping[str, Number]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
-        """What can be checked in closed form of how it is driven."""
+    def dead_centre_findings(self, drive: str) -> Checks:
+        """Where what is driven stands still; a crank never does."""
         return ()
+
+    def output_findings(self) -> Checks:
+        """Where the output stands still: what transmits without end there."""
+        return self.dead_centre_findings("rocker")
+
+    def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
+        """What can be checked in closed form of how it is driven."""
+        return self.dead_centre_findings(motion["drive"])
 
 
 def frame_parameters(name: str, angle: Number) -> dict[str, Number]:

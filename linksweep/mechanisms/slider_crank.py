@@ -24,7 +24,7 @@ from linksweep.mechanisms.bodies import (
     position_quantities,
 )
 from linksweep.mechanisms.degrees import cos_sin_rests
-from linksweep.mechanisms.finding import Findings
+from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
     BRANCH_SIGN,
@@ -36,7 +36,14 @@ from linksweep.mechanisms.motion import (
     turned,
 )
 from linksweep.mechanisms.pins import Pins, rotating
-from linksweep.mechanisms.slider_crank_limits import angles, classes, wedging, wedging_by_crank
+from linksweep.mechanisms.slider_crank_limits import (
+    angles,
+    classes,
+    rod_dead_centres,
+    slider_dead_centres,
+    wedging,
+    wedging_by_crank,
+)
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_crank
@@ -206,18 +213,28 @@ class SliderCrank(CrankDriven):
             *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"),
         )
 
-    def findings(self) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
-        """What can be checked in closed form, and the numbers that each takes."""
-        lengths = (self.crank.length, self.rod.length, self.offset)
-        turned = (*lengths, self.slide_angle)
-        return (classes, lengths), (angles, turned)
+    @property
+    def _lengths(self) -> tuple[Number, Number, Number]:
+        """What decides how it moves: crank, rod, offset."""
+        return self.crank.length, self.rod.length, self.offset
 
-    def driven_findings(self, motion: Mapping[str, Any]) -> tuple[tuple[Findings, tuple[Number, ...]], ...]:
-        """Where friction wedges the slider, by the link whose moment equation is free of the drive."""
+    def findings(self) -> Checks:
+        """What can be checked in closed form, and the numbers that each takes."""
+        return (classes, self._lengths), (angles, (*self._lengths, self.slide_angle))
+
+    def dead_centre_findings(self, drive: str) -> Checks:
+        """Where the rod does not turn."""
+        return ((rod_dead_centres, (*self._lengths, self.slide_angle)),) if drive == "coupler" else ()
+
+    def output_findings(self) -> Checks:
+        """Where the slider turns round."""
+        return ((slider_dead_centres, (*self._lengths, self.slide_angle)),)
+
+    def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
+        """Also where friction wedges the slider, by the link whose moment equation is free of the drive."""
         if motion["drive"] == "coupler":
-            return ((wedging_by_crank, (self.slide_angle, self.friction)),)
-        lengths = (self.crank.length, self.rod.length, self.offset)
-        return ((wedging, (*lengths, self.slide_angle, self.friction)),)
+            return (*super().driven_findings(motion), (wedging_by_crank, (self.slide_angle, self.friction)))
+        return ((wedging, (*self._lengths, self.slide_angle, self.friction)),)
 
     def jumps(self) -> tuple[Number, ...]:
         """Crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
@@ -232,7 +249,7 @@ class SliderCrank(CrankDriven):
 
         NaN in designs that have none. Stretched, C is farthest from A; folded, nearest.
         """
-        a, b, e = self.crank.length, self.rod.length, self.offset
+        a, b, e = self._lengths
         with np.errstate(all="ignore"):  # out of reach: NaN
             stretched, folded = (np.degrees(np.arcsin(np.divide(e, reach))) for reach in (a + b, b - a))
         found: list[Number] = []
@@ -337,7 +354,7 @@ def _forces(drive: str) -> list[Row | Total]:
     }[drive]
     return [
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
-        Row(slider_crank.inverse_or_nan, ("inverse_crank_along",), ("crank_along",)),
+        Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
         Row(slider_crank.friction_direction, ("direction",)),
         Row(

@@ -15,6 +15,12 @@ from linksweep.mechanisms.finding import ASSEMBLY, Finding
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
 """Where the crank's height over the guide is largest, before and past the normal; and where it is least."""
 
+DEAD_CENTRES = ("upper", "lower")
+"""Of a driven rod: by the crank's height over the guide."""
+
+TURNS = ("stretched", "stretched_behind", "folded", "folded_behind")
+"""Of the slider."""
+
 
 def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     """What the lengths alone decide."""
@@ -41,6 +47,22 @@ def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray)
             np.mod(limits + slide_angle[..., None], 360.0), "rod square to the guide", along=("side", SIDES)
         ),
     }
+
+
+def rod_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
+    """Where the rod does not turn, and cannot drive."""
+    angle = np.mod(np.stack([slide_angle + 90.0, slide_angle - 90.0], axis=-1), 360.0)
+    closes = np.abs(np.stack([e - a, e + a], axis=-1)) < b[..., None]
+    said = "crank square to the guide"
+    return {"dead_centre_angle": Finding(np.where(closes, angle, np.nan), said, along=("dead_centre", DEAD_CENTRES))}
+
+
+def slider_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
+    """Where the slider turns round: rod and crank in one line, at sin φ = e/(a ± b), on either branch."""
+    stretched, folded = arcsine(e, a + b), arcsine(e * np.sign(a - b), np.abs(a - b))
+    angle = np.stack([stretched, 180.0 - stretched, folded, 180.0 - folded], axis=-1)
+    angle = np.mod(angle + slide_angle[..., None], 360.0)
+    return {"dead_centre_angle": Finding(angle, "rod and crank in one line", along=("dead_centre", TURNS))}
 
 
 def wedging(

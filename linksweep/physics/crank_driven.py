@@ -76,9 +76,14 @@ def slower_or_work(by_moments: Number, work: Number, ratio: Number, other_ratio:
     return where(abs(ratio) < abs(other_ratio), by_moments, balancing_drive(work, ratio))
 
 
-def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:
-    """The closure's status, or 3 (dead centre) where what is driven stands still and nothing on it can drive.
+def away_from_dead_centre(number: Number, leverage: Number, p: Number, q: Number) -> Number:
+    """The number, or NaN where what is driven stands still.
 
     The leverage is the cross product of the two other links, of lengths p and q.
     """
+    return where(abs(leverage) > NOISE * p * q, number, math.nan)
+
+
+def drive_status(closure: Number, leverage: Number, p: Number, q: Number) -> Number:
+    """The closure's status, or 3 (dead centre) where what is driven stands still and nothing on it can drive."""
     return where(abs(leverage) > NOISE * p * q, closure, where(closure > 0.0, closure, 3.0))

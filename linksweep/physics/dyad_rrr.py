@@ -9,8 +9,6 @@ lose all digits near a toggle. Everything else follows without another subtracti
     r3 × r4 = ±√(low·high)/2
 """
 
-import math
-
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
 from linksweep.physics.crank_driven import slower_or_work
 from linksweep.physics.planar import cross, dot
@@ -101,7 +99,7 @@ def rrr_driven_pin_force(
     the same error.
     """
     across = moment_r2 * (1.0 / (crank_length * crank_length))
-    pull = where(abs(ratio) > 0.0, (across * dot(r2x, r2y, rx, ry) - moment) / ratio, math.nan)
+    pull = (across * dot(r2x, r2y, rx, ry) - moment) / ratio
     along = pull * inverse_r4_cross_r3
     return along * r2x - across * r2y, along * r2y + across * r2x, pull, across
 

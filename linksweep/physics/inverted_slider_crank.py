@@ -10,10 +10,9 @@ close to D. The block stands still on the line where the crank lies along the fr
 whatever the offset.
 """
 
-import math
-
 from linksweep.physics.arithmetic import Number, sqrt, where
 from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
+from linksweep.physics.crank_driven import away_from_dead_centre
 from linksweep.physics.double_double import Pair, add, difference, divide, multiply, two_product, two_sum
 from linksweep.physics.planar import cross, dot
 
@@ -95,9 +94,9 @@ def normal_force_on_block(
     return (N3 + N4 + offset * cylinder_force) * inverse_slide
 
 
-def normal_force_from_crank(moment_r2: Number, crank_along: Number) -> Number:
+def normal_force_from_crank(moment_r2: Number, crank_along: Number, crank_length: Number) -> Number:
     """F43n where the crank's torques are all known and no cylinder drives: r2 × F43 = (r2·u)·F43n."""
-    return where(abs(crank_along) > 0.0, moment_r2 / crank_along, math.nan)
+    return moment_r2 / away_from_dead_centre(crank_along, crank_along, crank_length, 1.0)
 
 
 def slide_arms(Bx: Number, By: Number, rGx: Number, rGy: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:

@@ -11,25 +11,19 @@ are therefore sums of two numbers each.
 
 import math
 
+from linksweep.physics import crank_driven
 from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
 from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
-from linksweep.physics.crank_driven import slower_or_work
 from linksweep.physics.double_double import difference, divide, two_sum
 from linksweep.physics.planar import cross, dot
 
 
 def guide_shares(
-    r2x: Number,
-    r2y: Number,
-    crank_length: Number,
-    offset: Number,
-    guide_cos: Number,
-    guide_sin: Number,
-    pinch_cos: Number,
+    crank_length: Number, offset: Number, pinch_cos: Number, pinch_sin: Number
 ) -> tuple[Number, Number, Number]:
     """The crank's shares along and across the guide, and the rod's share across."""
     crank_across = crank_length * pinch_cos
-    return dot(r2x, r2y, guide_cos, guide_sin), crank_across, offset - crank_across
+    return -(crank_length * pinch_sin), crank_across, offset - crank_across
 
 
 def toggle_cosines(crank_length: Number, rod_length: Number, offset: Number) -> tuple[Number, Number, Number, Number]:
@@ -150,8 +144,9 @@ def no_cycle_status(status: Number, assembly: Number) -> Number:
     return where(assembly > 0.0, where(status > 0.0, status, 5.0), status)
 
 
-def inverse_or_nan(x: Number) -> Number:
-    return where(abs(x) > 0.0, 1.0 / x, math.nan)
+def inverse_lever(crank_along: Number, crank_length: Number) -> Number:
+    """Inverse of the crank's share along the guide; NaN at the dead centres of the driven rod."""
+    return 1.0 / crank_driven.away_from_dead_centre(crank_along, crank_along, crank_length, 1.0)
 
 
 def moment_on_rod(N3: Number) -> Number:
@@ -172,7 +167,7 @@ def torque_on_rod(
 ) -> Number:
     """T13, from r3 × F43 = −N3 − T13 in the guide's axes while the rod turns slowly, then from virtual work."""
     by_moments = -N3 - cross(rod_along, rod_across, rod_force_along, rod_force_across)
-    return slower_or_work(by_moments, work, ratio3, ratio_slider / rod_length)
+    return crank_driven.slower_or_work(by_moments, work, ratio3, ratio_slider / rod_length)
 
 
 def work_on_crank(

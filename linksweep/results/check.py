@@ -37,8 +37,11 @@ def check(scene: Scene) -> xr.Dataset:
     - `friction_to_jam`: the least coefficient of friction that wedges at all
 
     Of an InvertedSliderCrank also `rocker_motion` (swings, turns_fully, limited), `swing` and `reversal_angle` [degree]
-    and `time_ratio` of a rocker that swings; with drive="cylinder" `dead_centre_angle` [degree], where the block stands
-    still, and `slide_at_dead_centre` [m], its least and greatest size.
+    and `time_ratio` of a rocker that swings; with drive="cylinder" `slide_at_dead_centre` [m], its least and greatest
+    size where the block stands still.
+
+    With another drive than the crank, `dead_centre_angle` (dead_centre) [degree], where it stands still and cannot
+    drive, labelled by branch where that decides.
 
     Of a scene that gives both an omega2 that changes with theta2 and alpha2:
 

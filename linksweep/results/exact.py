@@ -30,6 +30,7 @@ from linksweep.results.paths import (
     limits,
     turns,
 )
+from linksweep.results.poles import may_have_poles, poles
 from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
@@ -43,8 +44,8 @@ JUMPS_AT_ONCE = 4096
 """Designs whose breaks are looked at together."""
 PLACE = 1e-6
 """How near to the end of a period the angle of a peak counts as its start [degree]: less than it is known to."""
-WHOLLY, PARTLY = 0.0, 1.0
-"""Assembly of a design: at every angle, or at some."""
+WHOLLY, PARTLY, NEVER = 0.0, 1.0, 2.0
+"""Assembly of a design: at every angle, at some, or at none."""
 PathsOf = Callable[[Group], Paths]
 
 
@@ -61,15 +62,30 @@ def exact_peaks(
     scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
 ) -> dict[str, Found]:
     """The largest value of each signal over the continuous revolution, for every design; NaN where it has none."""
-    names = (*signals, "assembly")
-    if scene.at_one_angle is not scene:
-        found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
-        for group in groups(scene, names):
+    varies = scene.at_one_angle is not scene
+    found = _along_paths(scene, signals, threads) if varies else _between(scene, signals, assembly, threads)
+    if may_have_poles(scene, signals):
+        for group in groups(scene, (*signals, "assembly")):
             (kinds,) = group.constants("assembly")
-            for kind in (WHOLLY, PARTLY):
-                if np.any(kinds == kind):
-                    _follow_all(group.some(kinds == kind), found, _paths(scene, kind), threads)
-        return found
+            if np.any(kinds < NEVER):
+                _raise_to_poles(group.some(kinds < NEVER), found, threads)
+    return found
+
+
+def _along_paths(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, Found]:
+    """Peaks of a scene whose loads change with the angle in ways that only the scene knows."""
+    found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
+    for group in groups(scene, (*signals, "assembly")):
+        (kinds,) = group.constants("assembly")
+        for kind in (WHOLLY, PARTLY):
+            if np.any(kinds == kind):
+                _follow_all(group.some(kinds == kind), found, _paths(scene, kind), threads)
+    return found
+
+
+def _between(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, Found]:
+    """Peaks by the fused search, and along paths where it does not see what it must."""
+    names = (*signals, "assembly")
     partly = _with_arcs(scene, names, _designs_where(scene, assembly, 1.0))
     found = _fused(scene, signals, threads)
     sound = assembly.values < (1.0 if len(partly) else 2.0)
@@ -185,6 +201,16 @@ def _follow(group: Group, found: dict[str, Found], paths_of: PathsOf, threads: i
     best = best if paths.steps is None else _with_limits(group, signals, paths, best, threads)
     for k, (peak, place) in enumerate(zip(found.values(), at, strict=True)):
         _raise(peak, place, Best(*(numbers[:, k] for numbers in best)))
+
+
+def _raise_to_poles(group: Group, found: dict[str, Found], threads: int | None) -> None:
+    """Make infinite what has a pole."""
+    row, angle, infinite = poles(group, tuple(found), threads)
+    places, angle = group.some(row).places, _place(angle, group.scene.period)
+    for k, peak in enumerate(found.values()):
+        at, there = _flat(peak.value, places, len(row))[infinite[:, k]], angle[infinite[:, k]]
+        for field, values in zip(peak[:3], (np.inf, there, 0.0), strict=True):
+            field.values.reshape(-1)[at] = values
 
 
 def _flat(field: Field, places: Places, count: int) -> Array:

@@ -26,6 +26,7 @@ from linksweep.results.compute import (
 )
 from linksweep.results.exact import Found, exact_peaks, peaks_where
 from linksweep.results.lazy import by_blocks
+from linksweep.results.poles import with_dead_centres
 from linksweep.results.quadrature import Power, means
 from linksweep.results.record import design_coordinates, flags, plain, provenance, variable
 from linksweep.scene.dimensions import laid
@@ -119,6 +120,7 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
     assembly = assembly_of(scene, threads)
     if theta2 is None:
         found, averages = _exact(scene, wanted, assembly, threads)
+        assembly = with_dead_centres(scene, assembly)
     else:
         found, averages = _of_samples(sampled, grid, wanted, threads, solver)
     order = tuple(sampled.inputs.sizes)
