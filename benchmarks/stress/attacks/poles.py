@@ -13,7 +13,7 @@ from . import Outcome
 
 TITLE = "dead centres of every drive: forces without bound are inf, with status 3, and all others finite"
 ROUNDS = 1500
-SMALL = 15
+SMALL = 10
 
 Random = np.random.Generator
 UNBOUNDED = 3
