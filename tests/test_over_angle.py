@@ -4,8 +4,11 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+import pint
 import pytest
 import xarray as xr
+from refusals import refusal
+from scipy.interpolate import CubicSpline
 
 import linksweep as ls
 from linksweep.mechanisms.validate import Rule
@@ -68,8 +71,7 @@ def test_a_constant_a_data_array_and_a_function_give_equal_arrays(parameter, num
 def test_what_changes_gives_at_each_angle_what_a_constant_of_that_value_gives(parameter, frame):
     angles = np.array([0.0, 20.0, 111.0, 250.5])
     values = np.array([3.0, -2.0, 5.5, 1.25])
-    by_name = {"function": lambda theta2: np.interp(theta2, angles, values), "array": over_angles(values, angles)}
-    for value in by_name.values():
+    for value in (lambda theta2: np.interp(np.mod(theta2, 360.0), angles, values), over_angles(values, angles)):
         cycle = ls.sweep(scene(**{parameter: value}, frame=frame), angles, EVERYTHING)
         for k, (angle, number) in enumerate(zip(angles, values, strict=True)):
             alone = ls.sweep(scene(**{parameter: number}, frame=frame), [angle], EVERYTHING)
@@ -78,7 +80,7 @@ def test_what_changes_gives_at_each_angle_what_a_constant_of_that_value_gives(pa
 
 
 def test_a_variable_depends_on_theta2_only_as_far_as_its_inputs_do():
-    cycle = ls.sweep(scene(torque=np.sin), 8, ["omega3", "T12"])
+    cycle = ls.sweep(scene(torque=lambda theta2: np.sin(np.radians(theta2))), 8, ["omega3", "T12"])
     batch = ls.sweep(scene(torque=xr.DataArray(np.ones((3, 8)), dims=("case", "theta2"))), 8, ["omega3", "T12"])
     assert cycle.T12.dims == cycle.omega3.dims == batch.omega3.dims == ("theta2",)
     assert batch.T12.dims == ("case", "theta2")
@@ -288,7 +290,12 @@ def test_angles_that_are_held_need_no_spline():
         (lambda theta2: np.where(np.mod(theta2, 720.0) < 180.0, -900.0, 0.0), 720.0),
         (lambda theta2: 5.0 * np.cos(np.radians(theta2)), 360.0),
         (lambda theta2: 5.0, 360.0),
-        (lambda theta2: 0.1 * theta2, 360.0),
+        (lambda theta2: np.where(np.mod(theta2, 720.0) < 30.0, -900.0, 0.0), 720.0),
+        (lambda theta2: 100.0 * (np.sin(np.radians(theta2)) >= 0.0), 360.0),  # jumps where rounding decides
+        (lambda theta2: np.interp(theta2, [0.0, 100.0, 360.0], [1.0, 5.0, 1.0]), 360.0),
+        (lambda theta2: np.interp(theta2, [0.0, 100.0, 360.0, 500.0, 720.0], [1.0, 5.0, 1.0, 2.0, 1.0]), 720.0),
+        (CubicSpline([0.0, 100.0, 200.0, 300.0, 360.0], [1.0, 5.0, 4.0, 2.0, 1.0]), 360.0),
+        (CubicSpline([0.0, 200.0, 360.0, 600.0, 720.0], [1.0, 5.0, 4.0, 2.0, 1.0]), 720.0),
     ],
 )
 def test_a_function_that_takes_two_turns_makes_the_cycle_four_stroke(function, period):
@@ -297,3 +304,35 @@ def test_a_function_that_takes_two_turns_makes_the_cycle_four_stroke(function, p
     cycle = ls.sweep(scene, 8)
     assert cycle.theta2.values[-1] == period * 7 / 8
     np.testing.assert_array_equal(cycle["loads[1].torque"], np.broadcast_to(function(cycle.theta2.values), 8))
+
+
+@pytest.mark.parametrize("function", [lambda theta2: 10.0 * np.sin(theta2), np.cos, lambda theta2: 0.1 * theta2])
+@pytest.mark.parametrize("parameter", ["omega2", "torque"])
+def test_a_function_that_does_not_come_round_is_refused(function, parameter):
+    (line,) = refusal(scene, **{parameter: function})
+    path = {"torque": "loads[2].torque"}.get(parameter, parameter)
+    first, turned, twice = (f"{function(angle):.6g}" for angle in (0.0, 360.0, 720.0))
+    assert line.startswith(
+        f"{path}: the function gives {first} at 0, {turned} at 360, {twice} at 720 degrees: it must "
+    )
+    assert "theta2 is in degrees, so write np.sin(np.radians(theta2))" in line
+
+
+@pytest.mark.parametrize(
+    "name", ["theta", "Theta2", "theta_2", "THETA", "θ", "θ₂", "theta2 [deg]", "theta-2", "theta2_degrees"]
+)
+def test_names_like_that_of_the_index_are_asked_about(name):
+    (line,) = refusal(scene, torque=xr.DataArray([1.0, 2.0], dims=name))
+    assert line == f'loads[2].torque has a dimension "{name}": rename it; did you mean "theta2"?'
+
+
+def test_names_like_that_of_the_position_on_a_loop_are_asked_about():
+    (line,) = refusal(replace, ls.example("loop"), thrust=xr.DataArray([1.0, 2.0], dims="theta_2"))
+    assert line == 'thrust has a dimension "theta_2": rename it; did you mean "theta"?'
+
+
+def test_a_function_that_returns_a_quantity_is_refused():
+    metre = pint.UnitRegistry().Quantity(1.0, "m")
+    moving = scene(torque=lambda theta2: np.cos(np.radians(theta2)) * metre)
+    (line,) = refusal(ls.sweep, moving, 8)
+    assert line == "loads[2].torque: the function returned a quantity in meter; it must return a number in N m"

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
+"""Names that the index is likely to be meant by, without signs and spaces."""
 TABLES = ("status", "arc", "toggle", "equation", "unknown", "spline")
 """What results of `sweep`, `check` and `system` bring with them, besides the quantities."""
 
@@ -52,17 +56,19 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
     for dim, sharing in by_dim.items():
         if dim == index:
             continue
-        if name_problems := list(_name_problems(dim, sharing, arrays, {*quantities, *TABLES})):
+        if name_problems := list(_name_problems(dim, index, sharing, arrays, {*quantities, *TABLES})):
             problems += name_problems
         else:
             problems += [*_length_problems(dim, sharing), *_label_problems(dim, sharing, arrays)]
     return problems
 
 
-def _name_problems(dim: object, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
+def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
     path = next(iter(sharing))
     if not isinstance(dim, str) or not dim or "/" in dim:
         yield f'{path} has a dimension {dim!r}: its name must be a text without "/"; rename it'
+    elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", dim).casefold())):
+        yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
     elif dim in results:
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
     elif dim in arrays and arrays[dim].dims != (dim,):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from linksweep.engine.run import Grid
-from linksweep.mechanisms.validate import Rule, number_problems, refuse
+from linksweep.mechanisms.validate import Rule, is_quantity, number_problems, refuse
 from linksweep.scene.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
 
 Curves = dict[str, PeriodicCurve]
@@ -19,16 +20,55 @@ TWO_TURNS = np.arange(0.0, 720.0, 0.5)
 """Angles [degree] at whose values a function of theta2 is known again."""
 
 
-def period_of_function(function: Any, turn: float) -> float:
-    """Two turns for a function of theta2 that repeats after two turns but not after one; else one."""
-    angles = turn * np.array([0.11, 0.32, 0.53, 0.74, 0.95])
+TURNS = (1, 2)
+"""After how many turns of the crank a cycle may come round."""
+WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
+"""Places in a turn at which a function's turns are compared; it may jump at the first."""
+
+
+def turns_of_function(function: Any, turn: float) -> int | None:
+    """Return after how many turns of the crank a function of theta2 comes round; None where after none of `TURNS`.
+
+    Then it repeats; or keeps its first value, as np.interp does beyond its data; or has its first value there. One that
+    fails, or is not finite, passes for a turn: what is wrong with it is said when it is swept.
+    """
+    angles = turn * (np.arange(2 * max(TURNS))[:, None] + WITHIN)
     try:
-        first, second, third = (np.asarray(function(angles + k * turn), dtype=float) for k in range(3))
-    except Exception:  # what is wrong with it is said when it is swept
-        return turn
-    near = 1e-9 * np.max(np.abs([first, second, third]), initial=0.0)
-    repeats = np.all(np.abs(third - first) <= near) and not np.all(np.abs(second - first) <= near)
-    return 2.0 * turn if repeats else turn
+        with np.errstate(all="ignore"):
+            returned = function(angles.ravel())
+            values = np.broadcast_to(np.asarray(getattr(returned, "magnitude", returned), dtype=float), angles.size)
+    except Exception:
+        return 1
+    values = values.reshape(angles.shape)
+    near = 1e-9 * np.max(np.abs(values[: max(TURNS)]))
+
+    def same(some: np.ndarray, others: np.ndarray) -> bool:
+        return bool((np.abs(some - others) <= near).all())
+
+    first, within = values[0, 0], values[:, 1:]
+    tests: tuple[Callable[[int], bool], ...] = (
+        lambda n: same(within[n:], within[:-n]),
+        lambda n: same(values[n:], first),
+        lambda n: same(values[n, 0], first),
+    )
+    return next((n for test in tests for n in TURNS if test(n)), None) if np.isfinite(values).all() else 1
+
+
+def turning_problems(path: str, function: Any, turn: float) -> list[str]:
+    """Return what is wrong with a function of theta2 that does not come round, such as one of radians."""
+    if turns_of_function(function, turn):
+        return []
+    angles = turn * np.arange(3)
+    gives = ", ".join(f"{value:.6g} at {angle:g}" for value, angle in zip(function(angles), angles, strict=True))
+    return [
+        f"{path}: the function gives {gives} degrees: it must come round after one turn or two; theta2 is in degrees, "
+        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for what starts anew"
+    ]
+
+
+def period_of_function(function: Any, turn: float) -> float:
+    """Return the period [degree] of a function of theta2."""
+    return turn * (turns_of_function(function, turn) or 1)
 
 
 def period_of(value: Any, shortest: float) -> float:
@@ -91,13 +131,16 @@ def at_angles(
 def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
     """Values of a function of theta2 [degree] at these angles. Raises ValueError as `at_angles`."""
     try:
-        values = np.asarray(function(angles.copy()))
+        returned = function(angles.copy())
+        values = np.asarray(getattr(returned, "magnitude", returned))
     except Exception as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
             f"{path}: the function failed on an array of theta2 in degrees ({said}); "
             f"write it with numpy, as in lambda theta2: 5 * np.cos(np.radians(theta2))"
         ) from error
+    if is_quantity(returned):
+        raise ValueError(f"{path}: the function returned a quantity in {returned.units}; it must return {rule.number}")
     if values.shape not in ((), angles.shape):
         raise ValueError(
             f"{path}: the function returned shape {values.shape} for {len(angles)} angles; "

@@ -35,7 +35,7 @@ from linksweep.scene.dimensions import dimension_problems, side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.interpolation import CUBIC
-from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function
+from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function, turning_problems
 from linksweep.scene.paths import bare, numbers
 
 ACCELERATION = Rule("acceleration")
@@ -73,11 +73,11 @@ class Scene(ByContent):
     A crank takes omega2, alpha2, drive and loads; a loop takes speed, thrust and profile; both take gravity.
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
-    theta2, as a DataArray or a function of theta2 [degree]. One that takes two turns of the crank to come round makes
-    the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the parameter's own unit; one
-    that says another in attrs["units"] is refused, not converted. Quantities of pint, and arrays of them, are
-    converted; numbers of any dtype become float64. Where one is dask's, results are lazy too, chunk by chunk of the
-    designs, and its values are judged when they are computed.
+    theta2, as a DataArray or a function of theta2 [degree], which must come round after one turn of the crank or two.
+    One that takes two makes the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the
+    parameter's own unit; one that says another in attrs["units"] is refused, not converted. Quantities of pint, and
+    arrays of them, are converted; numbers of any dtype become float64. Where one is dask's, results are lazy too, chunk
+    by chunk of the designs, and its values are judged when they are computed.
 
     Raises
     ------
@@ -119,6 +119,8 @@ class Scene(ByContent):
         # omega2 may be asked for as it was given; the loop's speed over theta is not the speed that was given
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
         refuse(said_unit_problems(self) + self._interpolation_problems())
+        turn = self.mechanism.period
+        refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
     def _take_motion(self) -> list[str]:
