@@ -151,7 +151,7 @@ def test_a_function_has_the_period_of_the_scene():
         return 0.0 * theta2
 
     ls.sweep(ls.Scene(MECHANISM, 100.0, loads=[ls.Load("slider", force=force), ls.Load("rod", torque=two)]), 720)
-    assert asked[-1].tolist() == list(range(720))
+    assert list(range(720)) in [angles.tolist() for angles in asked]
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same

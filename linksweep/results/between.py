@@ -139,7 +139,7 @@ def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, ste
 
 def _inputs_at(scene: Scene, grid: Grid) -> tuple[Inputs, Array]:
     """The scene's numbers at the different angles of a grid, and which of these each angle is."""
-    if scene.at_one_angle is scene:
+    if scene.steady:
         return scene.inputs, np.empty(0, dtype=int)
     different, sample = np.unique(in_period(grid.angles, scene.period), return_inverse=True)
     return scene.at(crank_grid(different, scene.period, grid.dim)).inputs, sample

@@ -15,10 +15,12 @@ import xarray as xr
 
 from linksweep.results.peaks import peaks
 from linksweep.scene.file import write_scene
-from linksweep.scene.over_angle import tabulated
-from linksweep.scene.paths import replaced
 from linksweep.scene.scene import Scene
 from linksweep.scene.selection import Block, blocks, design_sizes, selected
+from linksweep.scene.tabulated import values_at
+
+TWO_TURNS = np.arange(0.0, 720.0, 0.05)
+"""Angles [degree] at whose values a function of theta2 is known again."""
 
 
 def chunk_of_peaks(
@@ -83,9 +85,10 @@ class Job:
 
 def scene_digest(scene: Scene) -> str:
     """SHA-256 of all that makes a scene: its text, its arrays and their labels; functions by their values."""
-    known = replaced(scene, {path: tabulated(function) for path, function in scene.functions.items()})
-    digest = hashlib.sha256(write_scene(known, elsewhere=known.arrays).encode())
-    for path, array in known.arrays.items():
+    digest = hashlib.sha256(write_scene(scene, elsewhere=scene.arrays).encode())
+    for function in scene.functions.values():  # also of one that the text cannot hold
+        digest.update(values_at(function, TWO_TURNS).tobytes())
+    for path, array in scene.arrays.items():
         labels = {str(dim): array[dim].values.tolist() for dim in array.dims if dim in array.coords}
         digest.update(json.dumps([path, array.dims, array.shape, labels], default=str).encode())
         digest.update(np.ascontiguousarray(array.values, dtype=float).tobytes())

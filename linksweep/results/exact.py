@@ -62,8 +62,7 @@ def exact_peaks(
     scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
 ) -> dict[str, Found]:
     """The largest value of each signal over the continuous revolution, for every design; NaN where it has none."""
-    varies = scene.at_one_angle is not scene
-    found = _along_paths(scene, signals, threads) if varies else _between(scene, signals, assembly, threads)
+    found = _between(scene, signals, assembly, threads) if scene.steady else _along_paths(scene, signals, threads)
     if may_have_poles(scene, signals):
         for group in groups(scene, (*signals, "assembly")):
             (kinds,) = group.constants("assembly")

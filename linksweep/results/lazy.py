@@ -14,10 +14,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.plan import plan
-from linksweep.results.record import design_coordinates
+from linksweep.results.record import design_coordinates, kept_beside
 from linksweep.scene.file import write_scene
 from linksweep.scene.lazy import in_memory, lazy_paths, stand_in
-from linksweep.scene.over_angle import tabulated
 from linksweep.scene.paths import replaced
 from linksweep.scene.scene import Scene
 from linksweep.scene.selection import design_sizes
@@ -166,7 +165,7 @@ def _template(one: xr.Dataset, dims: Dims, known: Known, numbers: xr.Dataset) ->
 
 def _attributes(scene: Scene, one: xr.Dataset) -> dict[str, Any]:
     """Those of the whole: with the scene as text, unless some of it is lazy and not among the coordinates."""
-    if not {*lazy_paths(scene)} <= {*one.coords}:
+    beside = kept_beside(scene, one.coords)
+    if not {*lazy_paths(scene)} <= {*beside}:
         return {name: value for name, value in one.attrs.items() if name != "scene"}
-    known = replaced(scene, {path: tabulated(function) for path, function in scene.functions.items()})
-    return one.attrs | {"scene": write_scene(known, elsewhere={str(name) for name in one.coords})}
+    return one.attrs | {"scene": write_scene(scene, beside)}

@@ -134,7 +134,7 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
     by = "" if solver == "fast" else f", solver={solver!r}"
     command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles}{by})"
     coordinates = design_coordinates(sampled)
-    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
+    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
 
 
 def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:

@@ -82,7 +82,6 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     found = {name: variable(fields[name], "1", formula, order) for name, formula in FORMULAS.items()}
     for name, formula in ROOTS.items():
         page[name].attrs["long_name"] += f"; {formula}"
-    sampled = scene.at(crank_grid(angles, scene.period, mechanism.index))
     coordinates = {str(name): coordinate.variable for name, coordinate in page.coords.items()}
     command = f"linksweep.position_equation(scene, theta2={theta2})"
-    return xr.Dataset(found).merge(page).assign_attrs(provenance(sampled, command, coordinates))
+    return xr.Dataset(found).merge(page).assign_attrs(provenance(scene, command, coordinates))

@@ -29,7 +29,7 @@ def described(
     coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
     others = quantity.keys() - scene.motion.keys()  # results that have the name of a parameter, but are not it
     coordinates = {name: values for name, values in coordinates.items() if name not in others}
-    attributes = provenance(sampled, command, coordinates)
+    attributes = provenance(scene, command, coordinates)
     return xr.Dataset(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
 
 
@@ -84,12 +84,17 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
 
 
 def provenance(scene: Scene, command: str, coordinates: Mapping[str, xr.Variable]) -> dict[str, str]:
-    """Where a Dataset comes from, with the whole scene as TOML, so that it can be run again.
+    """Where a Dataset comes from, with the whole scene as TOML, so that it can be run again."""
+    return origin_attributes(scene, command) | {"scene": _text(scene, kept_beside(scene, coordinates))}
 
-    DataArrays that the Dataset has as coordinates are referred to by name; others stand in the text.
+
+def kept_beside(scene: Scene, coordinates: Iterable[Any]) -> tuple[str, ...]:
+    """Paths of the arrays that the text of a scene leaves to coordinates of these names: those over designs.
+
+    Of what changes over the revolution a Dataset has only the samples that were asked for.
     """
-    elsewhere = tuple(path for path in scene.arrays if path in coordinates)
-    return origin_attributes(scene, command) | {"scene": _text(scene, elsewhere)}
+    index, names = scene.mechanism.index, {*coordinates}
+    return tuple(path for path, array in scene.arrays.items() if path in names and index not in array.dims)
 
 
 @cache

@@ -100,7 +100,7 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
         found |= {f"{name}_of_loads": massless[name]}
     found["value"].attrs = {"long_name": "what each parameter is in the scene, in the unit that `unit` says"}
     found["value"] = found["value"].assign_coords(unit=("parameter", [UNITS[label.split(".")[-1]] for label in values]))
-    attributes = provenance(scene.at(grid), f"linksweep.regressor(scene, {names})", {})
+    attributes = provenance(scene, f"linksweep.regressor(scene, {names})", {})
     return xr.Dataset({**found, "status": massless["status"]}, attrs=attributes)
 
 

@@ -89,7 +89,7 @@ def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
         "unknown": xr.Variable("unknown", list(unknowns)),
     }
     command = f"linksweep.system(scene, theta2={theta2}, form={form!r})"
-    return xr.Dataset(variables, coordinates, provenance(sampled, command, coordinates))
+    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
 
 
 def as_angles(theta2: Any) -> Any:

@@ -42,7 +42,6 @@ mean "length"?``. Paths are those of the constructors; lists count from one, as 
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,18 +52,29 @@ import xarray as xr
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.mechanisms.spring_forms import GROUND
-from linksweep.mechanisms.validate import choice_problems
+from linksweep.mechanisms.validate import choice_problems, refuse
 from linksweep.scene.actions import ACTIONS
 from linksweep.scene.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.axis import design_axis
 from linksweep.scene.csv_table import csv_column
 from linksweep.scene.file_log import Log, Where, document, path_of
+from linksweep.scene.file_text import document_text
 from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.loads import Load
 from linksweep.scene.scene import Scene
 from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
+from linksweep.scene.tabulated import tabulated
 from linksweep.scene.text_file import text_of
 from linksweep.scene.units import KINDS, quantity, shown
+
+UNSTEADY = "jumps, or changes too quickly for a file to hold it"
+INSTEAD = 'give it as a DataArray over theta2, with interpolation="step" where it jumps'
+"""Of a function that has no samples which stand for it."""
+
+HEAD = """\
+# A scene of linksweep: see it with "linksweep check", "peaks" or "report" and the name of this file.
+# Plain numbers are in SI units, angles in degrees; a number with another unit stands in quotes, "8 cm".
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,11 +102,13 @@ class Number(Field):
             return log.problem(where, f" = {shown(raw)}: must be one number; for a design axis write {axis}")
         if isinstance(raw, dict) and "variable" in raw:
             return log.variable(raw["variable"], where)
+        if isinstance(raw, dict) and "function" in raw:
+            return log.problem(where, f": was a function of theta2 that {raw['function']}; {INSTEAD}")
         try:
             if isinstance(raw, dict) and "csv" in raw:
                 return csv_column(raw, self.kind, log.folder)
             if isinstance(raw, dict):
-                return design_axis(raw, self.kind, alone=log.dims[str(raw.get("dim"))] == 1)
+                return log.chosen(design_axis(raw, self.kind, alone=log.dims[str(raw.get("dim"))] == 1))
             return quantity(raw, self.kind)
         except ValueError as error:
             return log.refused(error, where) if isinstance(raw, dict) else log.problem(where, f" = {error}")
@@ -282,27 +294,27 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
 def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
     """Return the text of a scene file from which `parse_scene` makes an equal scene, to the bit.
 
-    Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims.
+    Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims. A function of
+    theta2 stands there as `linksweep.scene.tabulated` samples it; of one that has no such samples the text says so.
 
     Parameters
     ----------
     elsewhere : paths of DataArrays that are kept elsewhere: the text has ``{variable = "coupler.length"}``.
-
-    Raises
-    ------
-    ValueError
-        When a number of the scene is a function of theta2: sample it first.
     """
-    return dumped(_written(scene, (), elsewhere))
+    return document_text(_written(scene, (), elsewhere, scene.mechanism.period))
 
 
-def dumped(raw: dict[str, Any]) -> str:
-    """Return the text of a document, with each list in one line."""
-    import tomli_w  # here: only those who write files need it
+def toml_of(scene: Scene) -> str:
+    """Return the text of a scene file for people: see `Scene.to_toml`."""
+    require_writable(scene)
+    return HEAD + write_scene(scene)
 
-    text = tomli_w.dumps(raw)
-    # tomli_w gives each number of a list a line of its own; one line for all reads better.
-    return re.sub(r"\[\n *([-+.\w,\s\"]*),\n *\]", lambda found: "[" + re.sub(r"\n *", " ", found[1]) + "]", text)
+
+def require_writable(scene: Scene) -> None:
+    """Raise ValueError where a function of theta2 has no samples that stand for it."""
+    turn = scene.mechanism.period
+    paths = [path for path, function in scene.functions.items() if tabulated(function, turn) is None]
+    refuse([f"{path} is a function of theta2 that {UNSTEADY}: {INSTEAD}" for path in paths])
 
 
 def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
@@ -340,21 +352,21 @@ def _machines(raw: dict[str, Any]) -> list[type]:
     return [_MECHANISMS.classes[kind]] if kind in _MECHANISMS.classes else [*_MECHANISMS.classes.values()]
 
 
-def _written(value: Any, where: Where, elsewhere: Collection[str]) -> Any:
+def _written(value: Any, where: Where, elsewhere: Collection[str], turn: float) -> Any:
     """Return what stands in the file for a value of a scene."""
     if type(value) in SCHEMA:
         given = {key: getattr(value, key) for key in SCHEMA[type(value)]}
-        words = {k: _written(word, (*where, k), elsewhere) for k, word in given.items() if not _left_out(word)}
+        words = {k: _written(word, (*where, k), elsewhere, turn) for k, word in given.items() if not _left_out(word)}
         classes = {**_LINKS.classes, **_MECHANISMS.classes, **_LOADS.classes, **_CYCLES.classes}
         named = type(value) in classes.values() and type(value) is not Load
         return {"type": type(value).__name__, **words} if named else words
     if isinstance(value, (tuple, list)):
-        return [_written(item, (*where, i), elsewhere) for i, item in enumerate(value)]
+        return [_written(item, (*where, i), elsewhere, turn) for i, item in enumerate(value)]
     if isinstance(value, xr.DataArray):
-        return _array_written(value, path_of(where), elsewhere)
+        return {"variable": path_of(where)} if path_of(where) in elsewhere else _array_written(value)
     if callable(value):
-        advice = "sample it first, as a DataArray over theta2"
-        raise ValueError(f"{path_of(where)} is a function of theta2 and cannot be written to a file: {advice}")
+        samples = tabulated(value, turn)
+        return {"function": UNSTEADY} if samples is None else _array_written(samples)
     return value if isinstance(value, str) else float(value)
 
 
@@ -362,9 +374,8 @@ def _left_out(word: Any) -> bool:
     return word is None or (isinstance(word, str | tuple) and not word)
 
 
-def _array_written(array: xr.DataArray, path: str, elsewhere: Collection[str]) -> dict[str, Any]:
-    if path in elsewhere:
-        return {"variable": path}
+def _array_written(array: xr.DataArray) -> dict[str, Any]:
     coords = {str(dim): array.coords[dim].values.tolist() for dim in array.dims if dim in array.coords}
+    angles = {"theta2": coords.pop("theta2")} if "theta2" in coords else {}
     dims = {"dim": array.dims[0]} if array.ndim == 1 else {"dims": list(array.dims)}
-    return {**dims, "values": array.values.tolist(), "coords": coords}
+    return dims | angles | {"values": array.values.tolist()} | ({} if angles and not coords else {"coords": coords})

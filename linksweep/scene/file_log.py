@@ -11,6 +11,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
@@ -78,6 +79,15 @@ class Log:
         if str(name) in self.arrays:
             return self.arrays[name]
         return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
+
+    def chosen(self, array: xr.DataArray) -> xr.DataArray:
+        """Return the designs of an array in the text that the Dataset still has, by their labels."""
+        for dim in [dim for dim in array.dims if dim != "theta2" and dim in array.coords and dim in self.arrays]:
+            labels, known = self.arrays[str(dim)].values, array.indexes[dim]
+            if known.is_unique and np.isin(labels, known).all():
+                places = known.get_indexer(np.atleast_1d(labels))
+                array = array.isel({dim: places if labels.ndim else places[0]}).reset_coords(drop=True)
+        return array
 
     def refused(self, error: ValueError, where: Where) -> Any:
         """Log what a constructor says, one problem a line with its path first, but for what was not read."""

@@ -16,9 +16,6 @@ from linksweep.scene.interpolation import CUBIC, RINGING, OvershootWarning, Peri
 Curves = dict[str, PeriodicCurve]
 """The curves through a scene's arrays over theta2, by path: each is made when it is first needed."""
 
-TWO_TURNS = np.arange(0.0, 720.0, 0.5)
-"""Angles [degree] at whose values a function of theta2 is known again."""
-
 
 TURNS = (1, 2)
 """After how many turns of the crank a cycle may come round."""
@@ -76,12 +73,6 @@ def period_of(value: Any, shortest: float) -> float:
     if "theta2" not in value.coords:
         return shortest  # its values are those of the sweep's own angles
     return shortest if np.ptp(value["theta2"].values) <= shortest else 2.0 * shortest
-
-
-def tabulated(function: Any) -> xr.DataArray:
-    """A function of theta2 as a DataArray of its values over two turns."""
-    values = np.broadcast_to(np.asarray(function(TWO_TURNS.copy()), dtype=float), TWO_TURNS.shape)
-    return xr.DataArray(values, {"theta2": TWO_TURNS}, "theta2")
 
 
 def at_angles(

@@ -218,10 +218,43 @@ class Scene(ByContent):
         """Return the names of pairs of quantities that tell where loads turn over quickly, and how narrow that is."""
         return tuple(pair for k, load in enumerate(self.loads, 1) for pair in load.approaches(f"load{k}"))
 
+    def to_toml(self) -> str:
+        """Return the text of a scene file, from which `linksweep.load_scene` makes an equal scene.
+
+        Returns
+        -------
+        TOML with the words of the constructors and the numbers in SI units, to the bit. Functions of theta2 stand
+        there as samples, which a spline joins to within 1e-9 of their largest value.
+
+        Raises
+        ------
+        ValueError
+            For a function of theta2 that jumps, or changes too quickly for samples to stand for it.
+
+        Examples
+        --------
+        >>> import linksweep as ls
+        >>> print(ls.example("loop").to_toml().split("[mechanism]")[1])
+        <BLANKLINE>
+        type = "LoopTrack"
+        radius = 30.0
+        mass = 700.0
+        <BLANKLINE>
+        """
+        from linksweep.scene.file import toml_of  # here: it takes scenes
+
+        return toml_of(self)
+
     @cached_property
     def at_one_angle(self) -> Scene:
         """The scene at one angle, for what does not depend on it; the scene itself where nothing changes with it."""
         return self.at(crank_grid(1, self.period, self.mechanism.index))
+
+    @cached_property
+    def steady(self) -> bool:
+        """Whether nothing that it is given changes over the revolution."""
+        over_angle = any(self.mechanism.index in array.dims for array in self.arrays.values())
+        return self.at_one_angle is self and not over_angle
 
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""

@@ -20,9 +20,9 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_cf_variable
 
-from linksweep.results.record import design_coordinates
+from linksweep.results.record import design_coordinates, provenance
 from linksweep.scene.scene import Scene
-from linksweep.scene.selection import Block, joined_text
+from linksweep.scene.selection import Block
 from linksweep.surface.storage import NETCDF
 
 Chunks = Callable[[], Iterator[tuple[Block, xr.Dataset]]]
@@ -54,7 +54,7 @@ def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks,
     """
     coordinates = design_coordinates(scene)
     layout = laid_out(chunks(), sizes)
-    layout.attributes["command"] = command
+    layout.attributes = provenance(scene, command, coordinates)
     layout.sizes |= {str(dim): n for values in coordinates.values() for dim, n in values.sizes.items()}
     needed = ROOM + sum(like.dtype.itemsize * prod(layout.shape(name)) for name, like in layout.like.items())
     if shutil.disk_usage(path.parent).free < needed:
@@ -70,12 +70,9 @@ def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks,
 def laid_out(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int]) -> Layout:
     """What the whole looks like, from all of its chunks."""
     layout = Layout({})
-    texts: list[tuple[Block, str]] = []
     seen: dict[tuple, bytes] = {}
     for block, ds in chunks:
         layout.sizes |= {str(dim): n for dim, n in ds.sizes.items()}
-        layout.attributes = layout.attributes or dict(ds.attrs)
-        texts.append((block, ds.attrs["scene"] if not texts or ds.attrs["scene"] != texts[0][1] else texts[0][1]))
         for name, variable in ds.variables.items():
             dims = merged(layout.dims.get(str(name), ()), tuple(map(str, variable.dims)))
             place = (name, *(block[dim].start for dim in block if dim in variable.dims))
@@ -87,7 +84,6 @@ def laid_out(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int
             layout.dims[str(name)] = dims
             layout.like.setdefault(str(name), variable[(slice(0, 0),) * variable.ndim] if variable.ndim else variable)
     layout.sizes |= sizes
-    layout.attributes["scene"] = joined_text(texts, sizes)
     return layout
 
 

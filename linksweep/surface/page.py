@@ -20,14 +20,13 @@ import xarray as xr
 from linksweep.mechanisms.validate import Rule, pair_problems, refuse
 from linksweep.scene.choose import design_labels
 from linksweep.scene.file import write_scene
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 from linksweep.surface import page_checks, page_figures, page_inputs, page_tables
-from linksweep.surface.atomic import whole
 from linksweep.surface.markup import Markup, joined, safe, tag
 from linksweep.surface.page_inputs import quantity
 from linksweep.surface.page_results import STEPS, Range, Results, results_of
 from linksweep.surface.scene_at import scene_at
+from linksweep.surface.storage import write_text
 
 ENDINGS = (".html", ".htm")
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
@@ -78,8 +77,7 @@ def report(
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)
-    with whole(path) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
+    write_text(text, path)
 
 
 def page(scene: Scene, title: str | None = None, part: Range | None = None) -> str:
@@ -98,7 +96,7 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None) -> s
         "figures": page_figures.of_the_cycle(results),
         "more": page_figures.of_bearings_and_shaking(results),
         "signs": SIGNS if results.scene.mechanism.bodies else "",
-        "scene": _text(scene),
+        "scene": write_scene(scene),
     }
     template = Template((files(__package__) / "page.html").read_text(encoding="utf-8"))
     return template.substitute({name: safe(part) for name, part in parts.items()})
@@ -125,13 +123,6 @@ def _right(results: Results) -> Iterator[Markup]:
 def _section(title: str, *contents: Markup) -> Markup:
     """A part of the page; nothing where there is nothing to show."""
     return tag("section", tag("h2", title), *contents) if any(contents) else Markup()
-
-
-def _text(scene: Scene) -> str:
-    """The scene as a file; what it has functions for, at the angles of a sweep."""
-    if scene.functions:
-        scene = scene.at(crank_grid(720, scene.period, scene.mechanism.index))
-    return write_scene(scene)
 
 
 def _path_problems(path: Path) -> list[str]:

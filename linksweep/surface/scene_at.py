@@ -56,13 +56,11 @@ def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, 
 
 
 def _chosen_already(scene: Scene, one: xr.Dataset, wanted: Mapping[str, Any]) -> dict[str, Any]:
-    """Labels of dims that the Dataset no longer has: what it does not hold, as loads over theta2 beside peaks, still
-    stands in the scene over all designs."""
+    """Return positions along dims without labels that the Dataset no longer has: loads over theta2 still have them."""
     gone = [dim for dim in design_labels(scene) if dim not in one.dims]
-    lost = [dim for dim in gone if dim not in one.coords and dim not in wanted]
     advice = "name it here, or give the dimension labels before you select"
-    refuse([f"{dim}: the Dataset does not say which one it is of; {advice}" for dim in lost])
-    return {dim: one[dim] if dim in one.coords else wanted[dim] for dim in gone}
+    refuse([f"{dim}: the Dataset does not say which one it is of; {advice}" for dim in gone if dim not in wanted])
+    return {dim: wanted[dim] for dim in gone}
 
 
 def _labels(ds: xr.Dataset) -> dict[str, np.ndarray]:

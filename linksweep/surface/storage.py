@@ -10,8 +10,10 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms.validate import did_you_mean
-from linksweep.scene.file import parse_scene, read_scene
+from linksweep.mechanisms.validate import did_you_mean, refuse
+from linksweep.results.record import design_coordinates, provenance
+from linksweep.scene.file import parse_scene, read_scene, require_writable
+from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 from linksweep.surface.atomic import whole
 from linksweep.surface.seal import SAVED, mark_of, seal, sealed
@@ -20,16 +22,20 @@ NETCDF = RLock()
 """The NetCDF library is not made for two threads at once: the process dies."""
 
 
-def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
-    """Write a Dataset to NetCDF whole or not at all: a temporary file beside it, flushed to disk, then renamed.
+def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
+    """Write a Dataset or a scene whole or not at all: a temporary file beside it, flushed to disk, then renamed.
 
     Parameters
     ----------
-    ds : Dataset of linksweep, or any that NetCDF can hold
-    path : the file; one that exists is replaced only once the new one is complete
+    ds : Dataset of linksweep, or any that NetCDF can hold; or a Scene
+    path : the file; one that exists is replaced only once the new one is complete. A scene goes to "scene.toml", a
+        text to be edited, or to "scene.nc"
 
     Raises
     ------
+    ValueError
+        For another ending of a scene's file, a Dataset that is to be TOML, and a function of theta2 that no samples
+        stand for, as `Scene.to_toml`.
     OSError
         When the folder is missing, cannot be written or is full, or `path` is no file; what was there before stays.
 
@@ -39,14 +45,34 @@ def save(ds: xr.Dataset, path: str | os.PathLike) -> None:
     >>> scene = ls.example("press")
     >>> import os, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = os.path.join(folder, "cycle.nc")
-    ...     ls.save(ls.sweep(scene), path)
-    ...     ls.load_scene(path).omega2
-    31.41592653589793
+    ...     for name in ("press.toml", "press.nc"):
+    ...         ls.save(scene, os.path.join(folder, name))
+    ...         assert ls.load_scene(os.path.join(folder, name)) == scene
     """
+    ending = Path(path).suffix.lower()
+    if isinstance(ds, Scene):
+        refuse([] if ending in (".toml", ".nc") else [f"{path}: the file of a scene ends in .toml or .nc"])
+        if ending == ".toml":
+            return write_text(ds.to_toml(), path)
+        ds = _as_dataset(ds)
+    refuse([f"{path}: TOML holds scenes; write results to .nc"] if ending == ".toml" else [])
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
         seal(temporary, {}, SAVED)
+
+
+def write_text(text: str, path: str | os.PathLike) -> None:
+    """Write a text file whole or not at all."""
+    with whole(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _as_dataset(scene: Scene) -> xr.Dataset:
+    """Return a Dataset of a scene alone: its arrays over designs, and all else as text."""
+    require_writable(scene)
+    scene = in_memory(scene)
+    coordinates = design_coordinates(scene)
+    return xr.Dataset(coords=coordinates, attrs=provenance(scene, "linksweep.save(scene)", coordinates))
 
 
 def load_scene(path: str | os.PathLike) -> Scene:
@@ -58,14 +84,15 @@ def load_scene(path: str | os.PathLike) -> Scene:
 
     Returns
     -------
-    Scene that gives equal arrays when swept again at the same angles. Functions of theta2 come back as DataArrays
-    over the angles at which they were sampled.
+    Scene that gives equal arrays when swept again. Functions of theta2 come back as DataArrays whose spline is within
+    1e-9 of their largest value, and equal at every half degree; one that jumps, or changes too quickly for that, is not
+    in the file.
 
     Raises
     ------
     ValueError
         Naming the file and what is wrong: all errors of a scene file at once; a file that is no NetCDF or holds no
-        scene.
+        scene, or not the whole of it.
 
     Examples
     --------

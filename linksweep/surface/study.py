@@ -150,7 +150,7 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
         found = job.chunks(numbers, threads) if client is None else on_cluster(client, job, numbers, threads)
         with contextlib.closing(found):
             for number, ds in found:
-                kept.keep(number, ds.drop_vars(ds.coords))
+                kept.keep(number, ds.drop_vars(ds.coords).assign_attrs(scene=""))  # the file holds that of the whole
                 yield number
 
     def chunks() -> Iterator[tuple[Block, xr.Dataset]]:
