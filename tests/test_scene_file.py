@@ -133,7 +133,7 @@ def test_a_function_is_written_as_samples_that_a_spline_joins_to_it():
 
 
 def test_the_text_says_where_no_samples_stand_for_a_function():
-    step = Load("rocker", torque=lambda theta2: np.where(theta2 < 180.0, 0.0, 5.0))
+    step = Load("rocker", torque=lambda theta2: np.where(np.mod(theta2, 360.0) < 180.0, 0.0, 5.0))
     scene = Scene(FOUR_BAR, omega2=1.0, loads=[step])
     with pytest.raises(
         ValueError, match=r"^file:\d+: loads\[1\].torque: was a function of theta2 that jumps.*; give it as a DataArray"
