@@ -75,16 +75,16 @@ def test_a_swing_to_and_fro_is_that_part_of_a_revolution():
 
 def test_the_life_of_a_swinging_pin():
     """By the damage rule alone: each small turn under F uses up |Δψ|/360 of (C/F)^p million revolutions."""
-    found = ls.bearings(PRESS, {"C": ls.Bearing(capacity=2e4, kind="roller")}, theta2=720).sel(pin="C")
-    cycle = ls.sweep(PRESS, theta2=720, outputs=["F43", "omega3", "omega4"])
-    turns = np.abs(cycle.omega4 - cycle.omega3) / PRESS.omega2 / 720.0
+    found = ls.bearings(PRESS, {"C": ls.Bearing(capacity=2e4, kind="roller")}).sel(pin="C")
+    cycle = ls.sweep(PRESS, theta2=72_000, outputs=["F43", "omega3", "omega4"])
+    turns = np.abs(cycle.omega4 - cycle.omega3) / PRESS.omega2 / 72_000.0
     damage = float((turns / (1e6 * (2e4 / cycle.F43) ** (10.0 / 3.0))).sum())
     hours = 1.0 / damage * (2.0 * np.pi / PRESS.omega2) / 3600.0
-    assert float(found.L10h) == pytest.approx(hours, rel=1e-12)
+    assert float(found.L10h) == pytest.approx(hours, rel=1e-8)
 
 
 def test_the_spectrum_holds_all_of_the_rotation():
-    found = ls.bearings(ENGINE)
+    found = ls.bearings(ENGINE, theta2=72_000)  # a sample on a jump counts as one side of it
     spectrum = ls.load_spectrum(found, classes=400)
     np.testing.assert_allclose(spectrum.share.sum("load_class"), 1.0, rtol=1e-12)
     assert (spectrum.class_load.max("load_class") < found.F.max("theta2")).all()

@@ -8,6 +8,7 @@ import pytest
 from drawn import closed_figures  # noqa: F401
 
 import linksweep as ls
+from linksweep.scene.file import write_scene
 from linksweep.surface.cli import main
 
 PRESS = ls.example("press")
@@ -54,6 +55,20 @@ def test_bearings(told):
         expected += [load[0] / (0.02 * 0.03) / 1e6, float(one.pv.max()) / 1e6, life]
         np.testing.assert_allclose([number(text) for text in rows[pin]], expected, rtol=6e-4)
     assert told("bearings", "press.toml")["pin"] == titles[:4]  # what nothing is known of has no column
+
+
+def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(told):
+    rows = told("bearings", "press.toml", "--capacity", "5 kN", "--theta2", "10", "60")
+    found = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0)), theta2=(10, 60))
+    for k, pin in enumerate("ABCD"):
+        assert number(rows[pin][-1]) == pytest.approx(float(found.L10h[k]), rel=6e-4)
+    links = (ls.Link(length, 0.0, 0.0) for length in (0.12, 0.15, 0.25))
+    scene = ls.Scene(ls.FourBar(*links, ground=0.2), omega2=5.0, loads=[ls.Load("rocker", torque=-8.0)])
+    Path("stuck.toml").write_text(write_scene(scene))
+    rows = told("bearings", "stuck.toml", "--capacity", "5 kN")
+    for pin in "ABCD":
+        assert rows[pin][0] == rows[pin][2] == "inf"
+        assert rows[pin][-2:] == ["0", "unbounded load"]
 
 
 def test_breakdown_adds_up_at_the_worst_angle(told):

@@ -1,15 +1,6 @@
 """bearings(scene, {...}): what each pin asks of its bearing over a cycle: load diagrams, pressure, friction, life.
 
-Of a rolling bearing of capacity C under loads F that change while it turns by Δψ:
-
-    P = (∑ F^p |Δψ| / ∑ |Δψ|)^(1/p)      equivalent load, p = 3 for balls and 10/3 for rollers
-    L10 = (C/P)^p                        life that nine of ten reach, in million revolutions
-
-Sources: ISO 281 (basic rating life); variable loads by the linear damage rule of A. Palmgren and M. A. Miner, as in R.
-G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Rolling-Contact Bearings", and C. R.
-Mischke in Standard Handbook of Machine Design, 3rd ed., section 18.7. What turns to and fro counts with the whole angle
-that it turns, the simplest of the rules that O. Menck and M. Stammler review (Wind Energy Science 9 (2024) 777): swings
-so small that the rolling elements' paths do not overlap want more care. Plain bearings: `linksweep.physics.bearing`.
+Equations and sources: of rolling bearings `linksweep.results.bearing_life`, of plain ones `linksweep.physics.bearing`.
 """
 
 from __future__ import annotations
@@ -33,21 +24,25 @@ from linksweep.mechanisms.validate import (
     said,
 )
 from linksweep.physics import bearing as plain
-from linksweep.results.compute import require_scene
+from linksweep.results.bearing_life import MEANINGS, UNBOUNDED, rotation_under_load
+from linksweep.results.compute import angles_missing, require_scene
+from linksweep.results.paths import Part
+from linksweep.results.record import flags
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import said_unit_problems
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
 FRAMES = ("ground", "journal", "bearing")
-MILLION = 1e6
 SAID = {
     "F": ("N", "magnitude of the pin force"),
     "Fx": ("N", "force of the bearing on the journal, component along the x axis of the frame"),
     "Fy": ("N", "force of the bearing on the journal, component along the y axis of the frame"),
     "rotation_speed": ("rad s-1", "angular velocity of the journal in its bearing, positive counter-clockwise"),
     "rotation_share": ("1", "share of the cycle's rotation of the journal in its bearing that this sample stands for"),
-    "rotation": ("degree", "angle that the journal turns in its bearing in a cycle, to and fro added up"),
+    "rotation": ("degree", "angle that the journal turns in its bearing on the crank's way, to and fro added up"),
     "pressure": ("Pa", "projected pressure, force over diameter times length"),
     "sliding_speed": ("m s-1", "sliding speed of the journal in its bearing, never negative"),
     "pv": ("Pa m s-1", "projected pressure times sliding speed"),
@@ -102,7 +97,7 @@ class Bearing(ByContent):
 
 
 def bearings(
-    scene: Scene, given: Mapping[str, Bearing] | None = None, theta2: int = 720, threads: int | None = None
+    scene: Scene, given: Mapping[str, Bearing] | None = None, theta2: Any = 720, threads: int | None = None
 ) -> xr.Dataset:
     """Loads, rotation, friction and life of the bearings in the pins of a mechanism.
 
@@ -110,7 +105,8 @@ def bearings(
     ----------
     scene : Scene
     given : a Bearing by pin, {"B": ls.Bearing(...)}; pins that are not named have one without sizes
-    theta2 : count of crank angles over the cycle
+    theta2 : count of crank angles over the cycle; or, of a machine that moves over part of a turn, any array of angles
+        [degree], of which the least and the largest are the ends of its way
     threads : at most so many (default: all cores)
 
     Returns
@@ -120,22 +116,26 @@ def bearings(
     - `F`, and `Fx`, `Fy` in each `frame` [N]: of Fij the force of link i on link j, link j has the journal and link i
       the bearing. "ground" are the ground's axes, "journal" and "bearing" those of these links (x along the line of
       pins, of a slider along its guide). What the bearing feels is the opposite.
-    - `rotation_speed` [rad/s] of the journal in its bearing, `rotation` [degree] in a cycle, to and fro added up;
-      `rotation_share` of each sample
+    - `rotation_speed` [rad/s] of the journal in its bearing; `rotation_share` of each sample in all of its rotation
     - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
       friction; `linksweep.pin_friction` couples the two
-    - `equivalent_load` [N] over the rotation, `L10` [million revolutions] and `L10h` [hours]
+    - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
+      revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of samples
 
-    Angles that are not ok (see `status`) are left out of sums.
+    `status` is that of each sample; angles that are not ok are left out of integrals, of that over time too.
+    `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
+    unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
 
     Raises
     ------
     ValueError
-        For a machine without pins, a pin that it lacks, and what is no Bearing.
+        For a machine without pins, a pin that it lacks, what is no Bearing, angles that are none or of more than a
+        cycle, and arrays over theta2 that do not say of which angles they are.
 
     Notes
     -----
-    Source: equations of `linksweep.results.bearings` and `linksweep.physics.bearing`.
+    Integrals to 1e-10. What moves to and fro over part of a turn is taken to come back as it went. Source: equations of
+    `linksweep.results.bearing_life` and `linksweep.physics.bearing`.
 
     Examples
     --------
@@ -145,14 +145,34 @@ def bearings(
     (360.0, True)
     """
     pins = checked_pins(scene, given)
-    refuse(count_problems("theta2", theta2))
+    scene = in_memory(scene)
+    grid = crank_grid(theta2, scene.period)
+    part = None if grid.period else (float(grid.angles.min()), float(grid.angles.max()))
+    refuse(angles_missing(scene) + _part_problems(part, scene.period))
     names = [name for pin, links in pins.items() for name in _outputs(scene, pin, links)]
     cycle = sweep(scene, theta2, ["omega2", *dict.fromkeys(names)], threads=threads)
-    step = scene.period / theta2
-    parts = [_of_pin(cycle, step, pin, links, (given or {}).get(pin, Bearing())) for pin, links in pins.items()]
+    fitted = {pin: (given or {}).get(pin, Bearing()) for pin in pins}
+    forces, exponents = {pin: _force(links) for pin, links in pins.items()}, {p: b.exponent for p, b in fitted.items()}
+    turned, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
+    parts = [
+        _of_pin(cycle, pins[pin], cycle[f"omega_{pin}"], bearing, reach)
+        | turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
+        for pin, bearing in fitted.items()
+    ]
     found = {name: joined([part[name] for part in parts], "pin", pins).assign_attrs(_said(name)) for name in parts[0]}
-    attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={theta2})"}
+    angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
+    attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
     return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes)
+
+
+def _part_problems(part: Part | None, period: float) -> list[str]:
+    """Why two angles are no ends of a crank's way."""
+    if part is None or 0.0 < part[1] - part[0] <= period:
+        return []
+    given = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
+    if part[0] == part[1]:
+        return [f"{given}: is one angle; give the ends of a part of a turn, or a count"]
+    return [f"{given}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
 
 
 def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
@@ -180,55 +200,51 @@ def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
 
 
-def _said(name: str) -> dict[str, str]:
+def _said(name: str) -> dict[str, Any]:
+    if name == "life_status":
+        return flags("which loads the life of the bearing is that of", MEANINGS)
     return dict(zip(("units", "long_name"), SAID[name], strict=True))
 
 
+def _force(links: tuple[int, int]) -> str:
+    return "F{}{}".format(*links)
+
+
 def _of_pin(
-    cycle: xr.Dataset, step: float, pin: str, links: tuple[int, int], bearing: Bearing
+    cycle: xr.Dataset, links: tuple[int, int], speed: xr.DataArray, bearing: Bearing, reach: xr.DataArray
 ) -> dict[str, xr.DataArray]:
-    i, j = links
-    force, speed = cycle[f"F{i}{j}"], cycle[f"omega_{pin}"]
-    share, rotation = _turning(cycle, step, speed)
-    found = {"F": force, "rotation_speed": speed, "rotation_share": share, "rotation": rotation}
-    found |= {f"F{axis}": _in_frames(cycle, i, j, axis) for axis in "xy"}
+    """Load, motion and friction at each sample."""
+    force = cycle[_force(links)]
+    found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
+    found |= {f"F{axis}": _in_frames(cycle, *links, axis) for axis in "xy"}
     diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
     found |= {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
-    found["friction_loss"] = plain.friction_loss(bearing.friction, force, sliding)
-    return found | _life(cycle, step, force, share, rotation, bearing)
+    return found | {"friction_loss": plain.friction_loss(bearing.friction, force, sliding)}
 
 
-def _turning(cycle: xr.Dataset, step: float, speed: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
-    """Share of each sample in the relative rotation, and all of it [degree]."""
-    turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0)
-    turns = turns.broadcast_like(cycle["theta2"])
-    whole = turns.sum("theta2", skipna=True, min_count=1)
-    return turns / whole, whole * step
+def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
+    """Share of each sample in the relative rotation of all that are ok."""
+    turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0) * reach
+    return turns / turns.sum("theta2", skipna=True, min_count=1)
+
+
+def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
+    """How much of the crank's way each angle stands for: as much as all others, or half way to its neighbours."""
+    if part is None:
+        return xr.ones_like(angles)
+    order = np.argsort(angles.values, kind="stable")
+    ordered = angles.values[order]
+    reach = np.empty(len(order))
+    reach[order] = np.diff(np.concatenate([ordered[:1], 0.5 * (ordered[1:] + ordered[:-1]), ordered[-1:]]))
+    return angles.copy(data=reach)
 
 
 def _in_frames(cycle: xr.Dataset, i: int, j: int, axis: str) -> xr.DataArray:
     component = f"F{i}{j}{axis}"
     names = [component] + [component if k == 1 else f"{component}_link{k}" for k in (j, i)]
     return joined([cycle[name] for name in names], "frame", FRAMES)
-
-
-def _life(
-    cycle: xr.Dataset,
-    step: float,
-    force: xr.DataArray,
-    share: xr.DataArray,
-    rotation: xr.DataArray,
-    bearing: Bearing,
-) -> dict[str, xr.DataArray]:
-    p = bearing.exponent
-    damage = (force**p * share).sum("theta2", skipna=True, min_count=1)
-    equivalent = damage ** (1.0 / p)
-    life = (_or_nan(bearing.capacity) / equivalent) ** p
-    seconds = (np.radians(step) / np.abs(cycle["omega2"])).broadcast_like(cycle["theta2"]).sum("theta2")
-    hours = life * MILLION / (rotation / 360.0) * seconds / 3600.0
-    return {"equivalent_load": equivalent, "L10": life, "L10h": hours}
 
 
 def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
@@ -242,12 +258,12 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
     Returns
     -------
     Dataset over (…, pin, load_class): `class_load` [N], the middle of each class, and `share` of the rotation in it;
-    the shares of a pin add up to 1.
+    the shares of a pin add up to 1. NaN where a load is unbounded: no classes reach up to it.
 
     Raises
     ------
     ValueError
-        For a Dataset that does not hold F and rotation_share, or no count of classes.
+        For a Dataset that does not hold F, rotation_share and life_status, or no count of classes.
 
     Examples
     --------
@@ -256,8 +272,8 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
     >>> spectrum.share.sel(pin="C").sum().round(12).item()
     1.0
     """
-    sound = isinstance(found, xr.Dataset) and {"F", "rotation_share"} <= {*found}
-    refuse([] if sound else ["found: must be what ls.bearings returns, with F and rotation_share"])
+    sound = isinstance(found, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*found}
+    refuse([] if sound else ["found: must be what ls.bearings returns, with F, rotation_share and life_status"])
     refuse(count_problems("classes", classes))
     share, largest = xr.apply_ufunc(
         lambda force, share: _histogram(force, share, classes),
@@ -266,6 +282,8 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
         output_core_dims=[["load_class"], []],
         vectorize=True,
     )
+    bounded = found["life_status"] != UNBOUNDED
+    share, largest = share.where(bounded), largest.where(bounded)
     middle = (xr.DataArray(np.arange(classes), dims="load_class") + 0.5) / classes
     share.attrs = {"units": "1", "long_name": "share of the rotation of the journal in its bearing under such loads"}
     load = (largest * middle).assign_attrs(units="N", long_name="load in the middle of the class")

@@ -38,6 +38,17 @@ def require_scene(scene: Any) -> None:
     refuse([] if isinstance(scene, Scene) else [f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"])
 
 
+def angles_missing(scene: Scene) -> list[str]:
+    """Arrays over the angle that do not say of which angles they are."""
+    index = scene.mechanism.index
+    return [
+        f"{path} has {array.sizes[index]} values over {index} but no {index} coordinate: give it its angles with "
+        f'coords={{"{index}": degrees}}, or ask for the largest of samples with {index}={array.sizes[index]}'
+        for path, array in scene.arrays.items()
+        if index in array.dims and index not in array.coords
+    ]
+
+
 def compute(
     scene: Scene,
     grid: Grid,

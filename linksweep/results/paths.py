@@ -32,6 +32,12 @@ NEAREST = 1e-5
 QUARTER = 0.5 * np.pi
 
 
+Part = tuple[float, float]
+"""First and last crank angle [degree] of a machine that moves over part of a turn."""
+TURNS_AWAY = np.arange(-2.0, 3.0)
+"""Where, from the middle of a part of up to two turns, an arc may lie that reaches into it."""
+
+
 class Paths(NamedTuple):
     """Paths of the designs `row` of a group: samples `x` (path, sample) with their neighbours, and `cuts` between
     smooth pieces. Arcs have a middle and a half [degree], and at both ends the step by which to tell their limits.
@@ -283,3 +289,20 @@ def limits(group: Group) -> tuple[Array, ...]:
         if "arc_start" in found:
             return found["arc_start"].values, found["arc_end"].values
     return ()
+
+
+# -------------------------------------------------------------------------------------------------- parts
+
+
+def within(paths: Paths, part: Part, period: float) -> Paths:
+    """Keep of whole turns, or of arcs, what lies between two angles [degree]: of their cuts; samples stay."""
+    first, last = part
+    if paths.middle is None:
+        start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], period)
+        twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + period], axis=1)
+        return paths._replace(cuts=np.clip(twice, start, start + (last - first)))
+    nearest = np.round((0.5 * (first + last) - paths.middle) / 360.0)
+    copies = paths.some(np.tile(np.arange(len(paths.row)), len(TURNS_AWAY)))
+    middle = copies.middle + 360.0 * (np.tile(nearest, len(TURNS_AWAY)) + np.repeat(TURNS_AWAY, len(paths.row)))
+    ends = (np.arcsin(np.clip((end - middle) / copies.half, -1.0, 1.0))[:, None] for end in part)
+    return copies._replace(middle=middle, cuts=np.clip(copies.cuts, *ends))

@@ -14,6 +14,7 @@ from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.engine.writer import Reduction
 from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
 from linksweep.results.compute import (
+    angles_missing,
     assembly_of,
     changing_pace,
     compute,
@@ -112,7 +113,7 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
     wanted = _wanted(scene, names)
     index = scene.mechanism.index
     if theta2 is None:
-        refuse(_angles_missing(scene))
+        refuse(angles_missing(scene))
         grid, sampled = crank_grid(STATUS_ANGLES, scene.period, index), scene.at_one_angle
     else:
         grid = in_order(crank_grid(theta2, scene.period, index))
@@ -210,17 +211,6 @@ def _over_time(
             total, time = np.where(known, value**power / speed, 0.0), np.where(known, 1.0 / speed, 0.0)
             averages[name, power] = Field(dims[:-1], total.sum(axis=-1) / time.sum(axis=-1))
     return averages
-
-
-def _angles_missing(scene: Scene) -> list[str]:
-    """Arrays over the angle that do not say of which angles they are."""
-    index = scene.mechanism.index
-    return [
-        f"{path} has {array.sizes[index]} values over {index} but no {index} coordinate: give it its angles with "
-        f'coords={{"{index}": degrees}}, or ask for the largest of samples with {index}={array.sizes[index]}'
-        for path, array in scene.arrays.items()
-        if index in array.dims and index not in array.coords
-    ]
 
 
 def _status(

@@ -20,7 +20,7 @@ import xarray as xr
 from linksweep.engine.run import Field
 from linksweep.results.between import Array, Group, empty, groups
 from linksweep.results.compute import changing_pace
-from linksweep.results.paths import Paths, arcs, turns
+from linksweep.results.paths import Part, Paths, arcs, limits, turns, within
 from linksweep.scene.scene import Scene
 
 Power = tuple[str, int]
@@ -28,7 +28,7 @@ Power = tuple[str, int]
 Key = TypeVar("Key")
 
 HALVINGS = 45
-TOLERANCE = 1e-12
+TOLERANCE = 1e-13
 """Of a piece, relative to the whole: a revolution has up to a hundred pieces that matter."""
 BURSTING = 1e5
 """A piece that outgrows the first estimate of the whole so far diverges."""
@@ -120,20 +120,25 @@ def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
     if not scene.changes_speed:
         return xr.DataArray(np.radians(scene.period) / abs(scene.omega2))
     time = Integrand((scene.mechanism.pace,), lambda pace: np.radians(1.0) / abs(pace))
-    (field,) = integrals(scene, {"time": time}, threads).values()
+    (field,) = integrals(scene, {"time": time}, threads=threads).values()
     return xr.DataArray(field.values, dims=field.dims)
 
 
-def integrals(scene: Scene, integrands: Mapping[Key, Integrand], threads: int | None = None) -> dict[Key, Field]:
-    """Integrals over the crank angle [degree] of the whole cycle, for every design; NaN where no angle is ok."""
+def integrals(
+    scene: Scene, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
+) -> dict[Key, Field]:
+    """Integrals over the crank angle [degree] for every design, of the whole cycle or between two angles; NaN, or 0,
+    where no angle is ok."""
     names = tuple(dict.fromkeys(name for integrand in integrands.values() for name in integrand.names))
     found = {key: _nothing(scene, integrand.names) for key, integrand in integrands.items()}
     for group in groups(scene, (*names, "assembly")):
         (assembly,) = group.constants("assembly")
-        for kind, paths_of in ((1.0, arcs), (0.0, turns)):
+        for kind in (1.0, 0.0):
             if np.any(assembly == kind):
-                part = group.some(assembly == kind)
-                _put(part, found, integrands, paths_of(part), threads)
+                alike = group.some(assembly == kind)
+                paths = arcs(alike) if kind == 1.0 and limits(alike) else turns(alike)
+                paths = paths if part is None else within(paths, part, scene.period)
+                _put(alike, found, integrands, paths, threads)
     return found
 
 
@@ -151,7 +156,7 @@ def _put(
     paths: Paths,
     threads: int | None,
 ) -> None:
-    if not len(paths.row):
+    if not np.any(paths.cuts[:, 1:] > paths.cuts[:, :-1]):
         return
     with np.errstate(invalid="ignore"):  # without bound both ways: NaN
         along = _integrals(group, tuple(integrands.values()), paths, threads)
@@ -161,21 +166,21 @@ def _put(
 
 
 def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, threads: int | None) -> Array:
-    """Integrals (integrand, path) over each path."""
+    """Integrals (integrand, path) over each path. What has settled on a piece stands, whatever others take there."""
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
     done = np.zeros((len(integrands), count))
+    sought = np.ones((len(integrands), len(pieces.path)), dtype=bool)
     for _ in range(HALVINGS):
         rules = _rules(group, integrands, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
-        rest = _burst(rules, _disagree(rules, scale[:, pieces.path]), scale, pieces.path)
-        settled = ~rest.any(axis=0)
-        done += _by_owner(rules.outer[:, settled], pieces.path[settled], count)
-        if settled.all():
+        rest = _burst(rules, sought & _disagree(rules, scale[:, pieces.path]), scale, pieces.path)
+        done += _by_owner(np.where(sought & ~rest, rules.outer, 0.0), pieces.path, count)
+        unsettled = rest.any(axis=0)
+        if not unsettled.any():
             return done
-        pieces, unsettled = pieces.some(np.flatnonzero(~settled)).halved(), rules.outer[:, ~settled]
-        rest = rest[:, ~settled]
-    owner = pieces.path[: unsettled.shape[1]]
-    return done + _by_owner(np.where(rest, np.copysign(np.inf, unsettled), unsettled), owner, count)
+        sought, ends = np.tile(rest[:, unsettled], 2), np.where(rest, np.copysign(np.inf, rules.outer), 0.0)
+        owner, pieces = pieces.path, pieces.some(np.flatnonzero(unsettled)).halved()
+    return done + _by_owner(ends, owner, count)
 
 
 def _burst(rules: Rules, rest: Array, scale: Array, path: Array) -> Array:
@@ -208,9 +213,8 @@ def _by_owner(rows: Array, owner: Array, count: int) -> Array:
 
 
 def _first_pieces(paths: Paths) -> Pieces:
-    count, edges = paths.cuts.shape
-    path = np.repeat(np.arange(count), edges - 1)
-    return Pieces(path, paths.cuts[:, :-1].ravel(), paths.cuts[:, 1:].ravel())
+    path, piece = np.nonzero(paths.cuts[:, 1:] > paths.cuts[:, :-1])
+    return Pieces(path, paths.cuts[path, piece], paths.cuts[path, piece + 1])
 
 
 def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:

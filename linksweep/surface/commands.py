@@ -31,6 +31,7 @@ from linksweep.surface.storage import load_scene
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SAMPLES = 720
 PICTURES = (".png", ".pdf", ".svg")
 FILMS = (".gif", ".html")
 SHAKING = ["Fsx", "Fsy"]
@@ -48,6 +49,8 @@ def add_commands(commands: Any) -> None:
     pins.add_argument("--length", type=_number("length"), help='of all bushes, such as "30 mm"')
     pins.add_argument("--capacity", type=_number("force"), help='dynamic load rating of all, such as "5 kN"')
     pins.add_argument("--kind", choices=EXPONENTS, default="ball", help="of rolling bearings (ball)")
+    part = "of a machine that moves over part of a turn: its crank angles in degrees"
+    pins.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
     pins.add_argument("--frame", choices=FRAMES, default="ground", help="axes of the load diagrams (ground)")
     _plots(pins)
 
@@ -157,8 +160,9 @@ def _bearings(options: argparse.Namespace) -> None:
 
     scene = one_design(options.scene)
     bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
-    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing))))
-    show(options, lambda: plot.bearings(sweep(scene), options.frame))
+    theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
+    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2)))
+    show(options, lambda: plot.bearings(sweep(scene, theta2), options.frame))
 
 
 def _breakdown(options: argparse.Namespace) -> None:

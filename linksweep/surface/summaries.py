@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.results.balancing import Counterweight
+from linksweep.results.bearing_life import UNBOUNDED
 from linksweep.results.over_time import mean_over_time
 from linksweep.surface import signals
 from linksweep.surface.report import aligned
@@ -37,13 +38,17 @@ ROUNDING = 1e-12
 
 
 def bearing_table(found: xr.Dataset) -> str:
-    """Each pin on a line, with what is known of its bearing."""
+    """Each pin on a line, with what is known of its bearing, and why its life is not that of a whole cycle."""
     columns = {title: _summed(found, *source) for title, source in BEARING.items()}
-    columns = {title: column for title, column in columns.items() if np.isfinite(column).any()}
-    rows = [("pin", *columns)]
+    columns = {title: column for title, column in columns.items() if not np.isnan(column).all()}
+    status = found["life_status"]
+    words = [word.replace("_", " ") for word in str(status.attrs["flag_meanings"]).split()]
+    of_pins = np.broadcast_to(status.values, found.sizes["pin"])
+    rows = [("pin", *columns, "status")]
     for k, pin in enumerate(found["pin"].values):
-        rows.append((str(pin), *(signals.number(float(column[k])) for column in columns.values())))
-    return _table(rows)
+        numbers = (signals.number(float(column[k])) for column in columns.values())
+        rows.append((str(pin), *numbers, words[of_pins[k]] if of_pins[k] else ""))
+    return _table([row if of_pins.any() else row[:-1] for row in rows])
 
 
 def _summed(found: xr.Dataset, name: str, how: str) -> np.ndarray:
@@ -51,6 +56,8 @@ def _summed(found: xr.Dataset, name: str, how: str) -> np.ndarray:
     if how:
         samples = values.broadcast_like(found["theta2"])
         values = samples.max("theta2") if how == "max" else mean_over_time(samples, found)
+    if how == "max":
+        values = values.where((found["life_status"] != UNBOUNDED) | values.isnull(), np.inf)
     return np.broadcast_to(values.values, found.sizes["pin"]) / MEGA.get(name, 1.0)
 
 
