@@ -32,14 +32,17 @@ COMBINED = "_combined"
 
 
 class Group(NamedTuple):
-    """Some designs of a scene: as designs of `scene`, which may be another one, and where they are in the first."""
+    """Some designs of a scene: as designs of `scene`, which may be another one, and where they are in the first.
+
+    `quick` are the crank angles at which what changes over the revolution is quick, in any design of the first."""
 
     scene: Scene
     designs: Array
     places: Places
+    quick: Array
 
     def some(self, rows: Array) -> Group:
-        return Group(self.scene, self.designs[rows], {dim: at[rows] for dim, at in self.places.items()})
+        return self._replace(designs=self.designs[rows], places={dim: at[rows] for dim, at in self.places.items()})
 
     def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
         """Values (names, pairs) at pairs of one of these designs and an angle [degree]."""
@@ -68,7 +71,7 @@ def groups(
     for first in range(0, len(chosen), step):
         part = chosen[first : first + step]
         places = places_of(inputs.sizes, part)
-        yield _with_own_loads(scene, places) if own else Group(scene, part, places)
+        yield _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
 
 
 def empty(scene: Scene, names: tuple[str, ...]) -> dict[str, Field]:
@@ -100,7 +103,8 @@ def _with_own_loads(scene: Scene, places: Places) -> Group:
     part = replaced(scene, arrays)
     sizes = part.at_one_angle.inputs.sizes
     inside = {COMBINED: which.ravel()} | {dim: at for dim, at in places.items() if dim not in own}
-    return Group(part, np.ravel_multi_index(tuple(inside[dim] for dim in sizes), tuple(sizes.values())), places)
+    designs = np.ravel_multi_index(tuple(inside[dim] for dim in sizes), tuple(sizes.values()))
+    return Group(part, designs, places, scene.quick.angles)
 
 
 def quantities_at(

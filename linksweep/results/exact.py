@@ -79,7 +79,7 @@ def _along_paths(scene: Scene, signals: tuple[str, ...], threads: int | None) ->
         for kind in (WHOLLY, PARTLY):
             if np.any(kinds == kind):
                 _follow_all(group.some(kinds == kind), found, _paths(scene, kind), threads)
-    return found
+    return found if scene.quick.all else {signal: _doubted(scene, signal, peak) for signal, peak in found.items()}
 
 
 def _between(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, Found]:
@@ -96,7 +96,7 @@ def _between(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: i
             _follow(group, found, about_breaks, threads)
     if scene.approaches():
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), _designs_where(scene, assembly, 0.0))
-        for group in groups(scene, names, narrow):
+        for group in groups(scene, names, narrow, JUMPS_AT_ONCE):
             _follow(group, found, about_approaches, threads)
     for group in groups(scene, names, partly):
         _follow_all(group, found, _paths(scene, PARTLY), threads)
@@ -107,6 +107,16 @@ def _paths(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
     """Return all paths along which designs of one kind of assembly are searched."""
     along, close = {WHOLLY: (turns, about_approaches), PARTLY: (arcs, about_approaches_on_arcs)}[kind]
     return (along, close) if scene.approaches() else (along,)
+
+
+def _doubted(scene: Scene, signal: str, peak: Found) -> Found:
+    """A peak that may be higher by anything, where it depends on what changes too quickly to be followed."""
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    changing = {name for name, field in inputs.fields.items() if index in field.dims}
+    if changing.isdisjoint(plan(scene.table, (signal,), inputs.forms).inputs):
+        return peak
+    beyond = np.where(np.isfinite(peak.value.values), np.inf, peak.beyond.values)
+    return peak._replace(beyond=Field(peak.beyond.dims, beyond))
 
 
 def _nothing(field: Field) -> Found:

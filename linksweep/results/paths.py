@@ -15,6 +15,7 @@ from linksweep.engine.find_peaks import grades
 from linksweep.engine.search import GRADES
 from linksweep.results.approaches import REACH, Approaches, approaches
 from linksweep.results.between import Array, Group, crossing, in_period
+from linksweep.scene.quick import STEP
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
@@ -29,6 +30,8 @@ KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 NEAREST = 1e-5
 """Nearer to the end of an arc, in x, rounding outweighs what is left to gain."""
+MOST_CUTS = 200
+"""Cuts where something over the revolution is quick: more do not help a mean."""
 QUARTER = 0.5 * np.pi
 
 
@@ -81,14 +84,21 @@ def turns(group: Group) -> Paths:
     even = np.broadcast_to(even, (len(group.designs), len(even)))
     pinched = _samples_of_period(group)
     sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
-    close = _cuts_at_approaches(group, _evenly_too(group))
-    x, cuts = (
-        _in_order(in_period(np.concatenate(parts, axis=1), period))
-        for parts in ((even, pinched, sides), (even[:, ::30], pinched[:, ::2], jumps, close))
-    )
+    quick, close = _quick(group), _cuts_at_approaches(group, _evenly_too(group))
+    samples, edges = (even, pinched, sides, quick), (even[:, ::30], pinched[:, ::2], jumps, close, _thinned(quick))
+    x, cuts = (_in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
     before, after = _neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
     return Paths(np.arange(len(x)), x, before, after, cuts)
+
+
+def _quick(group: Group) -> Array:
+    """Crank angles (design, angle) at which what changes over the revolution is quick."""
+    return np.broadcast_to(group.quick, (len(group.designs), len(group.quick)))
+
+
+def _thinned(angles: Array) -> Array:
+    return angles[:, :: 1 + angles.shape[1] // MOST_CUTS]
 
 
 def _in_order(x: Array) -> Array:
@@ -248,11 +258,19 @@ def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
     given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
     pinched, sides, jumps = (_anywhere_beyond(_on_arc(angles, middle, half)) for angles in given)
-    x = np.sort(np.concatenate([shared, pinched, sides], axis=1), axis=1)
+    quick = _on_arc(_quick_and_even(group), middle, half)
+    x = _in_order(np.concatenate([shared, pinched, sides, quick], axis=1))
     close = _on_arc(_cuts_at_approaches(group, middle[:, None] + half[:, None] * np.sin(even)), middle, half)
     # none near the ends: what has a mean is smooth there, and rounding spoils what lies nearer
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
-    return x, _in_order(np.concatenate([shared, pinched[:, ::2], jumps, close], axis=1))
+    return x, _in_order(np.concatenate([shared, pinched[:, ::2], jumps, close, _thinned(quick)], axis=1))
+
+
+def _quick_and_even(group: Group) -> Array:
+    """Quick angles (design, angle), and even ones between which others are smooth, where anything is over the angle."""
+    changes = group.scene.at_one_angle is not group.scene
+    angles = np.append(group.quick, np.arange(0.0, group.scene.period, STEP)) if changes else group.quick
+    return np.broadcast_to(angles, (len(group.designs), len(angles)))
 
 
 def _even_on_arc() -> Array:

@@ -63,12 +63,16 @@ def peaks(
     evaluated until nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the
     limits at the ends of a revolution that toggles cut short; what grows there without bound has the peak inf.
 
+    Springs and dampers are looked at more closely where their ends pass each other; functions of theta2 every 0.02
+    degrees and, where they change more quickly, as closely as they ask for; arrays at least as closely as their angles.
+    What is narrower is found where the load's `breaks` name its angle.
+
     Parameters
     ----------
     scene : Scene
     of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much
-        larger the peak could be than what was found, "F32_samples" how many crank angles were looked at. Default: all
-        pins and the torque
+        larger the peak could be than what was found (inf where a function changes too quickly to be followed),
+        "F32_samples" how many crank angles were looked at. Default: all pins and the torque
     theta2 : None; or a count of angles, or any array of angles [degree], for the largest of these samples instead
     threads : at most so many (default: all cores); the numbers do not depend on it
     solver : "fast" or, with theta2, "superposed", as in `linksweep.sweep`

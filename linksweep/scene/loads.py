@@ -31,8 +31,8 @@ class Load(ChangingLoad):
     frame : axes of the force: "ground", or "link" (x along the line of pins)
     torque : [N m], positive counter-clockwise, or None for no torque
     origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
-    breaks : angles theta2 [degree] at which the force or torque jumps, kinks or is narrower than 0.05 degrees, in a
-        list: exact peaks look at both sides of each
+    breaks : angles theta2 [degree] at which the force or torque jumps, or is narrower than 0.02 degrees, in a list:
+        exact peaks look at both sides of each, and closely between them
     interpolation : of DataArrays over theta2, at angles that they do not hold: "periodic cubic" (spline, by default),
         "pchip" (monotone between neighbours, does not ring), "linear", or "step" (each value holds from its angle up
         to the next)

@@ -37,6 +37,7 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.interpolation import CUBIC
 from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function, turning_problems
 from linksweep.scene.paths import bare, numbers
+from linksweep.scene.quick import Quick, quick_angles
 
 ACCELERATION = Rule("acceleration")
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
@@ -213,6 +214,11 @@ class Scene(ByContent):
             of_loads = (angle for load in self.loads for angle in load.jumps(self.mechanism))
             every = (*self.mechanism.jumps(), *of_loads)
         return tuple({content(angle): angle for angle in every}.values())  # friction and gas share dead centres
+
+    @cached_property
+    def quick(self) -> Quick:
+        """Crank angles at which functions of theta2 and arrays over it are quick."""
+        return quick_angles(self)
 
     def approaches(self) -> tuple[tuple[str, str], ...]:
         """Return the names of pairs of quantities that tell where loads turn over quickly, and how narrow that is."""
