@@ -16,8 +16,8 @@ import linksweep as ls
 from . import Outcome
 
 TITLE = "springs and dampers whose ends pass close by, and narrow functions"
-ROUNDS, SMALL = 400, 12
-DESIGNS = 6
+ROUNDS, SMALL = 400, 8
+DESIGNS = 4
 """Of one scene: they share its form."""
 LEAST = 60
 """Rounds from which brute force has its finest step."""
