@@ -118,7 +118,7 @@ def test_a_pulse_in_data_closer_than_the_samples_is_not_missed():
 
 def test_the_bound_does_not_deny_what_could_not_be_looked_at():
     """A quantity that the load does not change has its own bound."""
-    found = ls.peaks(loaded(lambda theta2: np.sin(1e5 * theta2)), of=["T12_bound", "omega4_bound"])
+    found = ls.peaks(loaded(lambda theta2: np.sin(100_003 * np.radians(theta2))), of=["T12_bound", "omega4_bound"])
     assert found.T12_bound == np.inf
     assert found.omega4_bound < 1e-9
 
