@@ -18,7 +18,7 @@ import linksweep as ls
 from . import Outcome
 
 TITLE = "kill -9 while a file is saved or a study runs: byte-equal in the end, nothing left behind"
-ROUNDS, SMALL = 400, 8
+ROUNDS, SMALL = 400, 6
 
 CHUNK = 4
 LONGEST = 0.3
@@ -93,8 +93,8 @@ def _save_on(path: Path) -> None:
 
 
 def _study(path: Path) -> None:
-    speed = xr.DataArray(np.linspace(10.0, 40.0, 60), dims="speed")
-    ls.study(replace(ls.example("press"), omega2=speed), path, of=["T12"], chunk=CHUNK).close()
+    speed = xr.DataArray(np.linspace(10.0, 40.0, 24), dims="speed")
+    ls.study(replace(ls.example("press"), omega2=speed), path, of=["T12"], chunk=CHUNK, theta2=36).close()
 
 
 def _left(folder: Path, path: Path) -> list[str]:
