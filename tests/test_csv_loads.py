@@ -181,9 +181,10 @@ ANGLES = np.arange(0.0, 360.0, 30.0)
 SOUND = table(ANGLES, ripple(ANGLES))
 CSV = ":15: loads[1].force.csv: p.csv"
 REFUSED = [
-    (SOUND.replace("theta2", "angle"), CSV + ':1: its columns are "angle", "P": the first line must name them'),
-    ("", CSV + ":1: its columns are none: the first line must name them"),
-    (SOUND.split("\n", 1)[1], CSV + ':1: its columns are "0", "3": the first line must name them'),
+    (SOUND.replace("theta2", "Theta"), CSV + ':1: its columns are "Theta", "P": the first line must name the columns'),
+    (SOUND.replace("theta2", "angle"), CSV + ":1: the first line must name the columns, the first of them theta2"),
+    ("", CSV + ":1: the first line must name the columns"),
+    (SOUND.split("\n", 1)[1], CSV + ":1: the first line must name the columns"),
     (SOUND.replace("P", "Q"), ":15: loads[1].force.column: nothing is named 'P'; there are Q"),
     (SOUND.replace("60,2.5", "60,two"), CSV + ':4: P = "two": must be a number'),
     (SOUND.replace("60,2.5", "60,nan"), CSV + ':4: P = "nan": must be a number'),

@@ -20,6 +20,7 @@ import numpy as np
 from linksweep.engine import reduce
 from linksweep.engine.compile import compiled
 from linksweep.engine.fuse import Fused, fuse, reductions_source
+from linksweep.engine.memory import require_memory
 from linksweep.engine.plan import Plan
 from linksweep.engine.trace import Node
 from linksweep.engine.writer import TILE, Reduction
@@ -255,6 +256,8 @@ def _execute(
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
+    numbers = block_rows * samples + single_size
+    require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
     block, single = np.empty((block_rows, samples)), np.empty(single_size)
 
     def work(first: int, last: int) -> None:

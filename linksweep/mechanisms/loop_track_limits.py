@@ -78,6 +78,7 @@ def first_zero(curve: Curve) -> np.ndarray:
     return np.where(below.any(axis=0), np.where(first == 0, 0.0, end), np.inf)
 
 
+@np.errstate(all="ignore")
 def events(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, np.ndarray]:
     """Where a car that work and energy drive first leaves the track, and where it first stalls [rad]."""
     force, squared_speed = curves(radius, mass, speed, thrust, gx, gy, work_counts)

@@ -272,7 +272,8 @@ class SliderCrank(CrankDriven):
     def always_ok(self, drive: str) -> bool:
         """Whether the numbers alone say that every sample is ok: friction must not wedge the slider either."""
         b, height = self.rod.length, self.crank.length + abs(self.offset)
-        wedges = (self.friction * height) ** 2 >= (b - height) * (b + height) * (1.0 - 1e-9)
+        with np.errstate(over="ignore"):
+            wedges = np.square(self.friction * height) >= (b - height) * (b + height) * (1.0 - 1e-9)
         return super().always_ok(drive) and not np.any(wedges)
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:

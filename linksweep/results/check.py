@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.finding import Finding
@@ -81,7 +82,9 @@ def check(scene: Scene) -> xr.Dataset:
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     for findings, numbers in (*scene.mechanism.findings(), *driven):
         dims_of_numbers, arrays = side_by_side(numbers)
-        for name, found in findings(*arrays).items():
+        with np.errstate(all="ignore"):  # lengths and speeds may be near the ends of what a number can hold
+            told = findings(*arrays)
+        for name, found in told.items():
             variables[name] = _variable(found, dims_of_numbers)
             if found.along and found.along[1]:
                 labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))

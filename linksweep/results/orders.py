@@ -64,10 +64,10 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))
     angles = ds[index].values.astype(float)
     period = _period(angles, index)
-    order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
     most = len(angles) * TURN / period / 2.0
-    few = f"n = {n}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
+    few = f"n = {said(n)}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
     refuse([] if n < most else [few])
+    order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
     waves = [xr.DataArray(wave, dims=("order", index)) for wave in cos_sin(np.multiply.outer(order, angles))]
     weight = xr.DataArray(np.where(order == 0.0, 1.0, 2.0) / len(angles), dims="order")
     variables: dict[str, xr.DataArray] = {}

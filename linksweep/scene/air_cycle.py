@@ -70,6 +70,7 @@ class OttoCycle(ByContent):
 
     def problems(self, path: str) -> list[str]:
         found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = found or _compression_problems(path, self)
         end = "" if found else _below(self.peak_pressure, _compressed(self))
         return found or ([f"{path}.peak_pressure = {end}"] if end else [])
 
@@ -119,6 +120,7 @@ class DieselCycle(ByContent):
 
     def problems(self, path: str) -> list[str]:
         found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = found or _compression_problems(path, self)
         over = False if found else self.cutoff_ratio > self.compression_ratio
         if not is_lazy(over) and np.any(over):
             largest = float(np.max(self.cutoff_ratio))
@@ -165,8 +167,8 @@ def _opened(engine: SliderCrank, angles: np.ndarray) -> np.ndarray:
     a, b, e = engine.crank.length, engine.rod.length, engine.offset
     sign, (cos, sin) = BRANCH_SIGN[engine.branch], cos_sin(angles - engine.slide_angle)
     with np.errstate(all="ignore"):
-        reach, least = np.sqrt((a + b) ** 2 - e**2), np.sqrt((b - a) ** 2 - e**2)
-        opened = (reach - sign * a * cos - np.sqrt(b**2 - (e - a * sin) ** 2)) / (reach - least)
+        reach, least = np.sqrt((a + b) * (a + b) - e * e), np.sqrt((b - a) * (b - a) - e * e)
+        opened = (reach - sign * a * cos - np.sqrt(b * b - (e - a * sin) ** 2)) / (reach - least)
     return np.clip(opened, 0.0, 1.0)
 
 
@@ -187,7 +189,20 @@ def _labelled(cycle: Cycle, engine: SliderCrank, theta2: Any, turning: Number) -
 
 def _compressed(cycle: Cycle) -> Number:
     """Pressure at the end of compression [Pa]."""
-    return cycle.intake_pressure * cycle.compression_ratio**cycle.gamma
+    try:
+        with np.errstate(over="ignore"):
+            return cycle.intake_pressure * cycle.compression_ratio**cycle.gamma
+    except OverflowError:
+        return np.inf
+
+
+def _compression_problems(path: str, cycle: Cycle) -> list[str]:
+    """Return why the compression can't be computed."""
+    compressed = _compressed(cycle)
+    if is_lazy(compressed) or np.isfinite(compressed).all():
+        return []
+    largest = f"{float(np.max(cycle.compression_ratio)):.15g}"
+    return [f"{path}.compression_ratio = {largest}: compresses to more than 1.8e308 Pa; reduce it, or gamma"]
 
 
 def _below(peak: Number, compressed: Number) -> str:

@@ -30,6 +30,8 @@ from linksweep.scene.text_file import text_of
 from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 KEYS = ("csv", "column", "unit", "interpolation")
+LONGEST_CELL = 1000
+"""Characters that a cell may have."""
 MOST_SHOWN = 5
 """Bad cells of a file that a message lists one by one."""
 
@@ -93,14 +95,28 @@ def _rows(name: str, folder: Path) -> list[Row]:
     header = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(",;\t", key=header.count)
     reader = csv.reader(text.splitlines(), delimiter=delimiter)
-    rows = [Row(reader.line_num, [cell.strip() for cell in cells]) for cells in reader if any(map(str.strip, cells))]
-    if not rows or rows[0].cells[0] != "theta2" or len(rows[0].cells) < 2:
-        line, first = (rows[0].line, rows[0].cells) if rows else (1, [])
-        raise ValueError(
-            f"csv: {name}:{line}: its columns are {', '.join(map(shown, first)) or 'none'}: the first line must name "
-            f"them, the first of them theta2 (in degrees), as in theta2,P"
-        )
+    rows = []
+    try:
+        for cells in reader:
+            row = Row(reader.line_num, [cell.strip() for cell in cells])
+            if max(map(len, row.cells), default=0) > LONGEST_CELL:
+                raise ValueError(f"csv: {name}:{row.line}: a cell has more than {LONGEST_CELL} characters")
+            rows += [row] * any(row.cells)
+    except csv.Error as error:
+        raise ValueError(f"csv: {name}:{reader.line_num}: cannot be read as CSV: {error}") from None
+    refuse(_header_problems(name, rows))
     return rows
+
+
+def _header_problems(name: str, rows: list[Row]) -> list[str]:
+    """Why the first line does not name the columns; the file may be another, of which no word is told."""
+    line, cells = rows[0] if rows else (1, [])
+    if cells[:1] == ["theta2"] and len(cells) > 1:
+        return []
+    known = [cell for cell in cells if "theta" in cell.lower()]
+    there = f"its columns are {', '.join(map(shown, cells))}: " if known else ""
+    must = "the first line must name the columns, the first of them theta2 (in degrees), as in theta2,P"
+    return [f"csv: {name}:{line}: {there}{must}"]
 
 
 def _column(table: dict[str, Any], header: list[str]) -> int:

@@ -7,7 +7,6 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -91,12 +90,13 @@ class Log:
 
     def refused(self, error: ValueError, where: Where) -> Any:
         """Log what a constructor says, one problem a line with its path first, but for what was not read."""
-        known = [*self.misplaced, *(place for place, _ in self.problems)]
+        known = {*self.misplaced, *(place for place, _ in self.problems)}
+        above = {place[:k] for place in known for k in range(len(place))}
         for line in str(error).split("\n"):
             path = re.findall(r"^[\w.\[\]]*", line)[0].rstrip(".")
             keys = tuple(int(key) - 1 if key.isdigit() else key for key in re.findall(r"\w+", path))
             place = (*where, *keys) if where or {*keys[:1]} <= {*self.top} else ("mechanism", *keys)
-            if not any(place[: len(other)] == other[: len(place)] for other in known):
+            if place not in above and known.isdisjoint(place[:k] for k in range(len(place) + 1)):
                 self.problem(place, ("." if line.startswith('"') else "") + line[len(path) :])
         return UNREAD
 
@@ -134,31 +134,48 @@ def document(text: str, name: str) -> dict[str, Any]:
 
 
 def _key_lines(text: str) -> dict[Where, int]:
-    """Find the line of every key: the text is cut into the smallest pieces that are TOML by themselves."""
+    """Find the line of every key: the text, which is TOML, is cut into the smallest pieces that are TOML alone."""
     lines: dict[Where, int] = {(): 1}
+    counts: Counter[Where] = Counter()  # tables of each list so far
     table: Where = ()
-    start, piece = 1, ""
-    for number, line in enumerate(text.split("\n"), 1):
-        piece += line + "\n"
-        try:
-            places = [place for place, _ in _places(tomllib.loads(piece))]
-        except tomllib.TOMLDecodeError:
-            continue  # the value goes on in the next line
+    for start, piece in _pieces(text):
+        places = [place for place, _ in _places(tomllib.loads(piece))]
         if piece.lstrip().startswith("["):
-            table, places = _opened(places[-1], start, lines), []
+            table, places = _opened(places[-1], start, lines, counts), []
         for place in places:
             lines.setdefault((*table, *place), start)
-        start, piece = number + 1, ""
     return lines
 
 
-def _opened(header: Where, start: int, lines: dict[Where, int]) -> Where:
+def _pieces(text: str) -> Iterator[tuple[int, str]]:
+    """Yield each header and each key with its value, all its lines, after the number of the first of them."""
+    begin, first, number, depth = 0, 1, 1, 0
+    for token in _TOKEN.finditer(text + "\n"):
+        number += token[0].count("\n")
+        depth += (token[0] in "[{") - (token[0] in "]}")
+        if token[0] == "\n" and depth == 0:
+            yield first, text[begin : token.end()]
+            begin, first = token.end(), number
+
+
+_TOKEN = re.compile(
+    r'''
+    """(?:\\.|[^\\])*?""""{0,2} | '{3}.*?'{3}'{0,2} | "(?:\\.|[^"\\\n])*" | '[^'\n]*'  # strings
+    | \#[^\n]* | [\[\]{}\n]
+    ''',
+    re.DOTALL | re.VERBOSE,
+)
+"""What tells where a value ends: strings, comments, brackets and ends of lines."""
+
+
+def _opened(header: Where, start: int, lines: dict[Where, int], counts: Counter[Where]) -> Where:
     """Note the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
     table: Where = ()
     for key, following in zip(header, (*header[1:], ""), strict=True):
         if key != 0:
             table = (*table, key)
-            so_far = next(n for n in count() if (*table, n) not in lines)
+            so_far = counts[table]
+            counts[table] += following == 0
             lines.setdefault(table, start)
             table = (*table, so_far) if following == 0 else (*table, so_far - 1) if so_far else table
             lines.setdefault(table, start)

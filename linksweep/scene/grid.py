@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from linksweep.engine.memory import require_memory
 from linksweep.engine.run import Grid
 from linksweep.mechanisms.conversion import all_to_float64
 from linksweep.mechanisms.degrees import cos_sin_rests
@@ -24,6 +25,7 @@ def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
     if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
         if theta2 < 1:
             raise ValueError(f"theta2 = {said(theta2)}: a count of angles must be at least 1")
+        require_memory(f"{dim} = {said(theta2)}", 8.0 * theta2 * (1 + len(NAMES)))
         return _uniform(int(theta2), period, dim)
     return _grid(_angles(theta2), 0.0, dim)
 

@@ -16,7 +16,8 @@ from linksweep.scene.interpolation import CUBIC, RINGING, OvershootWarning, Peri
 Curves = dict[str, PeriodicCurve]
 """The curves through a scene's arrays over theta2, by path: each is made when it is first needed."""
 
-
+LARGEST = 1e290
+"""Values from here on are not interpolated."""
 TURNS = (1, 2)
 """After how many turns of the crank a cycle may come round."""
 WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
@@ -155,9 +156,15 @@ def curve_of(path: str, value: xr.DataArray, period: float, interpolation: str |
     """Return the curve through an array over theta2. Raises ValueError where its angles do not go all the way round."""
     known, values = knots(value)
     period, interpolation = period_of(value, period), interpolation or CUBIC
-    refuse(period_problems(path, known, values, period, interpolation))
+    refuse(_size_problems(path, values) or period_problems(path, known, values, period, interpolation))
     last = -1 if known[-1] - known[0] == period else None  # repeats the first
     return PeriodicCurve(known[:last], values[:last], period, interpolation)
+
+
+def _size_problems(path: str, values: np.ndarray) -> list[str]:
+    """Return why values can't be interpolated: slopes between them would overflow."""
+    largest = float(np.max(np.abs(values)))
+    return [f"{path} holds {largest:.15g}: is interpolated, so it must be below {LARGEST:g}"] * (largest >= LARGEST)
 
 
 def overshoot_of(value: xr.DataArray, period: float) -> float | None:

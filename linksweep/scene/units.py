@@ -63,6 +63,10 @@ KINDS = {
     )
 }
 
+LONGEST_TEXT, LONGEST_UNIT = 1000, 60
+"""Characters that a number with its unit, and a unit, may have."""
+FINITE = "must be a finite number, at most 1.8e308"
+
 # What pint lacks. A blob is the inch's slug: 1 lbf gives it 1 in/s^2.
 _NOT_IN_PINT = ("blob = lbf * s^2 / in", "rev = revolution")
 
@@ -108,18 +112,27 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
     """
     try:
         if isinstance(value, str):
+            _require_short(value, LONGEST_TEXT)
             return _scaled(*_parted(value.strip().replace("−", "-"), kind), kind)
         number = to_float64(value, kind)
         if not isinstance(number, float):
             raise ValueError(f'must be a number or a text such as "{KINDS[kind].example}"')
         return _finite(number) if unit is None else _scaled(repr(_finite(number)), unit, kind)
+    except OverflowError:
+        raise ValueError(f"{shown(value)}: {FINITE}") from None
     except ValueError as error:
         raise ValueError(f"{shown(value)}: {error}") from None
+
+
+def _require_short(text: str, longest: int) -> None:
+    if len(text) > longest:
+        raise ValueError(f"has {len(text)} characters: must have at most {longest}")
 
 
 @lru_cache(maxsize=1024)
 def accepted_unit(unit: str, kind: str) -> str:
     """Return the listed spelling of `unit`, or raise a ValueError that lists the units of this kind."""
+    _require_short(unit, LONGEST_UNIT)
     key = _factors(unit)
     for spelling in KINDS[kind].spellings:
         if _factors(spelling) == key:
@@ -130,14 +143,18 @@ def accepted_unit(unit: str, kind: str) -> str:
 def unit_problems(path: str, said: Any, kind: str) -> list[str]:
     """What is wrong with the unit that an array says: values are taken as they are, so it must be that of its kind."""
     unit = KINDS[kind].unit
-    if not said or said == unit or _is_si(str(said), kind):
+    if not said or said == unit or (len(str(said)) <= LONGEST_UNIT and _is_si(str(said), kind)):
         return []
-    return [f'{path} has attrs["units"] = "{said}": must be in {unit}; convert its values, and say units="{unit}"']
+    there = f'{path} has attrs["units"] = {shown(str(said))}'
+    return [f'{there}: must be in {unit}; convert its values, and say units="{unit}"']
 
 
 def shown(value: object) -> str:
     """Return a value as it stands in a file, cut where it is long."""
-    text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
+    try:
+        text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
+    except ValueError:  # an int of too many digits
+        text = f"<{type(value).__name__}>"
     text = "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text)  # a message is one line
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -265,7 +282,7 @@ def _is_si(unit: str, kind: str) -> bool:
 
 def _finite(number: Any) -> float:
     if not abs(number) <= sys.float_info.max:
-        raise ValueError("must be a finite number, at most 1.8e308")
+        raise ValueError(FINITE)
     return float(number)
 
 

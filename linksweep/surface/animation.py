@@ -6,6 +6,7 @@ the longest part that there is; a car stops where it leaves the track. Angles th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,8 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.memory import require_memory
 from linksweep.mechanisms import LoopTrack
-from linksweep.mechanisms.validate import count_problems, refuse
+from linksweep.mechanisms.validate import count_problems, refuse, said
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.surface import loop_plot, signals
@@ -82,6 +84,7 @@ def animate(ds_or_scene: xr.Dataset | Scene, frames: int = 72, point: tuple[floa
     24
     """
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
+    require_memory(f"frames = {said(frames)}", float(frames * math.prod(SIZE) * DPI**2))
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
     angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
     with small_type():

@@ -10,20 +10,14 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
-import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from linksweep.scene.text_file import kind_of
+
 PREFIX, SUFFIX = ".linksweep-", ".part"
 """How the names of folders begin and end in which files are being written."""
-KINDS = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-}
 
 
 @contextlib.contextmanager
@@ -53,13 +47,13 @@ def target_of(path: str | os.PathLike) -> Path:
     """
     target = Path(os.path.realpath(path) if os.path.islink(path) else path)
     try:
-        kind = stat.S_IFMT(os.stat(target).st_mode)
+        kind = kind_of(target)
     except FileNotFoundError:
-        kind = stat.S_IFREG
+        kind = ""
     except NotADirectoryError:
         raise NotADirectoryError(f"{path}: {target.parent} is no folder; choose another") from None
-    if kind in KINDS:
-        raise FileExistsError(f"{path}: is {KINDS[kind]}, which no file replaces; choose another name")
+    if kind:
+        raise FileExistsError(f"{path}: is {kind}, which no file replaces; choose another name")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {target.parent}; make it first")
     return target

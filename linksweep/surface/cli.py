@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import io
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,20 +27,47 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+CLOSED_PIPE = 141
+"""What a shell tells of a program that ended because nobody reads its output."""
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; 0 when all went well, 2 with a message when the input or a file was at fault."""
-    options = _parser().parse_args(arguments)
+    _print_anything()
+    try:
+        options = _parser().parse_args(arguments)
+        code = _run(options)
+        sys.stdout.flush()
+    except BrokenPipeError:  # who reads the output has had enough of it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return CLOSED_PIPE
+    return code
+
+
+def _run(options: argparse.Namespace) -> int:
     try:
         for path in filter(None, (getattr(options, "output", None), getattr(options, "plot", None))):
             target_of(path)  # before anything is computed
         options.run(options)
+    except BrokenPipeError:
+        raise
     except (ValueError, OSError) as error:
         print(f"linksweep: {error}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print("linksweep: the memory is full: ask for fewer angles, designs or quantities", file=sys.stderr)
         return 2
     except KeyboardInterrupt as stopped:
         print(f"linksweep: {str(stopped) or 'stopped'}", file=sys.stderr)
         return 130
     return 0
+
+
+def _print_anything() -> None:
+    """Print a question mark for what the terminal's encoding lacks, such as ° in ASCII."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def _parser() -> argparse.ArgumentParser:

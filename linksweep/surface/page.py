@@ -77,7 +77,7 @@ def report(
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)
-    write_text(text, path)
+    write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
 
 
 def page(scene: Scene, title: str | None = None, part: Range | None = None) -> str:

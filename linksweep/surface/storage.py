@@ -15,6 +15,7 @@ from linksweep.results.record import design_coordinates, provenance
 from linksweep.scene.file import parse_scene, read_scene, require_writable
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
+from linksweep.scene.text_file import kind_of
 from linksweep.surface.atomic import whole
 from linksweep.surface.seal import SAVED, mark_of, seal, sealed
 
@@ -110,6 +111,8 @@ def load_scene(path: str | os.PathLike) -> Scene:
     if not path.exists():
         near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
         raise ValueError(f"{path}: there is no such file{near}")
+    if kind := kind_of(path):
+        raise ValueError(f"{path}: cannot be read: it is {kind}, no file")
     return scene_of(_loaded(path), str(path))
 
 

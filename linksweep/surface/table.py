@@ -14,6 +14,9 @@ from linksweep.surface.atomic import whole
 if TYPE_CHECKING:
     import pandas as pd
 
+FORMULAS = ("=", "+", "-", "@", "\t", "\r")
+"""How a text begins that a spreadsheet takes for a formula."""
+
 
 def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     """A Dataset as a table.
@@ -46,7 +49,8 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
 def to_csv(ds: xr.Dataset, path: str | os.PathLike) -> None:
     """Write a Dataset as a CSV file, whole or not at all, with the columns of `to_pandas`.
 
-    Numbers are written with all their digits, NaN as an empty cell.
+    Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would run as a formula
+    has an apostrophe before it.
 
     Raises
     ------
@@ -55,7 +59,23 @@ def to_csv(ds: xr.Dataset, path: str | os.PathLike) -> None:
     """
     table = to_pandas(ds)
     with whole(path) as temporary:
-        table.to_csv(temporary, index=False, encoding="utf-8")
+        table.map(_no_formula).rename(columns=_no_formula).to_csv(temporary, index=False, encoding="utf-8")
+
+
+def _no_formula(cell: Any) -> Any:
+    """Return a cell as it is, or with an apostrophe before a text that a spreadsheet would run."""
+    if not isinstance(cell, str):
+        return cell
+    mark = "'" if cell.startswith(FORMULAS) and not _is_number(cell) else ""
+    return mark + cell.replace("\r", "\n")  # which csv puts in quotes
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _header(values: xr.DataArray) -> str:
