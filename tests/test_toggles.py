@@ -190,3 +190,43 @@ def test_a_difference_that_cancels_keeps_its_digits():
     p, q = (1.0 / 3.0, 3e-20), (1.0 / 3.0, 1e-20)
     assert pairs.difference(p, q) == pytest.approx(2e-20, rel=1e-15)
     assert pairs.cross(p, (1.0, 0.0), q, (1.0, 0.0)) == pytest.approx(2e-20, rel=1e-15)
+
+
+# ---- lengths at the ends of what a number can hold -----
+
+
+@pytest.mark.parametrize("length", [1e-160, 1e-200, 1e-300, 1e-310])
+@pytest.mark.parametrize("role", ["crank", "ground"])
+def test_lengths_whose_squares_vanish_are_told_as_toggles(role, length):
+    scene = ls.Scene(replace(ls.example("press").mechanism, **too_short(role, length)), omega2=30.0)
+    cycle = ls.sweep(scene, 4)
+    assert cycle.status.attrs["flag_meanings"].split()[2] == "toggle"
+    assert cycle.status.values.tolist() == [2, 2, 2, 2]
+    assert np.isnan(cycle.F32x).all() and int(ls.peaks(scene).status) != 0
+
+
+def too_short(role, length) -> dict:
+    return {role: length if role == "ground" else ls.Link(length, 0.2, 1e-4)}
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e-160, 1e160, 1e300])
+def test_a_rod_beyond_all_sizes(length):
+    engine = ls.SliderCrank(ls.Link(0.05, 0.2, 1e-4), ls.Link(length, 0.2, 1e-4), slider_mass=0.5)
+    cycle = ls.sweep(ls.Scene(engine, 30.0), 7)
+    assert (cycle.status != 0).all() and int(ls.peaks(ls.Scene(engine, 30.0)).status) != 0
+
+
+def test_what_follows_from_sound_numbers_must_be_one():
+    bar = ls.Bar(1e120, 0.02, 0.02, 7750.0)
+    with pytest.raises(ValueError, match=r"^rod: its moment of inertia is more than a number can hold"):
+        ls.SliderCrank(ls.Link(0.05, 0.2, 1e-4), bar, slider_mass=0.5)
+    gas = ls.GasPressure(bore=1.7e308, pressure=1e5)
+    with pytest.raises(ValueError, match=r"^loads\[1\].bore: its square is more than a number can hold"):
+        ls.Scene(ls.example("engine").mechanism, omega2=30.0, loads=[gas])
+
+
+def test_a_machine_that_closes_at_one_angle_only():
+    """Coupler and rocker reach the crank's end where it points to D, and there only: a toggle, without a warning."""
+    links = (ls.Link(length, 1.0, 0.01) for length in (0.25, 0.125, 0.125))
+    found = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=30.0))
+    assert np.isnan(found.F32_peak) and int(found.status) == 1

@@ -187,7 +187,8 @@ class FourBar(CrankDriven):
         high = ((b - d) + (c - a)) * (b + c + d + a)
         perimeter = a + b + c + d
         margin = 1e-9 * perimeter * perimeter
-        return bool(in_range(perimeter) and np.all(low > margin) and np.all(high > margin))
+        sized = all(map(in_range, (a, b, c, d))) and in_range(perimeter / a * (perimeter / d))
+        return bool(sized and np.all(low > margin) and np.all(high > margin))
 
     @cached_property
     def _goes_through(self) -> bool:

@@ -92,8 +92,8 @@ def _dead_centres(
 
 def _crank_in_line(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
     """Angle φ in [0, 180] of the module's equation of dead centres; NaN where there is none."""
-    near, far = ((h - d) + g) * ((h + d) - g), ((d - h) + g) * ((d + h) + g)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
+        near, far = ((h - d) + g) * ((h + d) - g), ((d - h) + g) * ((d + h) + g)
         angle = 2.0 * np.degrees(np.arctan2(np.sqrt(near * np.sign(g)), np.sqrt(far * np.sign(g))))
     return np.where(g == 0.0, np.nan, angle)
 

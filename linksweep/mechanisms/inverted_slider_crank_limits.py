@@ -78,7 +78,7 @@ def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.n
     """Where a cylinder along the rocker's line cannot drive, and how far out it is there."""
     along = ("dead_centre", DEAD_CENTRES)
     way = np.stack([np.abs(d - a), d + a], axis=-1)
-    with np.errstate(invalid="ignore"):  # out of reach
+    with np.errstate(invalid="ignore", over="ignore"):  # out of reach
         slide = np.sqrt((way - e[..., None]) * (way + e[..., None]))
     angle = np.mod(np.stack([ground_angle, ground_angle + 180.0], axis=-1), 360.0)
     return {

@@ -9,9 +9,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, parameter, problems, said
+from linksweep.mechanisms.validate import Number, overflow_problems, parameter, problems, said
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,8 +136,14 @@ def link_problems(mechanism: Any, *roles: str) -> list[str]:
     for role in roles:
         link = getattr(mechanism, role)
         sound = isinstance(link, Link | Bar | Disk)
-        found += problems(link, role + ".") if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
+        found += _link_problems(role, link) if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
     return found
+
+
+def _link_problems(role: str, link: Link | Bar | Disk) -> list[str]:
+    found = problems(link, role + ".")
+    with np.errstate(over="ignore"):
+        return found or overflow_problems(role, link.inertia, "moment of inertia")
 
 
 def link_parameters(role: str, link: Link | Bar | Disk) -> dict[str, Number]:

@@ -70,7 +70,7 @@ def wedging(
 ) -> dict[str, Finding]:
     """Crank driven: angles about 90° and 270° from the guide between which friction wedges; the least that does."""
     highest = np.minimum(a + np.abs(e), b)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         least = np.where(np.abs(e) < a + b, np.sqrt((b - highest) * (b + highest)) / highest, np.nan)
     return _jams(_crossings(a, b / np.hypot(1.0, friction), e), slide_angle, friction, least)
 

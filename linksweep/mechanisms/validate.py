@@ -96,6 +96,12 @@ def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) 
     return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
 
 
+def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
+    """Return a line if what follows from sound numbers is more than a float can hold."""
+    sound = is_lazy(number) or bool(np.all(np.isfinite(number)))
+    return [] if sound else [f"{path}: its {meaning} is more than a number can hold; reduce its measures"]
+
+
 def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
     """Return the problems of a tuple that must hold plain numbers."""
     if not isinstance(values, tuple):

@@ -138,9 +138,10 @@ def closure_noise(
     least_high: Number,
     stretched_noise: Number,
     pinch_sin: Number,
+    sums_unit: Number,
 ) -> tuple[Number, Number]:
     """What low and high cannot tell from zero."""
-    beyond = beyond_range(closure_unit)
+    beyond = beyond_range(closure_unit) + sums_unit * beyond_range(sums_unit * sums_unit)
     return (
         unknown_of_cosine(least_low, folded_noise, pinch_sin) + beyond,
         unknown_of_cosine(least_high, stretched_noise, pinch_sin) + beyond,

@@ -61,10 +61,11 @@ def closure_noise(
     low_miss = difference((low_cos, low_cos_rest), (-1.0, 0.0))
     high_miss = difference((high_cos, high_cos_rest), (1.0, 0.0))
     noise = 2.0**-52 * (crank_length + rod_length + abs(offset)) / crank_length
-    beyond = beyond_range(crank_length * crank_length)
+    crank_beyond = crank_length * beyond_range(crank_length * crank_length)
+    beyond = crank_beyond + rod_length * beyond_range(rod_length * rod_length)
     return (
-        crank_length * (unknown_of_cosine(low_miss, noise, pinch_sin) + beyond),
-        crank_length * (unknown_of_cosine(high_miss, noise, pinch_sin) + beyond),
+        crank_length * unknown_of_cosine(low_miss, noise, pinch_sin) + beyond,
+        crank_length * unknown_of_cosine(high_miss, noise, pinch_sin) + beyond,
     )
 
 

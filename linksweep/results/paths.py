@@ -280,7 +280,7 @@ def _even_on_arc() -> Array:
 def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
     """x of angles on arcs; NaN of those beyond."""
     away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):  # beyond, or an arc of one angle
         x = np.arcsin(away / half[:, None])
     return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
 

@@ -12,7 +12,7 @@ import numpy as np
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, Rule, is_lazy, parameter, problems
+from linksweep.mechanisms.validate import Number, Rule, is_lazy, overflow_problems, parameter, problems
 from linksweep.scene.action import Revolution, with_sound
 from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, pressure_over
 from linksweep.scene.changing_load import ChangingLoad
@@ -85,7 +85,10 @@ class GasPressure(ChangingLoad):
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
         of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
-        return problems(given, path + ".") + of_cycle + self.changing_problems(path)
+        found = problems(given, path + ".")
+        with np.errstate(over="ignore"):
+            found = found or overflow_problems(f"{path}.bore", self.bore * self.bore, "square")
+        return found + of_cycle + self.changing_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if not isinstance(mechanism, SliderCrank):
