@@ -31,7 +31,9 @@ HALVINGS = 45
 TOLERANCE = 1e-13
 """Of a piece, relative to the whole: a revolution has up to a hundred pieces that matter."""
 BURSTING = 1e5
-"""A piece that outgrows the first estimate of the whole so far diverges."""
+"""A piece that outgrows the first estimate of the whole so far diverges,"""
+NARROW = 12
+"""once it has been halved so often: a load may have a peak that the first estimate passed over."""
 LAST_DIGIT = 2.0**-44
 """Of an angle [degree]."""
 POLE = 1e-3
@@ -170,10 +172,11 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, th
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
     done = np.zeros((len(integrands), count))
     sought = np.ones((len(integrands), len(pieces.path)), dtype=bool)
-    for _ in range(HALVINGS):
+    for halvings in range(HALVINGS):
         rules = _rules(group, integrands, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
-        rest = _burst(rules, sought & _disagree(rules, scale[:, pieces.path]), scale, pieces.path)
+        rest = sought & _disagree(rules, scale[:, pieces.path])
+        rest = _burst(rules, rest, scale, pieces.path) if halvings >= NARROW else rest
         done += _by_owner(np.where(sought & ~rest, rules.outer, 0.0), pieces.path, count)
         unsettled = rest.any(axis=0)
         if not unsettled.any():
