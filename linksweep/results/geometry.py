@@ -17,6 +17,7 @@ Source: R. L. Norton, Design of Machinery, chapters "Graphical Linkage Synthesis
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from linksweep.physics import planar
 from linksweep.results.check import check
 from linksweep.results.compute import compute, require_scene
 from linksweep.results.peaks import peaks
-from linksweep.results.record import variable
+from linksweep.results.record import design_coordinates, provenance, variable
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_pair
 from linksweep.scene.grid import crank_grid
@@ -75,7 +76,8 @@ def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
 
     Notes
     -----
-    Closed forms; equations and source: `linksweep.results.geometry`.
+    Closed forms, and the exact peaks of the transmission angle; neither looks at loads or speeds. Equations and source:
+    `linksweep.results.geometry`.
 
     Examples
     --------
@@ -86,10 +88,13 @@ def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
     """
     require_scene(scene)
     refuse(["scene is of a LoopTrack, which has no links: give another"] * isinstance(scene.mechanism, LoopTrack))
+    unloaded = replace(scene, omega2=1.0, alpha2=0.0, loads=())
     with np.errstate(invalid="ignore"):
-        found = _limits(scene)
-    angles = peaks(scene, of=["transmission_angle"], threads=threads).drop_vars(["status", "transmission_angle_peak"])
-    return xr.Dataset({**found, **angles.data_vars}, attrs=angles.attrs | {"command": "linksweep.geometry(scene)"})
+        found = _limits(unloaded)
+    angles = peaks(unloaded, of=["transmission_angle"], threads=threads)
+    told = xr.Dataset({**found, **angles.drop_vars(["status", "transmission_angle_peak"]).data_vars})
+    coordinates = {name: of for name, of in design_coordinates(scene).items() if {*of.dims} <= {*told.dims}}
+    return told.assign_coords(coordinates).assign_attrs(provenance(scene, "linksweep.geometry(scene)", coordinates))
 
 
 def _limits(scene: Scene) -> dict[str, Any]:
