@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -26,6 +27,7 @@ def rows(size: Size) -> list[Row]:
         return [
             *_grids(size, 20.0, {720: 1.0, 360: 1.0}),
             *_grids(size, 0.0, {1440: 1.0}),
+            _over_angle(size),
             _lapack(size),
             *_shared(size),
             _memory(size),
@@ -83,6 +85,16 @@ def _grids(size: Size, least: float, goals: dict[int, float]) -> list[Row]:
         timed.row(SHARE, EXACT, _grid(n), goal, note=f"{said}; the grid errs by {_shortfall(calls[_grid(n)](), exact)}")
         for n, goal in goals.items()
     ]
+
+
+def _over_angle(size: Size) -> Row:
+    """Exact peaks where a load over the angle is given: along the way, at 720 angles of a turn and more."""
+    angles = np.arange(0.0, 360.0, 5.0)
+    push = xr.DataArray(-300.0 * np.exp(-(((angles - 180.0) / 40.0) ** 2)), {"theta2": angles}, "theta2")
+    designs = replace(crank_rockers(size.designs, 20.0), loads=(ls.Load("rocker", torque=push),))
+    exact = partial(ls.peaks, designs, threads=1)
+    timed = race({EXACT: exact, _grid(360): partial(exact, theta2=360)}, size)
+    return timed.row(SHARE, EXACT, _grid(360), note="with a torque over theta2 that all designs share")
 
 
 def _grid(count: int) -> str:

@@ -8,6 +8,7 @@ import xarray as xr
 from refusals import LOOP, refusal
 
 import linksweep as ls
+from linksweep.scene.file import write_scene
 
 PRESS, ENGINE, SHAPER = (ls.example(name) for name in ("press", "engine", "quick-return"))
 LIGHT = {"mass": 0.0, "inertia": 0.0}
@@ -115,7 +116,7 @@ def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
         before, after = left[f"P{axis}"].values, right[f"P{axis}"].values
         slope, bend = (after - before) / (2.0 * turn), (after - 2.0 * p + before) / turn**2
         np.testing.assert_allclose(v, slope * scene.omega2, atol=1e-6 * max(abs(v).max(), 1e-3))
-        expected = bend * scene.omega2**2 + slope * scene.alpha2
+        expected = bend * scene.omega2**2 + slope * (scene.alpha2 or 0.0)
         np.testing.assert_allclose(a, expected, atol=1e-5 * max(abs(a).max(), 1e-3))
 
 
@@ -164,3 +165,25 @@ def test_points_over_designs_and_gaps():
 def test_refusals(call, said):
     (line,) = refusal(call)
     assert said in line
+
+
+def test_loads_and_speeds_are_not_looked_at(monkeypatch):
+    """Geometry is that of the bare machine, and its scene that of the whole one."""
+
+    def looked(*_):
+        raise AssertionError("a load over the angle was looked at")
+
+    def push(theta2):
+        return np.cos(np.radians(theta2))
+
+    length = xr.DataArray([0.20, 0.22, 0.24], {"design": [5, 6, 7]}, "design")
+    press = ls.example("press")
+    bare = replace(press, mechanism=replace(press.mechanism, coupler=replace(press.mechanism.coupler, length=length)))
+    torque = xr.DataArray([1.0, 2.0, 3.0], {"design": [5, 6, 7]}, "design")
+    loads = [ls.Load("rocker", torque=torque), ls.Load("coupler", force=(push, 0.0))]
+    scene = replace(bare, omega2=lambda theta2: 20.0 + push(theta2), loads=loads)
+    monkeypatch.setattr("linksweep.scene.over_angle.called", looked)
+    found = ls.geometry(scene)
+    xr.testing.assert_equal(found.drop_vars("loads[1].torque"), ls.geometry(bare))
+    assert found.attrs["scene"] == write_scene(scene, elsewhere=["coupler.length", "loads[1].torque"])
+    assert ls.scene_at(found, design=6).loads[0].torque == 2.0

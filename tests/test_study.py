@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import netCDF4
@@ -114,6 +115,18 @@ def test_who_watches_sees_how_far_it_is(tmp_path, monkeypatch):
         ls.study(many(), tmp_path / "study.nc", ["F32"], chunk=6)
     assert re.search(r"60\.0/60\.0", screen.getvalue())
     assert " designs/s]" in screen.getvalue()
+
+
+def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
+    """Else nothing would be seen, and nothing kept, for minutes."""
+    chunks = []
+    run = study_module._run
+    monkeypatch.setattr(study_module, "SLOW_CHUNK", 25)
+    monkeypatch.setattr(study_module, "_run", lambda job, *words: chunks.append(len(job.blocks)) or run(job, *words))
+    pushed = replace(many(), loads=[ls.Load("rocker", torque=lambda theta2: np.cos(np.radians(theta2)))])
+    for name, scene, words in (("a", many(), {}), ("b", pushed, {}), ("c", pushed, {"theta2": 36})):
+        ls.study(scene, tmp_path / f"{name}.nc", ["F32"], **words)
+    assert chunks == [1, 3, 1]  # of 60 designs
 
 
 def test_who_does_not_watch_gets_nothing(tmp_path, monkeypatch, capsys):

@@ -111,8 +111,7 @@ def quantities_at(
     scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
 ) -> Array:
     """Values (names, pairs) at pairs of a design and an angle [degree]."""
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
-    inputs, sample = _inputs_at(scene, grid)
+    inputs, grid, sample = _inputs_at(scene, angles)
     forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
     request = plan(scene.table, names, forms)
     places = places_of(inputs.sizes, designs) | {grid.dim: sample}
@@ -141,12 +140,15 @@ def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, ste
     return b
 
 
-def _inputs_at(scene: Scene, grid: Grid) -> tuple[Inputs, Array]:
-    """The scene's numbers at the different angles of a grid, and which of these each angle is."""
+def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
+    """Return a scene's numbers at the different ones of these angles, the grid of all, and which of those each is."""
+    period, index = scene.period, scene.mechanism.index
     if scene.steady:
-        return scene.inputs, np.empty(0, dtype=int)
-    different, sample = np.unique(in_period(grid.angles, scene.period), return_inverse=True)
-    return scene.at(crank_grid(different, scene.period, grid.dim)).inputs, sample
+        return scene.inputs, crank_grid(angles, period, index), np.empty(0, dtype=int)
+    different, sample = np.unique(angles, return_inverse=True)
+    known = crank_grid(different, period, index)
+    inputs = scene.at(known._replace(angles=in_period(different, period))).inputs
+    return inputs, known._replace(angles=angles, table=known.table.take(sample, axis=1)), sample
 
 
 def in_period(angle: Array, period: float) -> Array:

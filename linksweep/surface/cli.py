@@ -21,7 +21,7 @@ from linksweep.surface.commands import PICTURES, a_file, add_commands, write_fig
 from linksweep.surface.page import report
 from linksweep.surface.report import check_lines, peak_table, study_report
 from linksweep.surface.storage import load_scene, save
-from linksweep.surface.study import CHUNK, study
+from linksweep.surface.study import study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -102,7 +102,8 @@ def _parser() -> argparse.ArgumentParser:
     many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
     many.add_argument("--of", type=_names, nargs="+", help="names of the quantities wanted")
-    many.add_argument("--chunk", type=int, default=CHUNK, metavar="N", help=f"designs computed at a time ({CHUNK})")
+    chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
+    many.add_argument("--chunk", type=int, metavar="N", help=chunks)
     many.set_defaults(run=_study)
 
     sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")

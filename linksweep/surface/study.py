@@ -39,6 +39,9 @@ from linksweep.surface.seal import seal, sealed
 CHUNK = 50_000
 """Designs computed at a time: some tenths of a second of work, which is all that a kill can cost."""
 
+SLOW_CHUNK = 1000
+"""The same where loads or speeds change with the angle, and exact peaks take a quarter of a millisecond a design."""
+
 LONGEST_NAME = 255
 """Bytes that the name of a file may have."""
 
@@ -50,7 +53,7 @@ def study(
     scene: Any,
     path: str | os.PathLike,
     of: Iterable[str] | None = None,
-    chunk: int = CHUNK,
+    chunk: int | None = None,
     threads: int | None = None,
     client: Any = None,
     **options: Any,
@@ -66,7 +69,7 @@ def study(
     scene : Scene
     path : the NetCDF file; until it is finished there is a folder of its chunks beside it, ``study.nc.partial``
     of : names of quantities, as `linksweep.peaks` takes them; default: all pins and the torque
-    chunk : designs computed at a time
+    chunk : designs computed at a time; default: 50 000, or 1000 where loads or speeds change with the angle
     threads : at most so many (default: all cores; on a cluster, one a chunk); the numbers do not depend on it
     client : of dask.distributed; its cluster then computes the chunks, and this process writes them. Default: the one
         that is active, if any
@@ -100,7 +103,9 @@ def study(
     require_scene(scene)
     refuse([*count_problems("chunk", chunk), *count_problems("threads", threads)])
     client = client_of(client)
-    job = Job(in_memory(scene), None if of is None else requested("of", of), options, int(chunk))
+    scene = in_memory(scene)
+    usual = CHUNK if scene.steady or "theta2" in options else SLOW_CHUNK
+    job = Job(scene, None if of is None else requested("of", of), options, int(chunk or usual))
     target = target_of(path)
     if not target.exists():
         job.try_out()
@@ -189,11 +194,12 @@ def _told(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _progress(designs: int) -> Iterator[Callable[[int], Any]]:
-    """A progress bar where somebody is watching; else nothing."""
-    if not (sys.stderr and sys.stderr.isatty()):
+    """Show a progress bar in a notebook, and on a terminal; elsewhere nothing."""
+    if sys.stderr is None:
         yield lambda count: None
         return
-    from tqdm import tqdm  # here: only those who watch need it
+    from tqdm.auto import tqdm  # here: only studies need it
 
-    with tqdm(total=designs, unit=" designs", unit_scale=True, delay=SHOWN_AFTER, file=sys.stderr) as bar:
+    words = {"unit": " designs", "unit_scale": True, "delay": SHOWN_AFTER, "file": sys.stderr}
+    with tqdm(total=designs, disable=None, **words) as bar:  # None: unless somebody is watching
         yield bar.update
