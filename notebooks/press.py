@@ -131,6 +131,25 @@ best = map_of_peaks.F43_peak.sel(rpm=300, method="nearest").idxmin()
 print(f"at about 300 rpm pin C is loaded least with a rocker of {100 * float(best):.1f} cm")
 
 # %% [markdown]
+# ## A load that follows the stroke
+#
+# A punch pushes over the last 12 mm before its slider's outer dead centre, and only while it closes. Said over the crank angle, that
+# load would be another one for each geometry; over the stroke it is the same for all. Here with the guide more and more aside:
+
+# %%
+aside = np.linspace(0.0, 0.04, 9)
+punch = ls.SliderCrank(
+    press.crank, press.coupler, slider_mass=2.0, offset=xr.DataArray(aside, {"aside": aside}, "aside")
+)
+push = xr.DataArray([-20e3, 0.0], {"position": [0.0, 0.012]}, "position")  # [N] from each distance on, to the next
+load = ls.Load("slider", force=push, over="slider.to_end", while_="closing", interpolation="step")
+punching = ls.peaks(ls.Scene(punch, omega2=scene.omega2, loads=[load]), of=["T12", "T12_mean"])
+punching.T12_max.plot(marker="o")
+assert np.allclose(
+    punching.T12_mean, 20e3 * 0.012 / (2 * np.pi), rtol=1e-9
+)  # the work of a stroke, whatever the offset
+
+# %% [markdown]
 # ## Keep it
 #
 # The Dataset goes to NetCDF as it stands. The file holds the whole scene, so that it can be run again.

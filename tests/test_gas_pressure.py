@@ -234,6 +234,7 @@ def test_functions_of_theta2_and_designs_that_share_their_jumps():
         lambda theta2: 2e5 + 1e5 * np.cos(np.radians(theta2)),
     ],
 )
+@pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # few angles, through a spline all the same
 def test_files_give_the_scene_back(pressure, tmp_path):
     given = scene(pressure, drive="coupler")
     if not callable(pressure):

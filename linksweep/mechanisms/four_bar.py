@@ -26,6 +26,7 @@ from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
+    BRANCH_SIGN,
     CrankDriven,
     between_rows,
     frame_parameters,
@@ -35,6 +36,7 @@ from linksweep.mechanisms.motion import (
     turned,
 )
 from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.strokes import Stroke, rocker_stroke
 from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, freudenstein, planar
@@ -144,6 +146,12 @@ class FourBar(CrankDriven):
     def pinch_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        """The rocker's angle."""
+        lengths = self.crank.length, self.coupler.length, self.rocker.length, self.ground
+        return {"rocker.angle": rocker_stroke(*lengths, self.ground_angle, BRANCH_SIGN[self.branch])}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""

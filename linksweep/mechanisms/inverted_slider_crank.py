@@ -27,6 +27,7 @@ from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.inverted_slider_crank_limits import angles, classes, dead_centres, rocker_dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import (
+    BRANCH_SIGN,
     CrankDriven,
     between_rows,
     frame_parameters,
@@ -36,6 +37,7 @@ from linksweep.mechanisms.motion import (
     turned,
 )
 from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.strokes import Stroke, block_stroke
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rpr, inverted_slider_crank, planar
@@ -186,6 +188,11 @@ class InvertedSliderCrank(CrankDriven):
     def pinch_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        """Where the block is along the rocker's line: of a cylinder, how far it is extended."""
+        return {"block.position": block_stroke(*self.lengths(), self.ground_angle, BRANCH_SIGN[self.branch])}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed for this drive and loads of these forms."""

@@ -13,6 +13,7 @@ from linksweep.mechanisms.bodies import Equation
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Checks
+from linksweep.mechanisms.strokes import Stroke
 from linksweep.mechanisms.validate import Number, choice_problems
 from linksweep.physics import crank_angle, planar
 
@@ -48,6 +49,11 @@ class CrankDriven(ByContent):
     profiles: ClassVar[Mapping[str, float]] = {}
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        """Positions of its links that a load may follow, by name: none. For one branch only."""
+        return {}
 
     def branch_problems(self) -> list[str]:
         return choice_problems("branch", self.branch, (*BRANCH_SIGN, "both"))

@@ -44,6 +44,7 @@ from linksweep.mechanisms.slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
+from linksweep.mechanisms.strokes import Stroke, slider_strokes
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_crank
@@ -257,6 +258,11 @@ class SliderCrank(CrankDriven):
             ahead = np.mod(self.slide_angle + (0.0 if sign > 0.0 else 180.0), 360.0)
             found += [ahead + sign * stretched, ahead + 180.0 + sign * folded]
         return tuple(found)
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        """Where the slider is, and how far it still has to its outer dead centre."""
+        return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
     def turns_fully(self) -> Number:

@@ -15,6 +15,8 @@ import xarray as xr
 
 from linksweep.results.peaks import peaks
 from linksweep.scene.file import write_scene
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.over_position import is_function
 from linksweep.scene.scene import Scene
 from linksweep.scene.selection import Block, blocks, design_sizes, selected
 from linksweep.scene.tabulated import values_at
@@ -84,10 +86,17 @@ class Job:
 
 
 def scene_digest(scene: Scene) -> str:
-    """SHA-256 of all that makes a scene: its text, its arrays and their labels; functions by their values."""
+    """SHA-256 of all that makes a scene: its text, its arrays and their labels; functions by their values.
+
+    Functions of a position by those that the first design has all the way round.
+    """
     digest = hashlib.sha256(write_scene(scene, elsewhere=scene.arrays).encode())
     for function in scene.functions.values():  # also of one that the text cannot hold
         digest.update(values_at(function, TWO_TURNS).tobytes())
+    if any(is_function(curve) for load in scene.loads for curve in load.over_positions):
+        first = selected(scene, {dim: slice(0, 1) for dim in design_sizes(scene)})
+        for array in first.at(crank_grid(len(TWO_TURNS), scene.mechanism.period)).arrays.values():
+            digest.update(np.ascontiguousarray(array.values, dtype=float).tobytes())
     for path, array in scene.arrays.items():
         labels = {str(dim): array[dim].values.tolist() for dim in array.dims if dim in array.coords}
         digest.update(json.dumps([path, array.dims, array.shape, labels], default=str).encode())

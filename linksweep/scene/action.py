@@ -3,27 +3,42 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import xarray as xr
 
 from linksweep.engine.run import Grid
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.actions import Form
 from linksweep.mechanisms.content import ByContent
-from linksweep.mechanisms.validate import Number, Rule, problems
+from linksweep.mechanisms.validate import Number, Rule, is_lazy, problems
 from linksweep.scene.over_angle import Curves, at_angles
 
 Owner = TypeVar("Owner")
 
 
 class Revolution(NamedTuple):
-    """What a sweep looks at: the machine, its angles, the speed of the crank at them, and the curves of its scene."""
+    """What a sweep looks at: the machine, its angles, the speed of the crank at them, and the curves of its scene.
+
+    `kinematics` gives quantities that angles and lengths alone decide, by name, over the angles.
+    """
 
     mechanism: Mechanism
     grid: Grid
     omega2: Number
     curves: Curves
+    kinematics: Callable[..., list[xr.DataArray]]
+
+    @property
+    def turning(self) -> Number:
+        """1 for a crank that turns counter-clockwise, -1 for clockwise; one number where all are known to do so."""
+        clockwise = self.omega2 < 0.0
+        if not is_lazy(clockwise) and (np.all(clockwise) or not np.any(clockwise)):
+            return -1.0 if np.any(clockwise) else 1.0
+        return 1.0 - 2.0 * clockwise
 
     def sample(self, path: str, value: Any, rule: Rule, interpolation: str | None = None) -> Any:
         """A number at the angles, where it changes with them."""
@@ -49,6 +64,11 @@ class Action(ByContent):
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Why a mechanism does not take it, sound as it is in itself."""
         return []
+
+    @property
+    def over_positions(self) -> tuple[Any, ...]:
+        """Its tables and functions of a position: curves, which have neither designs nor crank angles."""
+        return ()
 
     @property
     def period(self) -> float:

@@ -15,7 +15,9 @@ from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 MOST = 1_000_000
 """Numbers of an axis that is given by its ends."""
-KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2", "interpolation")
+KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2", "position", "interpolation")
+PLACES = {"theta2": "angle", "position": "length"}
+"""Dims along which a load may change, each short for its own `coords`, and the kinds of these."""
 
 
 def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.DataArray:
@@ -25,8 +27,8 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     ----------
     table : dict
         `dim` or `dims`; `values`, nested as deep as the dims, or `start`, `stop`, `num`; the `unit` of plain
-        numbers; `coords`, a list for each dim with labels; `theta2`, short for angles [degree] in `coords`;
-        `interpolation` over them.
+        numbers; `coords`, a list for each dim with labels; `theta2` and `position`, short for angles [degree] and
+        positions [m] in `coords`; `interpolation` over them.
     kind : str
         What is measured: a key of `KINDS`.
     alone : bool
@@ -130,16 +132,17 @@ def _array(values: Any, problems: list[str]) -> Any:
 
 
 def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, problems: list[str]) -> dict[str, Any]:
-    """Read the labels of the dims; those of theta2 are angles."""
+    """Read the labels of the dims; those of theta2 and of position are quantities."""
     sizes = dict(zip(dims, values.shape, strict=True))
-    if "coords" not in table and "theta2" not in table:
-        return {dims[0]: values} if alone and len(dims) == 1 and dims != ["theta2"] else {}
+    if not table.keys() & {"coords", *PLACES}:
+        return {dims[0]: values} if alone and len(dims) == 1 and dims[0] not in PLACES else {}
     if not isinstance(coords := table.get("coords", {}), dict):
         problems.append(f"coords = {shown(coords)}: must be a table, {{{dims[0]} = [...]}}")
         return {}
-    coords = coords | ({"theta2": table["theta2"]} if "theta2" in table else {})
-    if isinstance(angles := coords.get("theta2"), list) and any(isinstance(angle, str) for angle in angles):
-        coords["theta2"] = _read_nested(angles, "theta2", "angle", None, problems)
+    coords = coords | {dim: table[dim] for dim in PLACES if dim in table}
+    for dim, kind in PLACES.items():
+        if isinstance(places := coords.get(dim), list) and any(isinstance(place, str) for place in places):
+            coords[dim] = _read_nested(places, dim, kind, None, problems)
     for dim, labels in coords.items():
         if dim not in sizes:
             problems.append(f"coords: {shown_key(dim)} is no dim of these values; they have {', '.join(dims)}")

@@ -12,6 +12,7 @@ The first line names the columns; the first column is theta2 [degree], in rising
 ``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column` may be
 left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes on
 between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
+The first column of a load over a position is `position` [m] or [degree], in rising order.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     Returns
     -------
     DataArray
-        Values [`KINDS[kind].unit`] over theta2 [degree]; the interpolation among its attributes.
+        Values [`KINDS[kind].unit`] over theta2 [degree], or position; the interpolation among its attributes.
 
     Raises
     ------
@@ -76,10 +77,13 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
         raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
     samples = _samples(name, rows, _column(table, rows[0].cells))
-    refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
+    over = rows[0].cells[0]
+    refuse(_order_problems(name, samples, over))
+    if over == "theta2":
+        refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
     angles = np.array([sample.angle for sample in samples])
     values = [quantity(sample.value, kind, unit) for sample in samples]
-    return xr.DataArray(values, {"theta2": angles}, "theta2", attrs=attributes)
+    return xr.DataArray(values, {over: angles}, over, attrs=attributes)
 
 
 def _unit(table: dict[str, Any], kind: str) -> str | None:
@@ -111,11 +115,11 @@ def _rows(name: str, folder: Path) -> list[Row]:
 def _header_problems(name: str, rows: list[Row]) -> list[str]:
     """Why the first line does not name the columns; the file may be another, of which no word is told."""
     line, cells = rows[0] if rows else (1, [])
-    if cells[:1] == ["theta2"] and len(cells) > 1:
+    if cells[:1] in (["theta2"], ["position"]) and len(cells) > 1:
         return []
     known = [cell for cell in cells if "theta" in cell.lower()]
     there = f"its columns are {', '.join(map(shown, cells))}: " if known else ""
-    must = "the first line must name the columns, the first of them theta2 (in degrees), as in theta2,P"
+    must = "the first line must name the columns, the first of them theta2 (in degrees) or position, as in theta2,P"
     return [f"csv: {name}:{line}: {there}{must}"]
 
 
@@ -154,19 +158,26 @@ def _number(cell: str) -> float:
         return math.nan
 
 
-def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
-    """Whether the angles rise, and go once or twice all the way round; steps hold as long as they like."""
-    if len(samples) < (2 if steps else 4):
-        least = "2" if steps else "4, all the way round"
-        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least {least}"]
-    angles = np.array([sample.angle for sample in samples])
-    rises = np.diff(angles)
+def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
+    """Whether the angles, or positions, rise."""
+    rises = np.diff([sample.angle for sample in samples])
+    if len(rises) < 1:
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 2"]
     if not (rises > 0.0).all():
         k = int(np.argmin(rises > 0.0))
         twice = (
             "stands twice: give each angle once" if rises[k] == 0.0 else "is less than the one before: sort the rows"
         )
-        return [f"csv: {name}:{samples[k + 1].line}: theta2 = {samples[k + 1].angle:.15g} {twice}"]
+        return [f"csv: {name}:{samples[k + 1].line}: {over} = {samples[k + 1].angle:.15g} {twice}"]
+    return []
+
+
+def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
+    """Whether angles go once or twice all the way round; steps hold as long as they like."""
+    if len(samples) < 4 and not steps:
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
+    angles = np.array([sample.angle for sample in samples])
+    rises = np.diff(angles)
     span = float(angles[-1] - angles[0])
     period = 360.0 if span <= 360.0 else 720.0
     open_ = period - span > 1.5 * rises.max() or rises.max() > 0.5 * period

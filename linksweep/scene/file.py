@@ -61,14 +61,16 @@ from linksweep.scene.file_log import Log, Where, document, path_of
 from linksweep.scene.file_text import document_text
 from linksweep.scene.gas_pressure import GasPressure
 from linksweep.scene.loads import Load
+from linksweep.scene.over_position import is_function
 from linksweep.scene.scene import Scene
 from linksweep.scene.springs import Damper, Spring, TorsionDamper, TorsionSpring
 from linksweep.scene.tabulated import tabulated
 from linksweep.scene.text_file import text_of
 from linksweep.scene.units import KINDS, quantity, shown
 
-UNSTEADY = "jumps, or changes too quickly for a file to hold it"
-INSTEAD = 'give it as a DataArray over theta2, with interpolation="step" where it jumps'
+FOLLOWING = "of a position"
+UNSTEADY = "of theta2 that jumps, or changes too quickly for a file to hold it"
+INSTEAD = 'give it as a DataArray, with interpolation="step" where it jumps'
 """Of a function that has no samples which stand for it."""
 
 HEAD = """\
@@ -103,7 +105,7 @@ class Number(Field):
         if isinstance(raw, dict) and "variable" in raw:
             return log.variable(raw["variable"], where)
         if isinstance(raw, dict) and "function" in raw:
-            return log.problem(where, f": was a function of theta2 that {raw['function']}; {INSTEAD}")
+            return log.problem(where, f": was a function {raw['function']}; {INSTEAD}")
         try:
             if isinstance(raw, dict) and "csv" in raw:
                 return csv_column(raw, self.kind, log.folder)
@@ -311,10 +313,12 @@ def toml_of(scene: Scene) -> str:
 
 
 def require_writable(scene: Scene) -> None:
-    """Raise ValueError where a function of theta2 has no samples that stand for it."""
+    """Raise ValueError where a function has no samples that stand for it; one of a position has none."""
     turn = scene.mechanism.period
     paths = [path for path, function in scene.functions.items() if tabulated(function, turn) is None]
-    refuse([f"{path} is a function of theta2 that {UNSTEADY}: {INSTEAD}" for path in paths])
+    refuse([f"{path} is a function {UNSTEADY}: {INSTEAD}" for path in paths])
+    follow = [k for k, load in enumerate(scene.loads, 1) if any(map(is_function, load.over_positions))]
+    refuse([f"loads[{k}] has a function {FOLLOWING}: {INSTEAD}" for k in follow])
 
 
 def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
@@ -356,6 +360,7 @@ def _written(value: Any, where: Where, elsewhere: Collection[str], turn: float) 
     """Return what stands in the file for a value of a scene."""
     if type(value) in SCHEMA:
         given = {key: getattr(value, key) for key in SCHEMA[type(value)]}
+        turn = 0.0 if given.get("over") else turn  # what follows a position does not come round
         words = {k: _written(word, (*where, k), elsewhere, turn) for k, word in given.items() if not _left_out(word)}
         classes = {**_LINKS.classes, **_MECHANISMS.classes, **_LOADS.classes, **_CYCLES.classes}
         named = type(value) in classes.values() and type(value) is not Load
@@ -365,8 +370,8 @@ def _written(value: Any, where: Where, elsewhere: Collection[str], turn: float) 
     if isinstance(value, xr.DataArray):
         return {"variable": path_of(where)} if path_of(where) in elsewhere else _array_written(value)
     if callable(value):
-        samples = tabulated(value, turn)
-        return {"function": UNSTEADY} if samples is None else _array_written(samples)
+        samples = tabulated(value, turn) if turn else None
+        return {"function": UNSTEADY if turn else FOLLOWING} if samples is None else _array_written(samples)
     return value if isinstance(value, str) else float(value)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.actions import LoadForm
 from linksweep.mechanisms.motion import BRANCH_SIGN
-from linksweep.mechanisms.validate import Number, Rule, is_lazy, overflow_problems, parameter, problems
+from linksweep.mechanisms.validate import Number, Rule, overflow_problems, parameter, problems
 from linksweep.scene.action import Revolution, with_sound
 from linksweep.scene.air_cycle import ATMOSPHERE, Cycle, pressure_over
 from linksweep.scene.changing_load import ChangingLoad
@@ -110,7 +110,7 @@ class GasPressure(ChangingLoad):
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
         brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
-        pressure = pressure_over(self.cycle, engine, revolution.grid.angles, _turning(revolution.omega2))
+        pressure = pressure_over(self.cycle, engine, revolution.grid.angles, revolution.turning)
         object.__setattr__(brought, "in_cylinder", pressure)
         return brought
 
@@ -125,11 +125,3 @@ class GasPressure(ChangingLoad):
         area = 0.25 * math.pi * (self.bore * self.bore)
         force = machine["branch_sign"] * (self.crankcase - pressure) * area
         return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}
-
-
-def _turning(omega2: Number) -> Number:
-    """1 for a crank that turns counter-clockwise, -1 for clockwise; one number where all are known to do the same."""
-    clockwise = omega2 < 0.0
-    if not is_lazy(clockwise) and (np.all(clockwise) or not np.any(clockwise)):
-        return -1.0 if np.any(clockwise) else 1.0
-    return 1.0 - 2.0 * clockwise

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.plan import InputForms
+from linksweep.engine.plan import InputForms, plan
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Field, Grid
+from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.content import ByContent, content
 from linksweep.mechanisms.motion import OverDesigns
@@ -182,8 +182,14 @@ class Scene(ByContent):
 
     @cached_property
     def arrays(self) -> dict[str, xr.DataArray]:
-        """The scene's DataArrays by the path of the parameter that each is."""
-        return {path: value for path, value, _ in numbers(self) if isinstance(value, xr.DataArray)}
+        """The scene's DataArrays, over designs or angles, by the path of the parameter that each is."""
+        return {path: value for path, value in self._numbers.items() if isinstance(value, xr.DataArray)}
+
+    @property
+    def _numbers(self) -> dict[str, Any]:
+        """The scene's numbers by path, but for tables and functions of a position."""
+        curves = {id(number) for load in self.loads for number in load.over_positions}
+        return {path: value for path, value, _ in numbers(self) if id(value) not in curves}
 
     @cached_property
     def parameters(self) -> dict[str, xr.Variable]:
@@ -197,7 +203,7 @@ class Scene(ByContent):
     @cached_property
     def functions(self) -> dict[str, Any]:
         """The scene's functions of theta2 by path."""
-        return {path: value for path, value, _ in numbers(self) if callable(value) and not hasattr(value, "dims")}
+        return {path: value for path, value in self._numbers.items() if callable(value) and not hasattr(value, "dims")}
 
     @cached_property
     def period(self) -> float:
@@ -265,7 +271,7 @@ class Scene(ByContent):
     def at(self, grid: Grid) -> Scene:
         """The same scene with all that changes over the revolution given as DataArrays over the grid's angles."""
         omega2 = self._sampled("omega2", grid)
-        revolution = Revolution(self.mechanism, grid, omega2, self._curves)
+        revolution = Revolution(self.mechanism, grid, omega2, self._curves, partial(self._kinematics, grid))
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
         return with_sound(self, omega2=omega2, alpha2=self._acceleration(grid), loads=loads)
 
@@ -292,6 +298,19 @@ class Scene(ByContent):
     @cached_property
     def _curves(self) -> Curves:
         return {}
+
+    def _kinematics(self, grid: Grid, *names: str) -> list[xr.DataArray]:
+        """Quantities that angles and lengths alone decide, at the grid's angles."""
+        unloaded = self._unloaded
+        request = plan(unloaded.table, names, unloaded.inputs.forms)
+        found = evaluate(request, unloaded.inputs.fields, grid, unloaded.inputs.sizes)
+        fields = [found[name] for name in names]
+        return [xr.DataArray(field.values, {grid.dim: grid.angles}, field.dims) for field in fields]
+
+    @cached_property
+    def _unloaded(self) -> Scene:
+        """The mechanism alone, its crank turning."""
+        return with_sound(self, omega2=1.0, alpha2=0.0, gravity=(0.0, 0.0), loads=())
 
     def overshoots(self) -> dict[str, float]:
         """By path, how far each spline through an array over theta2 leaves its range, relative to that range."""

@@ -55,7 +55,8 @@ def links(scene: Scene) -> Markup:
 
 def loads(scene: Scene) -> Markup:
     """The table of what acts on it, each load in words."""
-    rows = [(f"load {k}", _load(load)) for k, load in enumerate(_sampled(scene).loads, 1)]
+    pairs = zip(_sampled(scene).loads, scene.loads, strict=True)
+    rows = [(f"load {k}", _load(load) + _followed(given)) for k, (load, given) in enumerate(pairs, 1)]
     return table((), rows, class_="settings") if rows else Markup()
 
 
@@ -149,6 +150,13 @@ def _load(load: Any) -> str:
     return "; ".join(said + _breaks(load.breaks))
 
 
+def _followed(load: Any) -> str:
+    """The position that a load follows, and the way on which it acts."""
+    if getattr(load, "over", None) is None:
+        return ""
+    return f", over {load.over}" + (f", while {load.while_}" if load.while_ else "")
+
+
 def _breaks(angles: tuple[float, ...]) -> list[str]:
     """Angles at which a load jumps, kinks or is narrow."""
     return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
@@ -165,6 +173,8 @@ def _in_words(part: Any) -> str:
             said += [] if value is None else [f"{_said(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
         elif item.name == "breaks":
             said += _breaks(value)
+        elif value is None:
+            continue
         else:
             said.append(f"{_said(item.name)} {_end(value) if isinstance(value, tuple) else value}")
     kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
