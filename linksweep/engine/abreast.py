@@ -21,7 +21,9 @@ SHARED = 8
 
 def shares_rows(writer: Writer) -> bool:
     """Whether the innermost loop, over designs whose rows are reduced, mostly reads what others have made."""
-    innermost = len(writer.plan.loops)
+    innermost = writer.innermost
+    if innermost < len(writer.plan.loops):
+        return False
     work = [node for node in writer.nodes if writer.per_sample(node) and writer.level(node) == innermost]
     read = {x for node in work for x in node.operands if x in writer.scratch and writer.level(x) < innermost}
     return bool(writer.reductions and read) and SHARED * len(read) >= len(work)
@@ -32,7 +34,6 @@ class AbreastWriter(Writer):
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
         super().__init__(plan, reductions, room)
-        self.innermost = len(plan.loops)
         self.own = [node for node in self.scratch if self.level(node) == self.innermost]
         self.scratch_size += (ABREAST - 1) * len(self.own) * room
         self.design = 0

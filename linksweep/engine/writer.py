@@ -1,11 +1,11 @@
 """The source of one kernel that does a plan, nothing else.
 
-Design dimensions become nested loops, the index the inner loop. An operation is done in the loop of its own
-dimensions: what depends on no angle once per design, what depends on angle in the inner loop, and what
-is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views are taken before a
-plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart that the source
-says, so that they are known not to overlap: that is what vectorises. Results that are too many to be told apart when
-the loop begins are written to `scratch` too, and copied from there.
+Design dimensions become nested loops, those too deep for Python one loop together, the index the inner loop. An
+operation is done in the loop of its own dimensions: what depends on no angle once per design, what depends on angle in
+the inner loop, and what is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views
+are taken before a plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart
+that the source says, so that they are known not to overlap: that is what vectorises. Results that are too many to be
+told apart when the loop begins are written to `scratch` too, and copied from there.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, work)
@@ -31,6 +31,9 @@ ARGUMENTS = (
 INFIX = {"+", "-", "*", "/", "<"}
 COMPARISONS = 128
 """Pairs of rows, at most, that the compiler lets a vectorised loop compare before it begins, lest they overlap."""
+DEEPEST = 16
+"""Design loops within each other, at most: Python takes 20 blocks, and a search has two more inside. All dims beyond
+share the innermost loop."""
 TILE = 1024
 """Samples that a kernel without design loops does at a time where it copies: the rows of a tile stay in the cache."""
 
@@ -51,6 +54,7 @@ class Writer:
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
         self.plan, self.reductions, self.room = plan, reductions, room
+        self.innermost = min(len(plan.loops), DEEPEST)
         late = set(self._late(plan))
         self.nodes = [node for node in plan.nodes if node not in late]
         stored = () if reductions else plan.stored
@@ -76,12 +80,13 @@ class Writer:
 
     def level(self, node: Node) -> int:
         """Number of design loops around a node's work."""
-        return max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
+        deepest = max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
+        return min(deepest, self.innermost)
 
     def _copied(self) -> frozenset[Node]:
         """Results that are copied from scratch: those that deeper loops read, and all of a loop that has too many."""
         copied = set(self.rows) & self._read_back()
-        for level in range(len(self.plan.loops) + 1):
+        for level in range(self.innermost + 1):
             rows = {node for node in self.rows if self.level(node) == level}
             if len(rows) * (len(rows) - 1) // 2 + len(rows) * len(self.profiles) > COMPARISONS:
                 copied |= rows
@@ -107,7 +112,7 @@ class Writer:
 
     def kernel(self) -> str:
         self._begin()
-        for level in range(len(self.plan.loops) + 1):
+        for level in range(self.innermost + 1):
             if level:
                 self._design_loop(level)
             self._body(level)
@@ -118,7 +123,20 @@ class Writer:
         self.write(1, "pass" if self.plan.loops else "start, samples = first, last - first")
 
     def _design_loop(self, level: int) -> None:
-        self.write(level, f"for {self.counter(level - 1)} in range({', '.join(self._bounds(level))}):")
+        if level < len(self.plan.loops) and level == self.innermost:
+            self._folded_loop(level)
+        else:
+            self.write(level, f"for {self.counter(level - 1)} in range({', '.join(self._bounds(level))}):")
+
+    def _folded_loop(self, level: int) -> None:
+        """One loop over the designs of all dims that are left, the last dim fastest."""
+        first, *others = range(level - 1, len(self.plan.loops))
+        sizes = " * ".join(f"sizes[{loop}]" for loop in (first, *others))
+        self.write(level, f"for folded in range({sizes}):")
+        self.write(level + 1, f"{self.counter(first)} = folded")
+        for loop in reversed(others):
+            left, size = self.counter(first), f"sizes[{loop}]"
+            self.write(level + 1, f"{self.counter(loop)}, {left} = {left} % {size}, {left} // {size}")
 
     def _bounds(self, level: int) -> tuple[str, str]:
         """First and last of the designs of a loop: of the outermost, those that this call is to do."""
