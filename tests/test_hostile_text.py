@@ -138,6 +138,15 @@ def test_a_column_beyond_every_slope(here):
     assert refusal(PRESS + LOAD, column) == "loads[3].torque holds 1e+308: is interpolated, so it must be below 1e+290"
 
 
+@pytest.mark.parametrize("interpolation", ["periodic cubic", "pchip", "linear", "step"])
+def test_angles_that_are_one_a_period_later(here, interpolation):
+    column = "theta2,P\n0,1\n1e-320,2\n" + "".join(f"{angle},1\n" for angle in range(30, 360, 30))
+    kind = f'interpolation = "{interpolation}"\n'
+    assert refusal(PRESS + LOAD + kind, column).startswith(
+        "loads[3].torque: two of its angles are 9.99989e-321 degrees apart"
+    )
+
+
 def test_lengths_at_the_ends_of_what_a_number_can_hold():
     engine = ls.example("engine")
     loop = ls.Scene(ls.LoopTrack(1e308, 700.0), speed=100.0, thrust=1e4, profile="energy")

@@ -18,6 +18,8 @@ Curves = dict[str, PeriodicCurve]
 
 LARGEST = 1e290
 """Values from here on are not interpolated."""
+CLOSEST = 1e-9
+"""Degrees between two angles of an array, at least: they must still differ a period later."""
 TURNS = (1, 2)
 """After how many turns of the crank a cycle may come round."""
 WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
@@ -156,15 +158,17 @@ def curve_of(path: str, value: xr.DataArray, period: float, interpolation: str |
     """Return the curve through an array over theta2. Raises ValueError where its angles do not go all the way round."""
     known, values = knots(value)
     period, interpolation = period_of(value, period), interpolation or CUBIC
-    refuse(_size_problems(path, values) or period_problems(path, known, values, period, interpolation))
+    refuse(_slope_problems(path, known, values) or period_problems(path, known, values, period, interpolation))
     last = -1 if known[-1] - known[0] == period else None  # repeats the first
     return PeriodicCurve(known[:last], values[:last], period, interpolation)
 
 
-def _size_problems(path: str, values: np.ndarray) -> list[str]:
-    """Return why values can't be interpolated: slopes between them would overflow."""
-    largest = float(np.max(np.abs(values)))
-    return [f"{path} holds {largest:.15g}: is interpolated, so it must be below {LARGEST:g}"] * (largest >= LARGEST)
+def _slope_problems(path: str, known: np.ndarray, values: np.ndarray) -> list[str]:
+    """Return why the slopes between values at angles in order would not be numbers."""
+    largest, closest = float(np.max(np.abs(values))), float(np.min(np.diff(known), initial=np.inf))
+    if largest >= LARGEST:
+        return [f"{path} holds {largest:.15g}: is interpolated, so it must be below {LARGEST:g}"]
+    return [f"{path}: two of its angles are {closest:g} degrees apart; give one"] if closest < CLOSEST else []
 
 
 def overshoot_of(value: xr.DataArray, period: float) -> float | None:
