@@ -193,8 +193,8 @@ def test_dimensions_that_a_number_cannot_have(number):
         expected = f'{path} has a dimension "{dim}": that is the name of a result; rename it'
         assert refusal(number.change, array(0.1, 0.2, dims=dim)) == [expected]
     for dim in (5, "", "a/b", ("a", "b")):
-        expected = f'{path} has a dimension {dim!r}: its name must be a text without "/"; rename it'
-        assert refusal(number.change, array(0.1, 0.2, dims=[dim])) == [expected]
+        (line,) = refusal(number.change, array(0.1, 0.2, dims=[dim]))
+        assert line.startswith(f"{path} has a dimension {dim!r}: its name must be a text that begins with a letter, ")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # xarray's own, of duplicate names
         said = refusal(number.change, xr.DataArray(np.ones((2, 2)), dims=("n", "n")))

@@ -28,6 +28,12 @@ def content(value: Any) -> Any:
     if is_dataclass(value):
         return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
     if is_array(value):
-        labels = [(dim, value[dim].values.tolist()) for dim in value.dims if dim in value.coords]
+        labels = [(dim, _labels(value[dim].values)) for dim in value.dims if dim in value.coords]
         return value.dims, value.values.tobytes(), repr(labels)
     return tuple(map(content, value)) if isinstance(value, tuple | list) else value
+
+
+def _labels(values: Any) -> list[Any]:
+    """Return labels as a list, times in nanoseconds and texts as plain ones: files keep no more of them."""
+    listed: list[Any] = (values.astype("M8[ns]") if values.dtype.kind == "M" else values).tolist()
+    return list(map(str, listed)) if values.dtype.kind == "O" else listed

@@ -11,6 +11,7 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import did_you_mean
 from linksweep.scene.interpolation import interpolation_attribute
+from linksweep.scene.storable import name_problem
 from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
 
 MOST = 1_000_000
@@ -76,7 +77,7 @@ def _dims(table: dict[str, Any], problems: list[str]) -> list[str]:
 
 
 def _is_name(dim: Any) -> bool:
-    return isinstance(dim, str) and dim.isprintable()
+    return not name_problem(dim)
 
 
 def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:

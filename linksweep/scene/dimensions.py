@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.validate import said
+from linksweep.scene.storable import label_problem, name_problem
+
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
 """Names that the index is likely to be meant by, without signs and spaces."""
 TABLES = ("status", "arc", "toggle", "equation", "unknown", "spline")
@@ -65,9 +68,9 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
 
 def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
     path = next(iter(sharing))
-    if not isinstance(dim, str) or not dim or "/" in dim:
-        yield f'{path} has a dimension {dim!r}: its name must be a text without "/"; rename it'
-    elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", dim).casefold())):
+    if problem := name_problem(dim):
+        yield f"{path} has a dimension {said(dim)}: {problem}; rename it"
+    elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", str(dim)).casefold())):
         yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
     elif dim in results:
         yield f'{path} has a dimension "{dim}": that is the name of a result; rename it'
@@ -93,5 +96,8 @@ def _label_problems(dim: object, sharing: Arrays, arrays: Arrays) -> Iterator[st
         (first, expected), *_ = labels.items()
         others = f"those of {first}"
     for path, values in labels.items():
+        if problem := label_problem(values):
+            yield f"{path} has along {dim} {problem}; change its labels"
+            return
         if values.shape == expected.shape and not values.equals(expected):
             yield f"{path} has labels along {dim} that are not {others}: make them equal, or rename one dimension"

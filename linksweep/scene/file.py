@@ -380,7 +380,13 @@ def _left_out(word: Any) -> bool:
 
 
 def _array_written(array: xr.DataArray) -> dict[str, Any]:
-    coords = {str(dim): array.coords[dim].values.tolist() for dim in array.dims if dim in array.coords}
+    coords = {str(dim): _labels_written(array.coords[dim].values) for dim in array.dims if dim in array.coords}
     angles = {"theta2": coords.pop("theta2")} if "theta2" in coords else {}
     dims = {"dim": array.dims[0]} if array.ndim == 1 else {"dims": list(array.dims)}
     return dims | angles | {"values": array.values.tolist()} | ({} if angles and not coords else {"coords": coords})
+
+
+def _labels_written(labels: Any) -> list[Any]:
+    """Return labels as a file has them; numpy knows times in nanoseconds as integers only."""
+    listed: list[Any] = (labels.astype("M8[us]") if labels.dtype.kind == "M" else labels).tolist()
+    return listed

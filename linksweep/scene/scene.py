@@ -78,7 +78,8 @@ class Scene(ByContent):
     One that takes two makes the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the
     parameter's own unit; one that says another in attrs["units"] is refused, not converted. Quantities of pint, and
     arrays of them, are converted; numbers of any dtype become float64. Where one is dask's, results are lazy too, chunk
-    by chunk of the designs, and its values are judged when they are computed.
+    by chunk of the designs, and its values are judged when they are computed. Labels are numbers, truth values, texts
+    or times, and names of dims such as NetCDF takes: what no file would give back as it is, is refused.
 
     Raises
     ------
@@ -401,4 +402,6 @@ def _form(field: Field) -> tuple[str, ...] | float:
 def _plain(variable: xr.Variable) -> xr.Variable:
     """A coordinate with those of its attributes that every file format takes, and no memory of a file it came from."""
     kept = {k: v for k, v in variable.attrs.items() if isinstance(v, str | int | float) and not isinstance(v, bool)}
-    return xr.Variable(variable.dims, variable.values, kept)
+    values = variable.values
+    texts = np.array([str(label) for label in values], object) if values.dtype == object else values
+    return xr.Variable(variable.dims, texts, kept)

@@ -140,7 +140,7 @@ def _define(
     number = encoded.dtype.kind in "iuf"
     stored = file.createVariable(
         name,
-        encoded.dtype if number else str,
+        encoded.dtype.newbyteorder("=") if number else str,
         tuple(dims),
         fletcher32=number and bool(tuple(shape)),
         chunksizes=tile(shape) or None,

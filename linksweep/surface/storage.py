@@ -10,11 +10,12 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms.validate import did_you_mean, refuse
+from linksweep.mechanisms.validate import did_you_mean, refuse, said
 from linksweep.results.record import design_coordinates, provenance
 from linksweep.scene.file import parse_scene, read_scene, require_writable
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
+from linksweep.scene.storable import label_problem, name_problem
 from linksweep.scene.text_file import kind_of
 from linksweep.surface.atomic import whole
 from linksweep.surface.seal import SAVED, mark_of, seal, sealed
@@ -36,7 +37,8 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
     ------
     ValueError
         For another ending of a scene's file, a Dataset that is to be TOML, and a function of theta2 that no samples
-        stand for, as `Scene.to_toml`.
+        stand for, as `Scene.to_toml`; for names and labels that NetCDF cannot give back as
+        they are.
     OSError
         When the folder is missing, cannot be written or is full, or `path` is no file; what was there before stays.
 
@@ -57,6 +59,7 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
             return write_text(ds.to_toml(), path)
         ds = _as_dataset(ds)
     refuse([f"{path}: TOML holds scenes; write results to .nc"] if ending == ".toml" else [])
+    refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
         seal(temporary, {}, SAVED)
@@ -74,6 +77,14 @@ def _as_dataset(scene: Scene) -> xr.Dataset:
     scene = in_memory(scene)
     coordinates = design_coordinates(scene)
     return xr.Dataset(coords=coordinates, attrs=provenance(scene, "linksweep.save(scene)", coordinates))
+
+
+def _unstorable(ds: xr.Dataset) -> list[str]:
+    """Return the names and the coordinates of a Dataset that a file cannot hold."""
+    names = {name: name_problem(name) for name in (*ds.dims, *ds.variables)}
+    found = [f"ds has {said(name)}: {problem}; rename it" for name, problem in names.items() if problem]
+    labels = {name: label_problem(values.variable) for name, values in ds.coords.items()}
+    return found + [f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem]
 
 
 def load_scene(path: str | os.PathLike) -> Scene:

@@ -1,0 +1,75 @@
+"""Names and labels that a file can hold and give back the same: those of NetCDF, as xarray writes and reads them.
+
+Names: `NC_check_name` of netCDF-C, which also turns them into Unicode's normal form C.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from typing import Any
+
+import numpy as np
+
+from linksweep.mechanisms.validate import said
+
+NAME = re.compile(r"(\w|[^\x00-\x7f])([^\x00-\x1f/\x7f]*[^\x00-\x20/\x7f])?", re.ASCII)
+LONGEST = 255
+"""Bytes of a name."""
+TEXTS = (str, np.str_)
+LARGEST = 2**63 - 1
+"""Integer of TOML."""
+UNITS_OF_TIME = ("ns", "us")
+"""Of times in NetCDF, and of those in the text of a scene."""
+
+
+def name_problem(name: Any) -> str:
+    """Return why a file cannot hold a dimension or a variable of this name; nothing where it can."""
+    if type(name) not in TEXTS or not NAME.fullmatch(name):
+        begins = 'begins with a letter, a digit or "_", without "/", control characters and a space at its end'
+        return f"its name must be a text that {begins}"
+    if not (_is_sound(name) and unicodedata.is_normalized("NFC", name)):
+        return "its name must be Unicode in normal form C"
+    return f"its name must have at most {LONGEST} bytes" if len(name.encode()) > LONGEST else ""
+
+
+def label_problem(variable: Any) -> str:
+    """Return which label of a coordinate a file cannot hold, and why; nothing where it can hold all of them."""
+    dtype = variable.dtype
+    plain = isinstance(dtype, np.dtype)
+    if plain and dtype.kind == "u" and (variable.values > LARGEST).any():
+        return f"the label {variable.values.max()}: must be at most {LARGEST}, or a text"
+    if plain and (dtype.kind in "iub" or (dtype.kind == "f" and dtype.itemsize in (4, 8))):
+        return ""
+    if plain and dtype.kind == "M":
+        return _time_problem(variable.values)
+    if dtype.kind in "OU":
+        return _text_problem(variable.values.ravel().tolist())
+    allowed = "float64, float32, integers of numpy, truth values, texts, or times without a zone"
+    return f"labels of dtype {dtype}: must be {allowed}"
+
+
+def _text_problem(labels: list[Any]) -> str:
+    others = [label for label in labels if type(label) not in TEXTS]
+    if others:
+        return f"the label {said(others[0])}: must be a text, or all an array of numbers, truth values or times"
+    if _is_sound("".join(labels)):
+        return ""
+    broken = next(label for label in labels if not _is_sound(label))
+    return f"the label {said(broken)}: must be Unicode without NUL"
+
+
+def _time_problem(times: np.ndarray) -> str:
+    lost = np.isnat(times)
+    for unit in UNITS_OF_TIME:
+        lost |= times.astype(f"M8[{unit}]").astype(times.dtype) != times
+    words = "must be a time in whole microseconds between the years 1678 and 2262, or a text"
+    return f"the label {times[lost][0]}: {words}" if lost.any() else ""
+
+
+def _is_sound(text: str) -> bool:
+    """Whether a text can be written as UTF-8, and read back to its end."""
+    try:
+        return b"\0" not in text.encode()
+    except UnicodeEncodeError:
+        return False
