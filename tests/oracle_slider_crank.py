@@ -64,7 +64,11 @@ T14, DRIVE = 8, 9  # the columns after those of the forces
 
 
 class Jammed(ValueError):
-    """The guide wedges: no sign of its normal force, or either, agrees with itself."""
+    """The guide wedges: no sign of its normal force agrees with itself."""
+
+
+class TwoSolutions(ValueError):
+    """Friction lets the guide press on either side: rigid bodies do not tell which."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +209,9 @@ def unknowns(data: SliderCrankData, move: Motion) -> list:
         return tried[confirmed[0]]
     if all(abs(normal[sign]) <= FOLD * max(map(abs, x[:T14])) for sign, x in tried.items()):
         return tried[1]
-    raise Jammed(f"{len(confirmed)} of the two signs of the guide's normal force agree with themselves")
+    if confirmed:
+        raise TwoSolutions("both signs of the guide's normal force agree with themselves")
+    raise Jammed("neither sign of the guide's normal force agrees with itself")
 
 
 def kinematic_values(data: SliderCrankData, move: Motion) -> dict:
@@ -235,7 +241,7 @@ def solve(data: SliderCrankData, theta2) -> dict:
     R34y [m];
     vG2x .. vG4y [m/s]; aG2x .. aG4y [m/s^2]; F12x .. F14y in ground axes, F12, F32, F43, F14, normal_force (along n)
     and friction_force (along s) [N]; T14 of the guide on the slider about C and T12 or T13 [N m]; power of the drive
-    and friction_power, lost, never negative [W]. Raises Unassemblable, DeadPoint or Jammed.
+    and friction_power, lost, never negative [W]. Raises Unassemblable, DeadPoint, Jammed or TwoSolutions.
     """
     move = motion(data, theta2)
     if abs(hold(data, move)) < FOLD:

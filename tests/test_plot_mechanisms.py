@@ -44,7 +44,8 @@ SCENES = {
     "shaper": ls.Scene(shaper(ground_angle=-90.0), 6.0, gravity=GRAVITY, loads=[ls.Load("rocker", torque=-300.0)]),
     "offset rocker": ls.Scene(shaper(offset=0.05), 6.0, gravity=GRAVITY),
 }
-JAMMED = ls.Scene(slider_crank(b=0.1, offset=0.03, friction=0.8), 20.0, gravity=GRAVITY)
+LIFT = ls.Load("slider", force=(0.0, 100.0))
+JAMMED = ls.Scene(slider_crank(b=0.1, offset=0.03, friction=0.8), 20.0, gravity=GRAVITY, loads=[LIFT])
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ from oracle_slider_crank import (
     KINDS,
     Jammed,
     SliderCrankData,
+    TwoSolutions,
     largest_torque,
     random_data,
     random_theta2,
@@ -199,6 +200,8 @@ def judged_status(data: SliderCrankData, theta2: float) -> str:
         return "dead_centre"
     except Jammed:
         return "jammed"
+    except TwoSolutions:
+        return "jammed_two_solutions"
     return "ok"
 
 
@@ -246,7 +249,7 @@ def test_status_is_right_at_every_sample(drive):
             assert meanings(found.status) == expected, data
             np.testing.assert_array_equal(np.isnan(found.F14x), [word != "ok" for word in expected])
         seen.update(expected)
-    assert seen == {"ok", "jammed", "cannot_assemble"}
+    assert seen == {"ok", "jammed", "jammed_two_solutions", "cannot_assemble"}
 
 
 @pytest.mark.parametrize("drive", DRIVES)

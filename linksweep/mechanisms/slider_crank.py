@@ -103,10 +103,11 @@ class SliderCrank(CrankDriven):
     Notes
     -----
     Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
-    guide: status `jammed`. The slider does not turn: where its centre of gravity lies changes `T14`, the guide's moment
-    on it, and the shaking moment; its moment of inertia would change nothing, and is no parameter. A load that is a
-    cycle of full turns of the crank (see `GasPressure`) is none in a design whose crank does not turn fully: status
-    `no_cycle`.
+    guide: status `jammed` where no force moves it on, `jammed_two_solutions` where the guide may press on either side
+    (rigid bodies do not tell which). The slider does not turn: where its centre of gravity lies changes `T14`, the
+    guide's moment on it, and the shaking moment; its moment of inertia would change nothing, and is no parameter. A
+    load that is a cycle of full turns of the crank (see `GasPressure`) is none in a design whose crank does not turn
+    fully: status `no_cycle`.
 
     Examples
     --------
@@ -137,6 +138,7 @@ class SliderCrank(CrankDriven):
         "dead_centre",
         "jammed",
         "no_cycle",
+        "jammed_two_solutions",
     )
 
     def __post_init__(self) -> None:

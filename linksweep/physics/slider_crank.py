@@ -110,22 +110,23 @@ def guide_force(
     guide_sin: Number,
     direction: Number,
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """The guide's force on the slider across (normal) and along (friction), and how near it is to wedging; then the
+    """The guide's force on the slider across (normal) and along (friction), and how near it is to wedging (w); then the
     rod's force F43 across and along.
 
     F43 = F14 + Q4 and r × F43 = moment for the lever r (the rod, or the crank where its torque is known) give,
     without friction, a normal force N0. Friction −μ|N|·sign(v) changes it to N = N0/(1 + sign(N)·k) with k =
-    μ·sign(v)·tan ψ, μ·sign(v) the `direction` and tan ψ the lever's slope to the guide. For |k| < 1 exactly one sign
-    of N is consistent, that of N0; for |k| ≥ 1 none or both are: the slider wedges, and nothing is known. F43 comes
-    from the lever, not from the guide's force, which may be far larger.
+    μ·sign(v)·tan ψ, μ·sign(v) the `direction` and tan ψ the lever's slope to the guide. With w = sign(N0)·k, exactly
+    one sign of N is consistent for |w| < 1, that of N0; none for w ≤ −1, where no force moves the slider on; both for
+    w ≥ 1, where rigid bodies do not tell which. F43 comes from the lever, not from the guide's force, which may be far
+    larger.
     """
     Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
     slope = lever_across * inverse_lever_along
     lever_force = (lever_moment + lever_across * Q4_along) * inverse_lever_along
     frictionless = lever_force - Q4_across
     opposing = where(frictionless < 0.0, -direction, direction)
-    wedging = abs(direction * slope)
-    normal = frictionless / where(wedging < 1.0, 1.0 + opposing * slope, math.nan)
+    wedging = opposing * slope
+    normal = frictionless / where(abs(wedging) < 1.0, 1.0 + wedging, math.nan)
     friction = -(opposing * normal)
     return normal, friction, wedging, lever_force + slope * friction, Q4_along + friction
 
@@ -136,8 +137,8 @@ def from_guide_axes(across: Number, along: Number, guide_cos: Number, guide_sin:
 
 
 def jammed_status(status: Number, wedging: Number) -> Number:
-    """The status so far, or 4 (jammed) where friction wedges the slider."""
-    return where(wedging < 1.0, status, where(status > 0.0, status, 4.0))
+    """Return the status so far, or where friction wedges the slider 4 (jammed: no solution) or 6 (two solutions)."""
+    return where(abs(wedging) < 1.0, status, where(status > 0.0, status, where(wedging > 0.0, 6.0, 4.0)))
 
 
 def no_cycle_status(status: Number, assembly: Number) -> Number:

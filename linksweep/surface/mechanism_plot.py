@@ -131,7 +131,8 @@ def _meaning(cycle: xr.Dataset) -> str:
     """What the last status says, to follow a subject."""
     word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values[-1])]
     said = {"cannot_assemble": "cannot be assembled", "toggle": "is at a toggle", "dead_centre": "is at a dead centre"}
-    said |= {"jammed": "is jammed by friction", "no_cycle": "does not turn fully, as the cycle in its cylinder must"}
+    said |= {"jammed": "is jammed by friction", "jammed_two_solutions": "is jammed by friction, with two solutions"}
+    said |= {"no_cycle": "does not turn fully, as the cycle in its cylinder must"}
     return said.get(word, word.replace("_", " "))
 
 
