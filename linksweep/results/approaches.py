@@ -16,7 +16,7 @@ from linksweep.engine.plan import plan
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.search_kernel import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.writer import Reduction
-from linksweep.results.between import Array, Group, crossing
+from linksweep.results.between import Array, Group, crossing, positions_at
 from linksweep.results.compute import compute
 from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid
@@ -62,14 +62,27 @@ class Approaches(NamedTuple):
 
 def approaches(group: Group, angles: Array) -> Approaches:
     """Return the narrow approaches of a group's designs that lie between crank angles (design, sample) [degree]."""
-    parts = [_approaches(group, angles, *names) for names in group.scene.approaches()]
+    rows = np.repeat(np.arange(len(angles)), angles.shape[1])
+    names = group.scene.approaches()
+    values = [group.values(pair, rows, angles.ravel()).reshape(2, *angles.shape) for pair in names]
+    return joined([_narrow(group, angles, pair, *both) for pair, both in zip(names, values, strict=True)])
+
+
+def approaches_of_turns(group: Group) -> Approaches:
+    """Return the narrow approaches in the whole period of a group's designs; in narrow near-toggles they may hide."""
+    even, names = np.arange(0.0, group.scene.period, STEP), group.scene.approaches()
+    values = [positions_at(group.scene, pair, group.designs, even) for pair in names]
+    angles = np.broadcast_to(even, (len(group.designs), len(even)))
+    return joined([_narrow(group, angles, pair, *both) for pair, both in zip(names, values, strict=True)])
+
+
+def joined(parts: list[Approaches]) -> Approaches:
     return Approaches(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-def _approaches(group: Group, angles: Array, slope: str, width: str) -> Approaches:
-    designs, count = angles.shape
-    values = group.values((slope, width), np.repeat(np.arange(designs), count), angles.ravel())
-    slopes, widths = values.reshape(2, designs, count)
+def _narrow(group: Group, angles: Array, names: tuple[str, str], slopes: Array, widths: Array) -> Approaches:
+    """Return the approaches between angles (design, sample) at which l·dl/dθ2 and the width are known."""
+    slope, width = names
     rising, narrower = np.roll(slopes, -1, axis=1), np.minimum(widths, np.roll(widths, -1, axis=1))
     steps = np.mod(np.roll(angles, -1, axis=1) - angles, group.scene.period)
     row, k = np.nonzero((slopes < 0.0) & (rising >= 0.0) & (narrower < WIDE + 2.0 * np.radians(steps)))

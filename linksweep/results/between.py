@@ -15,6 +15,7 @@ import xarray as xr
 
 from linksweep.engine.plan import plan
 from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.paths import replaced
 from linksweep.scene.scene import Inputs, Scene
@@ -27,6 +28,8 @@ AT_ONCE = 256
 """Designs looked at together: the memory that this takes does not grow with a study."""
 OWN_AT_ONCE = 16
 """The same where each design has loads over the angle of its own, which are sampled at the angles of all of these."""
+CHOSEN = "_chosen"
+"""Dimension of designs that are looked at at the same angles."""
 COMBINED = "_combined"
 """Dimension of the designs of such loads, when they are taken together."""
 
@@ -119,6 +122,22 @@ def quantities_at(
     fields = {name: _paired(field, places, grid.dim) for name, field in needed.items()}
     found = evaluate(request, fields, grid, {}, threads)
     return np.stack([np.broadcast_to(found[name].values, angles.shape) for name in names])
+
+
+def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
+    """Return values (names, designs, angles) of what the position alone decides, at the same angles [degree] for all
+    of these designs."""
+    grid, inputs = crank_grid(angles, scene.period, scene.mechanism.index), scene.at_one_angle.inputs
+    forms = tuple(
+        (name, (CHOSEN,) if isinstance(form, tuple) and form and name not in grid.names else form)
+        for name, form in inputs.forms
+    )
+    request, places = plan(scene.table, names, forms), places_of(inputs.sizes, designs)
+    needed = {name: inputs.fields[name] for name in request.inputs if name in inputs.fields}
+    fields = {name: _paired(field, places, CHOSEN) for name, field in needed.items()}
+    found = evaluate(request, fields, grid, {CHOSEN: len(designs)})
+    shape = len(designs), len(angles)
+    return np.stack([np.broadcast_to(laid(found[name], (CHOSEN, grid.dim)), shape) for name in names])
 
 
 Point = tuple[Array, Array]

@@ -13,15 +13,21 @@ import numpy as np
 
 from linksweep.engine.find_peaks import grades
 from linksweep.engine.search import GRADES
-from linksweep.results.approaches import REACH, Approaches, approaches
+from linksweep.engine.search_kernel import FAR_WIDTH, NEAR_WIDTH
+from linksweep.results.approaches import (
+    NARROW_PINCH,
+    REACH,
+    Approaches,
+    approaches,
+    approaches_of_turns,
+    joined,
+)
 from linksweep.results.between import Array, Group, crossing, in_period
 from linksweep.scene.quick import STEP
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
 PER_ARC = 192
-PER_APPROACH = 5.0
-"""Between the samples of a turn among which closest approaches are looked for [degree]."""
 ASIDE = 1e-9
 """How far beside a jump its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
@@ -84,7 +90,7 @@ def turns(group: Group) -> Paths:
     even = np.broadcast_to(even, (len(group.designs), len(even)))
     pinched = _samples_of_period(group)
     sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
-    quick, close = _quick(group), _cuts_at_approaches(group, _evenly_too(group))
+    quick, close = _quick(group), _cuts_at_approaches(group)
     samples, edges = (even, pinched, sides, quick), (even[:, ::30], pinched[:, ::2], jumps, close, _thinned(quick))
     x, cuts = (_in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
     before, after = _neighbours(x, period)
@@ -190,7 +196,7 @@ def about_breaks(group: Group) -> Paths:
 
 def about_approaches(group: Group) -> Paths:
     """Return a window about every closest approach of the ends of a spring or damper of each of these designs."""
-    return _windows(approaches(group, _evenly_too(group)))
+    return _windows(_approaches(group))
 
 
 def about_approaches_on_arcs(group: Group) -> Paths:
@@ -208,18 +214,22 @@ def _windows(close: Approaches) -> Paths:
     return Paths(close.row, x, before, after, x, ends="pass")
 
 
-def _evenly_too(group: Group) -> Array:
-    """Samples (design, sample) of the period [degree], graded about the pinches and even, in order."""
-    even = np.arange(0.0, group.scene.period, PER_APPROACH)
-    even = np.broadcast_to(even, (len(group.designs), len(even)))
-    return np.sort(np.concatenate([_samples_of_period(group), even], axis=1), axis=1)
+def _approaches(group: Group) -> Approaches:
+    """Closest approaches in the whole period: between even samples, and about narrow pinches between graded ones."""
+    pinched = np.flatnonzero((group.constants(NEAR_WIDTH, FAR_WIDTH) < NARROW_PINCH).any(axis=0))
+    if not len(pinched):
+        return approaches_of_turns(group)
+    graded = approaches(group.some(pinched), _samples_of_period(group.some(pinched)))
+    return joined([approaches_of_turns(group), graded._replace(row=pinched[graded.row])])
 
 
-def _cuts_at_approaches(group: Group, angles: Array) -> Array:
-    """Return cuts (design, cut) at the closest approaches between some angles [degree]; NaN where others have more."""
+def _cuts_at_approaches(group: Group, angles: Array | None = None) -> Array:
+    """Return cuts (design, cut) about closest approaches [degree], in the whole period or between some angles; NaN
+    where other designs have more."""
     if not group.scene.approaches():
         return np.empty((len(group.designs), 0))
-    return approaches(group, angles).by_design(len(group.designs))[:, ::7]
+    close = _approaches(group) if angles is None else approaches(group, angles)
+    return close.by_design(len(group.designs))[:, ::7]
 
 
 # -------------------------------------------------------------------------------------------------- arcs
