@@ -1,0 +1,78 @@
+"""Workers of a cluster killed while they compute a study: it ends as the same file, nothing left behind."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import signal
+import tempfile
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import linksweep as ls
+
+from . import Outcome
+
+TITLE = "workers of a cluster killed during a study: byte-equal in the end, nothing left behind"
+ROUNDS, SMALL = 60, 1
+
+CHUNK, DESIGNS = 4, 40
+KILLS = 2
+"""Of one study: the scheduler gives a chunk up that three workers died of."""
+PAUSE = 0.02
+"""Seconds that each chunk takes longer, so that workers are killed at work."""
+
+
+def attack(random: np.random.Generator, rounds: int) -> Outcome:
+    import dask
+    from distributed import Client, LocalCluster
+
+    failures, kills, workers = [], 0, min(2, rounds)
+    quiet = {"dashboard_address": None, "silence_logs": logging.CRITICAL}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        dask.config.set({"distributed.comm.timeouts.connect": "60s"}),
+        LocalCluster(n_workers=workers, threads_per_worker=1, **quiet) as cluster,
+        Client(cluster) as client,
+    ):
+        _study(Path(folder, "whole.nc"), None)
+        reference = Path(folder, "whole.nc").read_bytes()
+        while kills < rounds:
+            client.wait_for_workers(workers, timeout=120)
+            path = Path(folder, f"study{kills}.nc")
+            times = random.uniform(0.0, 1.0, min(KILLS, rounds - kills))
+            killer = threading.Thread(target=_kill, args=(cluster, times, random.integers(workers, size=len(times))))
+            killer.start()
+            _study(path, client)
+            killer.join()
+            failures += ["a study ends as another file"] * (path.read_bytes() != reference)
+            failures += [f"{path.name}.partial is left behind"] * Path(f"{path}.partial").exists()
+            kills += len(times)
+    return Outcome(kills, failures)
+
+
+def _kill(cluster: Any, pauses: np.ndarray, places: np.ndarray) -> None:
+    """Kill a worker after each pause, if it is there; its nanny starts another."""
+    for pause, place in zip(pauses, places, strict=True):
+        time.sleep(float(pause))
+        with contextlib.suppress(ProcessLookupError):
+            if pid := [*cluster.workers.values()][place].pid:
+                os.kill(pid, signal.SIGKILL)
+
+
+def _study(path: Path, client: Any) -> None:
+    speed = xr.DataArray(np.linspace(10.0, 40.0, DESIGNS), dims="speed")
+    scene = replace(ls.example("press"), omega2=speed, loads=[ls.Load("rocker", torque=_slow_torque)])
+    ls.study(scene, path, of=["T12"], chunk=CHUNK, theta2=36, client=client).close()
+
+
+def _slow_torque(theta2: np.ndarray) -> np.ndarray:
+    time.sleep(PAUSE)
+    return 3.0 * np.cos(np.radians(theta2))
