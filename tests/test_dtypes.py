@@ -201,10 +201,13 @@ def test_pint_at_other_places():
     assert limits[0] == limits[1]
 
 
-def test_angles_of_another_unit_are_refused():
+def test_angles_and_positions_of_another_unit_are_refused():
     radians = xr.DataArray([0.0, 1.0, 2.0], {"theta2": ("theta2", [0.0, 2.0, 4.0], {"units": "rad"})}, "theta2")
     (line,) = refusal(lambda: replace(ls.example("press"), loads=[ls.Load("rocker", torque=radians)]))
     assert line.startswith('loads[1].torque.theta2 has attrs["units"] = "rad": must be in degree')
+    push = xr.DataArray([-1.0, 0.0], {"position": ("position", [0.0, 12.0], {"units": "mm"})}, "position")
+    (line,) = refusal(lambda: replace(engine(), loads=[ls.Load("slider", force=push, over="slider.to_end")]))
+    assert line.startswith('loads[1].force[1].position has attrs["units"] = "mm": must be in m')
     (line,) = refusal(ls.sweep, ls.example("press"), xr.DataArray([0.0, 1.0], dims="x", attrs={"units": "rad"}))
     assert line.startswith('theta2 has attrs["units"] = "rad": must be in degree')
 

@@ -19,7 +19,8 @@ from linksweep.mechanisms.validate import Number, Rule, choice_problems, pair_pr
 from linksweep.scene.action import Revolution, with_values
 from linksweep.scene.changing_load import ChangingLoad
 from linksweep.scene.over_position import KINDS as POSITION_KINDS
-from linksweep.scene.over_position import at_positions, corners, is_function, is_table, table_problems
+from linksweep.scene.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
+from linksweep.scene.units import unit_problems
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
@@ -136,9 +137,13 @@ class Load(ChangingLoad):
         if machine.branch not in BRANCH_SIGN:
             return [f'{path}.over = {said(self.over)}: is a position of one branch; give branch="open" or "crossed"']
         found = choice_problems(f"{path}.over", self.over, machine.strokes)
-        if found or self.while_ is None:
+        if found:
             return found
-        return choice_problems(f"{path}.while_", self.while_, machine.strokes[self.over].words)
+        stroke = machine.strokes[self.over]
+        for at, number in self._changing_at(path):
+            said_unit = number[POSITION].attrs.get("units") if is_table(number) else None
+            found += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
+        return found + ([] if self.while_ is None else choice_problems(f"{path}.while_", self.while_, stroke.words))
 
     def _position_problems(self, path: str) -> list[str]:
         if self.over is None:
