@@ -48,8 +48,11 @@ class Poles(NamedTuple):
 
 def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
     """Return whether any of these quantities may grow without bound inside a turn or an arc."""
-    of_output = any(signal.removeprefix("-") in OF_OUTPUT for signal in signals)
-    return "unbounded" in scene.mechanism.round_meanings and (of_output or not surely_ok(scene))
+    return "unbounded" in scene.mechanism.round_meanings and (_of_output(signals) or not surely_ok(scene))
+
+
+def _of_output(signals: tuple[str, ...]) -> bool:
+    return any(signal.removeprefix("-") in OF_OUTPUT for signal in signals)
 
 
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:
@@ -66,7 +69,9 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
 
 def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> Poles:
     """Return the poles of these designs, inside the angles at which they can be assembled."""
-    row, angle, step = (np.concatenate(parts) for parts in zip(_known(group), _change_points(group), strict=True))
+    row, angle, step = (
+        np.concatenate(parts) for parts in zip(_known(group, signals), _change_points(group), strict=True)
+    )
     if not len(row):
         return Poles(row, angle, np.zeros((0, len(signals)), dtype=bool))
     side = np.array([-1.0, 1.0])
@@ -91,11 +96,11 @@ def _singular_angles(found: dict[str, Finding]) -> list[Array]:
     return [found[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in found]
 
 
-def _known(group: Group) -> tuple[Array, Array, Array]:
+def _known(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]:
     """Dead centres and jams: designs, angles [degree], and how near to look."""
     scene = group.scene
-    motion = scene.motion | {"drive": scene.drive}
-    checks = (*scene.mechanism.driven_findings(motion), *scene.mechanism.output_findings())
+    checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
+    checks += scene.mechanism.output_findings() if _of_output(signals) else ()
     found = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
     angle = np.concatenate([np.empty((len(group.designs), 0)), *chain(*found)], axis=1)
     row, which = np.nonzero(np.isfinite(angle))
