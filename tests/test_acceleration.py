@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 import linksweep as ls
 from linksweep.scene.file import parse_scene, write_scene
 from linksweep.scene.grid import crank_grid
+from linksweep.surface.cli import main
 
 PRESS = ls.example("press")
 
@@ -174,3 +175,21 @@ def test_an_array_that_does_not_tell_its_slope_is_refused():
     (line,) = refusal(lambda: ls.sweep(replace(PRESS, omega2=one), [5.0]))
     assert line.startswith("omega2: its 1 angles from 5 to 5 degrees cannot be joined")
     assert line.endswith("or give alpha2")
+
+
+@pytest.mark.parametrize(("words", "told"), [({}, False), ({"alpha2": 0.0}, True)])
+def test_command_line_and_report_tell_how_far_an_alpha2_is_off(tmp_path, monkeypatch, capsys, words, told):
+    """30²·0.2·(1 + 0.2·cos θ)·sin θ is largest, 183.4 rad/s², at 79.1 degrees."""
+    monkeypatch.chdir(tmp_path)
+    angles = np.arange(0.0, 360.0, 5.0)
+    speed = xr.DataArray(cosine(np.radians(angles))[0], {"theta2": angles}, "theta2")
+    scene = replace(PRESS, omega2=speed, **words)
+    (tmp_path / "uneven.toml").write_text(write_scene(scene))
+    assert main(["check", "uneven.toml"]) == 0
+    said = capsys.readouterr().out
+    assert ("differs from that of omega2 by up to 183.4" in said) == told
+    ls.report(scene, tmp_path / "uneven.html")
+    page = (tmp_path / "uneven.html").read_text("utf-8")
+    assert ("acceleration of the crank" in page) == told
+    assert "mean power" in page  # over time, of a crank that changes its speed
+    assert "flywheel for" not in page

@@ -53,7 +53,7 @@ class Rotation(NamedTuple):
     damage: Mapping[str, xr.DataArray]
 
     def life(self, pin: str, capacity: Any, exponent: float) -> dict[str, xr.DataArray]:
-        """Rotation, equivalent load, life and its status of the bearing in a pin."""
+        """Return rotation, equivalent load, life and its status of the bearing in a pin."""
         rotation = self.rotation[pin].where(self.solved > 0.0)
         mean = (self.damage[pin] / rotation.where(rotation > 0.0)).where(rotation > 0.0)
         equivalent = mean ** (1.0 / exponent)
@@ -77,7 +77,7 @@ def rotation_under_load(
     part: Part | None = None,
     threads: int | None = None,
 ) -> Rotation:
-    """Integrals of rotation and damage by pin, of the whole cycle or a part of a turn [degree].
+    """Integrate rotation and damage of each pin over the whole cycle or a part of a turn [degree].
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ def rotation_under_load(
         for pin, force in forces.items()
     }
     every = (solved, time, *turns.values(), *damages.values())
-    found = integrals(scene, dict(enumerate(every)), part, threads)
-    arrays = [xr.DataArray(field.values, dims=field.dims) for field in found.values()]
+    totals = integrals(scene, dict(enumerate(every)), part, threads)
+    arrays = [xr.DataArray(field.values, dims=field.dims) for field in totals.values()]
     of_pins = (dict(zip(forces, arrays[k:], strict=False)) for k in (2, 2 + len(forces)))
     return Rotation(scene.period if part is None else part[1] - part[0], arrays[0], arrays[1], *of_pins)
 
@@ -102,8 +102,8 @@ def _integrand(height: Callable[..., Array], *names: str) -> Integrand:
 
 
 def _where_ok(height: Callable[..., Array], status: Array, *values: Array) -> Array:
-    found = height(*values)
-    return np.where((status == 0.0) & ~np.isnan(found), np.minimum(found, LARGEST), 0.0)
+    heights = height(*values)
+    return np.where((status == 0.0) & ~np.isnan(heights), np.minimum(heights, LARGEST), 0.0)
 
 
 def _time(omega2: Array) -> Array:

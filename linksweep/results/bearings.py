@@ -166,13 +166,13 @@ def bearings(
 
 
 def _part_problems(part: Part | None, period: float) -> list[str]:
-    """Why two angles are no ends of a crank's way."""
+    """List why two angles are no ends of a crank's way."""
     if part is None or 0.0 < part[1] - part[0] <= period:
         return []
-    given = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
+    ends = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
     if part[0] == part[1]:
-        return [f"{given}: is one angle; give the ends of a part of a turn, or a count"]
-    return [f"{given}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
+        return [f"{ends}: is one angle; give the ends of a part of a turn, or a count"]
+    return [f"{ends}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
 
 
 def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
@@ -213,7 +213,7 @@ def _force(links: tuple[int, int]) -> str:
 def _of_pin(
     cycle: xr.Dataset, links: tuple[int, int], speed: xr.DataArray, bearing: Bearing, reach: xr.DataArray
 ) -> dict[str, xr.DataArray]:
-    """Load, motion and friction at each sample."""
+    """Return load, motion and friction at each sample."""
     force = cycle[_force(links)]
     found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
     found |= {f"F{axis}": _in_frames(cycle, *links, axis) for axis in "xy"}
@@ -225,13 +225,13 @@ def _of_pin(
 
 
 def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
-    """Share of each sample in the relative rotation of all that are ok."""
+    """Return the share of each sample in the relative rotation of all that are ok."""
     turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0) * reach
     return turns / turns.sum("theta2", skipna=True, min_count=1)
 
 
 def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
-    """How much of the crank's way each angle stands for: as much as all others, or half way to its neighbours."""
+    """Return how much of the crank's way each angle stands for: as much as others, or half way to its neighbours."""
     if part is None:
         return xr.ones_like(angles)
     order = np.argsort(angles.values, kind="stable")

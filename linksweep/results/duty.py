@@ -99,7 +99,7 @@ def _value(entry: Entry, found: xr.DataArray, time: Any) -> xr.DataArray:
 
 
 def turning_problems(scene: Scene) -> list[str]:
-    """Why a scene has no crank that turns in one direction."""
+    """List why a scene has no crank that turns in one direction."""
     kind = type(scene.mechanism).__name__
     if kind == LoopTrack.__name__:
         return [f"scene.mechanism is a {kind}, which has no crank"]
@@ -113,7 +113,7 @@ def turning_problems(scene: Scene) -> list[str]:
 
 
 def steady_problems(scene: Scene) -> list[str]:
-    """Why a scene has no crank that turns steadily."""
+    """List why a scene has no crank that turns steadily."""
     if scene.changes_speed:
         index = scene.mechanism.index
         return [f"omega2: changes with {index}, but its flywheel makes the speed change; give the mean speed"]

@@ -9,7 +9,7 @@ import xarray as xr
 
 
 def mean_over_time(signal: xr.DataArray, cycle: xr.Dataset, index: str = "theta2") -> xr.DataArray:
-    """Mean of a signal over a cycle's samples, of those that are not NaN.
+    """Return the mean of a signal over a cycle's samples, of those that are not NaN.
 
     Where omega2 changes with the index, the cycle has it as a coordinate; a steady crank takes as long for each sample.
     """

@@ -98,7 +98,7 @@ class Rules(NamedTuple):
 
 
 def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
-    """Means over time of powers of quantities, for every design; NaN where no angle is ok."""
+    """Return means over time of powers of quantities, for every design; NaN where no angle is ok."""
     pace = changing_pace(scene, scene.at_one_angle.inputs)
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
@@ -113,12 +113,12 @@ def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
 
 
 def _time(value: Array, pace: Array | float = 1.0) -> Array:
-    """Time that a small angle takes, over that angle, where the value is known."""
+    """Return the time of a small angle, over that angle, where the value is known."""
     return np.where(np.isfinite(value / pace), 1.0 / np.abs(pace), 0.0)
 
 
 def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
-    """Time that the crank takes for the whole cycle [s]."""
+    """Return the time that the crank takes for the whole cycle [s]."""
     if not scene.changes_speed:
         return xr.DataArray(np.radians(scene.period) / abs(scene.omega2))
     time = Integrand((scene.mechanism.pace,), lambda pace: np.radians(1.0) / abs(pace))
@@ -129,7 +129,7 @@ def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
 def integrals(
     scene: Scene, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
 ) -> dict[Key, Field]:
-    """Integrals over the crank angle [degree] for every design, of the whole cycle or between two angles; NaN, or 0,
+    """Integrate over the crank angle [degree] for every design, the whole cycle or between two angles; NaN, or 0,
     where no angle is ok."""
     names = tuple(dict.fromkeys(name for integrand in integrands.values() for name in integrand.names))
     found = {key: _nothing(scene, integrand.names) for key, integrand in integrands.items()}

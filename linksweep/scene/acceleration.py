@@ -40,7 +40,7 @@ JUMP = 1e-6
 def acceleration(
     path: str, omega: Any, rule: Rule, grid: Grid, turn: float, curves: Curves | None = None
 ) -> xr.DataArray:
-    """ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
+    """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
 
     That of a function errs by 1e-10 of its largest value where the function is smooth over half a degree. At a corner
     it is the mean of both sides, at a jump infinite.
@@ -56,7 +56,7 @@ def acceleration(
 
 
 def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
-    """Why an acceleration cannot be that of a crank."""
+    """List why an acceleration cannot be that of a crank."""
     infinite = np.isinf(acceleration.transpose("theta2", ...).values).reshape(acceleration.sizes["theta2"], -1)
     at = acceleration["theta2"].values[infinite.any(axis=1)]
     advice = "give alpha2, or a ramp in place of the jump"
@@ -76,7 +76,7 @@ def _of_function(path: str, omega: Any, rule: Rule, grid: Grid, period: float) -
 
 
 def _limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
-    """Limit (angle) of values (angle, step) at steps that halve, each with so much rounding.
+    """Return the limit (angle) of values (angle, step) at steps that halve, each with so much rounding.
 
     An entry of the tableau errs by no more than it differs from its neighbours, rounding aside, if it also agrees with
     the values at the least steps: wider ones may have passed over what is narrower.
@@ -96,7 +96,7 @@ def _limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
 
 
 def _of_array(path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float, curves: Curves) -> xr.DataArray:
-    """By the periodic spline; at the angles of an array over part of a turn by the spline through these alone."""
+    """Differentiate the periodic spline; at the angles of a part of a turn, the spline through these alone."""
     from scipy.interpolate import CubicSpline
 
     omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
