@@ -61,7 +61,7 @@ class Scene(ByContent):
     mechanism : FourBar, SliderCrank, InvertedSliderCrank or LoopTrack
     omega2 : angular velocity of the crank [rad/s], positive counter-clockwise
     alpha2 : its angular acceleration [rad/s²]. Left out, it is ω2·dω2/dθ2, which is 0 where omega2 is the same at every
-        angle; of a spline by that spline, of a function by differences, to 1e-10 of the largest. Where it is given it
+        angle; of a spline by that spline, of a function by differences, to 1e-9 of the largest. Where it is given it
         is taken, and `linksweep.check` tells how far it is from that
     gravity : (gx, gy) [m/s²]; none by default, (0, -9.81) for a mechanism that stands upright
     loads : any number of Load, GasPressure, Spring, Damper, TorsionSpring and TorsionDamper
