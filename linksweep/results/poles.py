@@ -57,7 +57,7 @@ def _of_output(signals: tuple[str, ...]) -> bool:
 
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:
     """Return `assembly`, made 1 where a dead centre or friction forbids some angles of a whole turn."""
-    status = xr.Variable(assembly.dims, assembly.values)
+    status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # without waking dask to see whether it is its
     if "unbounded" in scene.mechanism.round_meanings:
         for findings, numbers in scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive}):
             dims, arrays = side_by_side(numbers)
