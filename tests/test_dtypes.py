@@ -186,6 +186,13 @@ def test_an_angle_is_not_a_plain_number(path, unit):
     assert line.startswith(f"{path} has the unit ")
 
 
+def test_a_study_at_quantities_of_pint_is_that_at_their_angles(tmp_path):
+    press, angles = ls.example("press"), UNITS.Quantity([0.0, 0.25, 0.5], "turn")
+    found = ls.study(press, tmp_path / "s.nc", ["T12"], theta2=angles)
+    assert found.T12_peak == ls.peaks(press, ["T12"], theta2=[0.0, 90.0, 180.0]).T12_peak
+    ls.study(press, tmp_path / "s.nc", ["T12"], theta2=[0, 90, 180])
+
+
 def test_pint_at_other_places():
     q = UNITS.Quantity
     assert ls.Scene(ls.example("press").mechanism, 3, gravity=q([0.0, -9810.0], "mm/s^2")).gravity == (0.0, -9.81)

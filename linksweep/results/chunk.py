@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.conversion import all_to_float64
 from linksweep.results.peaks import peaks
 from linksweep.scene.file import write_scene
 from linksweep.scene.grid import crank_grid
@@ -65,7 +66,7 @@ class Job:
     @cached_property
     def result(self) -> dict[str, Any]:
         """What makes two jobs give the same numbers: digest of the scene, and the request."""
-        options = {word: np.asarray(value).tolist() for word, value in self.options.items()}
+        options = {word: np.asarray(all_to_float64(value, "angle")).tolist() for word, value in self.options.items()}
         return {"scene": scene_digest(self.scene), "request": {"of": self.of, **options}}
 
     def designs(self, block: Block) -> int:
