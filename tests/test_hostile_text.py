@@ -174,9 +174,8 @@ def test_a_message_shows_nothing_of_a_file_that_is_no_csv_of_ours(here, text):
 
 def test_a_label_is_no_formula(here):
     labels = ["=cmd|'/c calc'!A1", "+1+1", "-1+1", "@sum", "\tx", "\rx", "-5", "plain"]
-    speed = xr.DataArray(np.arange(8.0), {"=dim": labels}, "=dim")
-    press = ls.example("press")
-    found = ls.peaks(ls.Scene(press.mechanism, omega2=speed), ["T12"], theta2=8)
+    scene = replace(ls.example("press"), omega2=xr.DataArray(np.arange(8.0), dims="speed"))
+    found = ls.peaks(scene, ["T12"], theta2=8).rename(speed="=dim").assign_coords({"=dim": labels})
     found.linksweep.to_csv("a.csv")
     with open("a.csv", newline="") as file:
         rows = list(csv_table.csv.reader(file))
@@ -237,6 +236,15 @@ def test_the_memory_that_a_request_needs_is_told_before_it_is_taken(here, capsys
     assert main(words.split()) == 2
     assert capsys.readouterr().err.startswith(f"linksweep: {said}")
     assert os.listdir() == ["press.toml"]
+
+
+def test_the_memory_of_designs_and_classes_is_told_before_it_is_taken():
+    scene = ls.example("press")
+    with pytest.raises(ValueError, match=r"n = 1000000000000: needs 1.6e\+04 GB of memory"):
+        ls.sample(scene, {"ground": (0.19, 0.21)}, n=10**12)
+    found = ls.bearings(scene, {"B": ls.Bearing(diameter=0.02, length=0.03)}, theta2=12)
+    with pytest.raises(ValueError, match=r"classes = 1000000000000: needs .* GB of memory"):
+        ls.load_spectrum(found, classes=10**12)
 
 
 def test_results_that_do_not_fit_are_told(monkeypatch):

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.memory import require_memory
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.validate import (
     Number,
@@ -275,6 +276,7 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
     sound = isinstance(found, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*found}
     refuse([] if sound else ["found: must be what ls.bearings returns, with F, rotation_share and life_status"])
     refuse(count_problems("classes", classes))
+    require_memory(f"classes = {said(classes)}", 8.0 * classes * found.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(
         lambda force, share: _histogram(force, share, classes),
         *xr.broadcast(found["F"], found["rotation_share"]),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.memory import require_memory
 from linksweep.mechanisms.validate import choice_problems, count_problems, name_problems, refuse, said
 from linksweep.scene.paths import free, replaced
 from linksweep.scene.scene import Scene
@@ -62,6 +63,7 @@ def sample(
     refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
     own = free(scene)
     refuse(_problems(scene, parameters, n, method, seed, dim, own))
+    require_memory(f"n = {said(n)}", 2.0 * 8.0 * n * len(parameters))
     points = _points(method, len(parameters), int(n), seed)
     values, problems = {}, []
     for levels, (path, given) in zip(points, parameters.items(), strict=True):
