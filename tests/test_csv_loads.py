@@ -207,7 +207,7 @@ REFUSED = [
         table(2 * ANGLES[:9], ANGLES[:9]),
         CSV + ": its angles run from 0 to 480 degrees, steps at most 60: they must go ",
     ),
-    (table(4 * ANGLES, ANGLES), CSV + ": its angles run from 0 to 1320 degrees"),
+    (table(np.append(ANGLES, 800.0), np.append(ANGLES, 0.0)), CSV + ": its angles run from 0 to 800 degrees"),
     (SOUND + "360,1\n", CSV + ":14: its values at 0 and 360 degrees differ, but they are the same position; make them"),
 ]
 

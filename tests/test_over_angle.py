@@ -237,9 +237,8 @@ REFUSED = [
         "give at least 3 different angles within one period of 360 degrees",
     ),
     (
-        over_angles([1.0, 2.0, 3.0, 4.0], [0.0, 300.0, 600.0, 900.0]),
-        "torque: its 4 angles from 0 to 900 degrees cannot be joined; "
-        "give at least 3 different angles within one period of 720 degrees",
+        over_angles([1.0, 2.0, 3.0, 4.0], [0.0, 30.0, 60.0, 730.0]),
+        "torque: its 4 angles from 0 to 730 degrees leave 670 of 1080 degrees open; give values all the way round",
     ),
     (
         over_angles([1.0, 2.0, 3.0, 1.5], [0.0, 120.0, 240.0, 360.0]),

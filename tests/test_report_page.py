@@ -236,7 +236,7 @@ def test_an_engine_tells_its_stroke_and_friction():
     assert found.rows("Geometry")["stroke of the slider"][0][0] == "86.00\u202fmm"
     assert found.rows("Drive")["work of friction"][0][1] == [float(ls.duty(ls.example("engine")).work_of_friction)]
     assert found.rows("Checks")["friction"][0][1] == [float(ls.check(ls.example("engine")).friction_to_jam), 0.05]
-    assert "two turns" in found.rows("Motion")["cycle"][0][0]
+    assert "2 turns" in found.rows("Motion")["cycle"][0][0]
 
 
 def test_the_same_scene_gives_the_same_bytes_whatever_the_settings():

@@ -22,8 +22,8 @@ from linksweep.scene.scene import Scene
 from linksweep.scene.selection import Block, blocks, design_sizes, selected
 from linksweep.scene.tabulated import values_at
 
-TWO_TURNS = np.arange(0.0, 720.0, 0.05)
-"""Angles [degree] at whose values a function of theta2 is known again."""
+STEP = 0.05
+"""Of the angles [degree] at whose values a function of theta2 is known again."""
 
 
 def chunk_of_peaks(
@@ -92,11 +92,12 @@ def scene_digest(scene: Scene) -> str:
     Functions of a position by those that the first design has all the way round.
     """
     digest = hashlib.sha256(write_scene(scene, elsewhere=scene.arrays).encode())
+    angles = np.arange(0.0, scene.period, STEP)
     for function in scene.functions.values():  # also of one that the text cannot hold
-        digest.update(values_at(function, TWO_TURNS).tobytes())
+        digest.update(values_at(function, angles).tobytes())
     if any(is_function(curve) for load in scene.loads for curve in load.over_positions):
         first = selected(scene, {dim: slice(0, 1) for dim in design_sizes(scene)})
-        for array in first.at(crank_grid(len(TWO_TURNS), scene.mechanism.period)).arrays.values():
+        for array in first.at(crank_grid(len(angles), scene.period)).arrays.values():
             digest.update(np.ascontiguousarray(array.values, dtype=float).tobytes())
     for path, array in scene.arrays.items():
         labels = {str(dim): array[dim].values.tolist() for dim in array.dims if dim in array.coords}

@@ -18,6 +18,7 @@ from linksweep.mechanisms import INDICES
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import count_problems, name_problems, refuse, said
 from linksweep.results.compute import requested
+from linksweep.scene.grid import whole_turns
 
 TURN = 360.0
 
@@ -29,7 +30,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     ----------
     ds : Dataset over a whole cycle in equal steps, as from ``sweep(scene, theta2=720)``
     of : names of its variables
-    n : the highest order; in a four-stroke cycle there are half orders too
+    n : the highest order; in a cycle of two turns (four-stroke) there are half orders too, in one of three thirds
 
     Returns
     -------
@@ -94,11 +95,10 @@ def _named(name: str, signal: xr.DataArray, cos: xr.DataArray, sin: xr.DataArray
 
 
 def _period(angles: np.ndarray, index: str) -> float:
-    """One turn or two, which the angles divide evenly, in any order."""
-    for period in (TURN, 2.0 * TURN):
-        steps = np.diff(np.sort(angles), append=np.min(angles) + period)
-        if len(angles) > 2 and np.allclose(steps, period / len(angles), rtol=0.0, atol=1e-9):
-            return period
+    """Return the turns [degree] that the angles divide evenly, in any order."""
+    period = whole_turns(np.sort(angles), TURN) if len(angles) > 2 else None
+    if period is not None:
+        return period
     raise ValueError(
         f"{index} has {len(angles)} angles from {angles.min():g} to {angles.max():g}: orders take a whole cycle in "
         f"equal steps; sweep with a count, such as {index}=720"

@@ -43,8 +43,6 @@ QUARTER = 0.5 * np.pi
 
 Part = tuple[float, float]
 """First and last crank angle [degree] of a machine that moves over part of a turn."""
-TURNS_AWAY = np.arange(-2.0, 3.0)
-"""Where, from the middle of a part of up to two turns, an arc may lie that reaches into it."""
 
 
 class Paths(NamedTuple):
@@ -329,8 +327,9 @@ def within(paths: Paths, part: Part, period: float) -> Paths:
         start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], period)
         twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + period], axis=1)
         return paths._replace(cuts=np.clip(twice, start, start + (last - first)))
-    nearest = np.round((0.5 * (first + last) - paths.middle) / 360.0)
-    copies = paths.some(np.tile(np.arange(len(paths.row)), len(TURNS_AWAY)))
-    middle = copies.middle + 360.0 * (np.tile(nearest, len(TURNS_AWAY)) + np.repeat(TURNS_AWAY, len(paths.row)))
+    nearest, reach = np.round((0.5 * (first + last) - paths.middle) / 360.0), 1 + int((last - first) // 720.0)
+    away = np.arange(-reach, reach + 1.0)  # turns away from the part's middle, an arc may still lie in it
+    copies = paths.some(np.tile(np.arange(len(paths.row)), len(away)))
+    middle = copies.middle + 360.0 * (np.tile(nearest, len(away)) + np.repeat(away, len(paths.row)))
     ends = (np.arcsin(np.clip((end - middle) / copies.half, -1.0, 1.0))[:, None] for end in part)
     return copies._replace(middle=middle, cuts=np.clip(copies.cuts, *ends))

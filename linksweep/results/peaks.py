@@ -37,7 +37,7 @@ from linksweep.scene.scene import Scene
 SOLVERS = ("fast", "superposed")
 SUMMARIES = ("mean", "rms", "bound", "samples")
 STATUS_ANGLES = 720
-"""Angles at which a scene is looked at for jams, dead centres and the like, where its numbers alone do not tell."""
+"""Angles of a turn at which a scene is looked at for jams, dead centres and the like, where its numbers do not tell."""
 PARTIAL, UNBOUNDED = 1, 3
 
 
@@ -118,7 +118,8 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
     index = scene.mechanism.index
     if theta2 is None:
         refuse(angles_missing(scene))
-        grid, sampled = crank_grid(STATUS_ANGLES, scene.period, index), scene.at_one_angle
+        turns = round(scene.period / scene.mechanism.period)
+        grid, sampled = crank_grid(STATUS_ANGLES * turns, scene.period, index), scene.at_one_angle
     else:
         grid = in_order(crank_grid(theta2, scene.period, index))
         sampled = scene.at(grid)

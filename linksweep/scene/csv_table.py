@@ -7,11 +7,11 @@
     5,12.9
     ...
 
-The first line names the columns; the first column is theta2 [degree], in rising order, over one turn (360) or two
-(720). The last row may close the cycle by repeating the first. In a scene file the column stands in place of a number:
-``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column` may be
-left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes on
-between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
+The first line names the columns; the first column is theta2 [degree], in rising order, over one turn (360) or
+several. The last row may close the cycle by repeating the first. In a scene file the column stands in place of a
+number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column`
+may be left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes
+on between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
 The first column of a load over a position is `position` [m] or [degree], in rising order.
 """
 
@@ -173,18 +173,18 @@ def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
 
 
 def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
-    """Whether angles go once or twice all the way round; steps hold as long as they like."""
+    """Whether angles go all the way round, in one turn or several; steps hold as long as they like."""
     if len(samples) < 4 and not steps:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
     angles = np.array([sample.angle for sample in samples])
     rises = np.diff(angles)
     span = float(angles[-1] - angles[0])
-    period = 360.0 if span <= 360.0 else 720.0
-    open_ = period - span > 1.5 * rises.max() or rises.max() > 0.5 * period
+    period = 360.0 * max(np.ceil(span / 360.0), 1.0)
+    open_ = period - span > 1.5 * rises.max() or rises.max() > 180.0
     if span > period or (open_ and not steps):
         return [
             f"csv: {name}: its angles run from {angles[0]:.15g} to {angles[-1]:.15g} degrees, steps at most "
-            f"{rises.max():.6g}: they must go round one turn (360) or two (720)"
+            f"{rises.max():.6g}: they must go round whole turns (360, 720, …)"
         ]
     if span == period and samples[0].value != samples[-1].value:
         return [

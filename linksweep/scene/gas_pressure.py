@@ -37,8 +37,7 @@ class GasPressure(ChangingLoad):
     of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
     direction; with branch "crossed" the head is behind, and pressure pushes it forward.
 
-    A DataArray over theta2 that spans more than 360 degrees makes the scene's period 720, and so does a cycle of four
-    strokes.
+    A DataArray over theta2 that spans two turns makes the scene's period 720, and so does a cycle of four strokes.
 
     In a study, a design whose crank does not turn fully has no ideal cycle: none of its samples is ok (status
     `no_cycle` where it can be assembled), and its forces are NaN.

@@ -30,6 +30,14 @@ def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
     return _grid(_angles(theta2), 0.0, dim)
 
 
+def whole_turns(angles: np.ndarray, turn: float) -> float | None:
+    """Return the whole turns [degree] that angles in order divide evenly; None where they divide none."""
+    steps = np.diff(angles)
+    period = turn * round((angles[-1] - angles[0] + steps.mean()) / turn)
+    even = period > 0.0 and np.allclose(steps, period / len(angles), rtol=0.0, atol=1e-9)
+    return period if even else None
+
+
 @lru_cache(maxsize=8)
 def _uniform(count: int, period: float, dim: str) -> Grid:
     return _grid(np.arange(count) * (period / count), period, dim)

@@ -58,8 +58,9 @@ class Load(ChangingLoad):
 
     Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
     point may be DataArrays of design dims. A DataArray over theta2 is reproduced exactly at angles that it holds. Its
-    period is 360 degrees, or 720 where its angles span more (four-stroke engines): then theta2 of the whole scene runs
-    to 720, and what has a period of 360 repeats. Values are checked by the scene that takes the load: ValueError there.
+    period is one turn, or as many as its angles span (two in a four-stroke engine): then theta2 of the whole scene runs
+    over these, and what comes round sooner repeats. Values are checked by the scene that takes the load, with a
+    ValueError there.
 
     A load over a position may be a number, a DataArray over the dim "position" alone, in [m] or [degree], or a function
     of it. Between its positions an array is interpolated "linear" (by default), "pchip" or "step"; before its first and

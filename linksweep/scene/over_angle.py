@@ -20,8 +20,8 @@ LARGEST = 1e290
 """Values from here on are not interpolated."""
 CLOSEST = 1e-9
 """Degrees between two angles of an array, at least: they must still differ a period later."""
-TURNS = (1, 2)
-"""After how many turns of the crank a cycle may come round."""
+TURNS = range(1, 13)
+"""After how many turns of the crank a function may come round."""
 WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
 """Places in a turn at which a function's turns are compared; it may jump at the first."""
 
@@ -61,7 +61,8 @@ def turning_problems(path: str, function: Any, turn: float) -> list[str]:
     angles = turn * np.arange(3)
     gives = ", ".join(f"{value:.6g} at {angle:g}" for value, angle in zip(function(angles), angles, strict=True))
     return [
-        f"{path}: the function gives {gives} degrees: it must come round after one turn or two; theta2 is in degrees, "
+        f"{path}: the function gives {gives} degrees: it must come round after some turns, at most {max(TURNS)}; "
+        "theta2 is in degrees, "
         f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for what starts anew"
     ]
 
@@ -72,10 +73,10 @@ def period_of_function(function: Any, turn: float) -> float:
 
 
 def period_of(value: Any, shortest: float) -> float:
-    """Period [degree] of a DataArray over theta2: two turns where its angles span more than one."""
+    """Return the period [degree] of a DataArray over theta2: as many turns as its angles span."""
     if "theta2" not in value.coords:
         return shortest  # its values are those of the sweep's own angles
-    return shortest if np.ptp(value["theta2"].values) <= shortest else 2.0 * shortest
+    return shortest * max(np.ceil(np.ptp(value["theta2"].values) / shortest), 1.0)
 
 
 def at_angles(
@@ -90,8 +91,8 @@ def at_angles(
     """A function or DataArray of theta2 as a DataArray over the grid's angles; any other number as it is.
 
     At angles that a DataArray does not hold it is interpolated (by a periodic cubic spline, unless `interpolation` says
-    otherwise), over `period` degrees (one turn) or, where its angles span more, two turns; at angles that it holds, or
-    that are whole periods from them, its values come back to the bit. Its curve is kept in `curves`.
+    otherwise), over as many turns of `period` degrees as its angles span; at angles that it holds, or that are whole
+    periods from them, its values come back to the bit. Its curve is kept in `curves`.
 
     Raises
     ------

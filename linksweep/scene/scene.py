@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
@@ -74,12 +75,13 @@ class Scene(ByContent):
     A crank takes omega2, alpha2, drive and loads; a loop takes speed, thrust and profile; both take gravity.
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
-    theta2, as a DataArray or a function of theta2 [degree], which must come round after one turn of the crank or two.
-    One that takes two makes the cycle a four-stroke one: theta2 then runs to 720. The values of a DataArray are in the
-    parameter's own unit; one that says another in attrs["units"] is refused, not converted. Quantities of pint, and
-    arrays of them, are converted; numbers of any dtype become float64. Where one is dask's, results are lazy too, chunk
-    by chunk of the designs, and its values are judged when they are computed. Labels are numbers, truth values, texts
-    or times, and names of dims such as NetCDF takes: what no file would give back as it is, is refused.
+    theta2, as a DataArray or a function of theta2 [degree], which must come round after one turn of the crank or some.
+    One that takes two, as in a four-stroke engine, makes the whole cycle two turns long: theta2 then runs to 720. The
+    values of a DataArray are in the parameter's own unit; one that says another in attrs["units"] is refused, not
+    converted. Quantities of pint, and arrays of them, are converted; numbers of any dtype become float64. Where one is
+    dask's, results are lazy too, chunk by chunk of the designs, and its values are judged when they are computed.
+    Labels are numbers, truth values, texts or times, and names of dims such as NetCDF takes: what no file would give
+    back as it is, is refused.
 
     Raises
     ------
@@ -208,11 +210,12 @@ class Scene(ByContent):
 
     @cached_property
     def period(self) -> float:
-        """Of the whole cycle [degree]: two turns of the crank where a load, omega2 or alpha2 takes two."""
+        """Of the whole cycle [degree]: the turns of the crank after which all loads, omega2 and alpha2 come round."""
         turn = self.mechanism.period
-        arrays = [array for array in self.arrays.values() if "theta2" in array.dims]
-        periods = [period_of(array, turn) for array in arrays] + [load.period for load in self.loads]
-        return max([turn, *periods, *(period_of_function(function, turn) for function in self.functions.values())])
+        periods = [period_of(array, turn) for array in self.arrays.values() if "theta2" in array.dims]
+        periods += [period_of_function(function, turn) for function in self.functions.values()]
+        periods += [load.period for load in self.loads if load.period]
+        return turn * math.lcm(*(round(period / turn) for period in periods))
 
     def jumps(self) -> tuple[Number, ...]:
         """Crank angles [degree] at which forces jump: friction where a slider turns round, pressure at dead centres,

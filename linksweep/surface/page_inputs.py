@@ -117,8 +117,9 @@ def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
     alpha2 = sampled.motion["alpha2"]
     if np.any(np.not_equal(alpha2, 0.0)):
         yield "its acceleration", quantity(alpha2, "angular_acceleration")
-    if sampled.period > sampled.mechanism.period:
-        yield "cycle", "two turns of the crank"
+    turns = round(sampled.period / sampled.mechanism.period)
+    if turns > 1:
+        yield "cycle", f"{turns} turns of the crank"
 
 
 def _speed(omega2: Any) -> str:

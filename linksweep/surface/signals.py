@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.scene.grid import whole_turns
 from linksweep.surface.drawings import drawing_of_results, drive_of_results
 
 INDEX = "theta2"
-PERIODS = (360.0, 720.0)  # degrees: a revolution, and the two of a four-stroke engine
 MOST_LINES = 6  # designs that one plot still tells apart
 
 
@@ -132,14 +132,8 @@ def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
 
 
 def full_turn(angles: np.ndarray) -> float | None:
-    """The period [degree] that sorted angles divide evenly, one turn of the crank or two; None where neither."""
-    if len(angles) < 3:
-        return None
-    for period in PERIODS:
-        steps = np.diff(angles, append=angles[0] + period)
-        if np.allclose(steps, period / len(angles)):
-            return period
-    return None
+    """Return the whole turns of the crank [degree] that sorted angles divide evenly; None where they divide none."""
+    return whole_turns(angles, 360.0) if len(angles) > 2 else None
 
 
 def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
