@@ -114,6 +114,8 @@ def quantities_at(
     scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
 ) -> Array:
     """Values (names, pairs) at pairs of a design and an angle [degree]."""
+    if not len(angles):
+        return np.empty((len(names), 0))
     inputs, grid, sample = _inputs_at(scene, angles)
     forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
     request = plan(scene.table, names, forms)
