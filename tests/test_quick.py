@@ -8,7 +8,7 @@ import linksweep as ls
 from linksweep.scene.quick import STEP, of_data, of_function
 
 PRESS = ls.example("press").mechanism
-PLACE = 77.7777
+PLACE = 77.8707
 
 
 def smooth(theta2):
@@ -42,7 +42,7 @@ def test_smooth_functions_are_quick_nowhere(function):
 
 
 @pytest.mark.parametrize("width", [0.02, 0.06, 0.2])
-@pytest.mark.parametrize("height", [1e-6, 1.0, -1e6])
+@pytest.mark.parametrize("height", [1e-4, 1.0, -1e6])
 def test_a_pulse_is_sampled_densely_and_nothing_else(width, height):
     found = of_function(pulse(width, height), (), 360.0)
     assert found.all
