@@ -321,7 +321,7 @@ def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
         (
             ["sweep", "press.toml", "-o", "c.nc", "--plot", "c.xyz"],
             2,
-            r"c.xyz: its ending must be one of \.png, \.pdf, \.svg",
+            r"c.xyz: its ending must be \.png or \.pdf or \.svg",
         ),
         (["peaks", "press.toml", "--of", " ,"], 2, "argument --of: must be names, separated by commas"),
         (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2: invalid int value: 'many'"),

@@ -168,7 +168,7 @@ def test_errors_are_said_in_a_line_and_without_a_traceback(arguments, message, c
     ("arguments", "message"),
     [
         (["balance", "press.toml", "--radius", "six"], '"six": must be a number, a space and a unit'),
-        (["flywheel", "press.toml", "--plot", "figure.txt"], "its ending must be one of .png, .pdf, .svg"),
+        (["flywheel", "press.toml", "--plot", "figure.txt"], "its ending must be .png or .pdf or .svg"),
         (["bearings", "press.toml", "--diameter", "20 kg"], "20 kg"),
     ],
 )

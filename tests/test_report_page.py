@@ -339,7 +339,7 @@ def test_one_design_of_a_study(undrawn):
 
 def test_what_is_asked_for_must_be_a_report():
     scene = ls.example("loop")
-    assert "its ending must be .html or .htm" in refused(scene, "report.pdf")
+    assert "its ending must be .html or .htm: a report is a page" in refused(scene, "report.pdf")
     assert "must be a Dataset of linksweep, or a Scene" in refused("press.toml", "report.html")
     assert "theta2 = (50, 10): must be the first and the last angle" in refused(
         scene, "report.html", theta2=(50.0, 10.0)
@@ -361,5 +361,5 @@ def test_command_line(undrawn, capsys):
     half = Page(Path("half.html").read_text(encoding="utf-8"))
     assert half.texts["h1"] == "Half" and "samples 0.1° apart" in half.texts["p"]
     assert main(["report", "car <1>.toml", "-o", "report.pdf"]) == 2
-    assert capsys.readouterr().err.startswith("linksweep: report.pdf: a report is a page")
+    assert capsys.readouterr().err.startswith("linksweep: report.pdf: its ending must be .html or .htm")
     assert sorted(path.name for path in Path().iterdir()) == ["car <1>.toml", "half.html", "report.html"]

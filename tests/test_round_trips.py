@@ -168,8 +168,8 @@ def test_what_a_file_cannot_hold_is_refused_before_anything_is_written(tmp_path)
     for name in ("a.toml", "a.nc"):
         with pytest.raises(ValueError, match=r"^loads\[3\].torque is a function of theta2 that jumps.*: give it as a"):
             ls.save(steps, tmp_path / name)
-    with pytest.raises(ValueError, match=r"a.txt: the file of a scene ends in .toml or .nc"):
+    with pytest.raises(ValueError, match=r"a.txt: its ending must be .toml or .nc"):
         ls.save(ls.example("press"), tmp_path / "a.txt")
-    with pytest.raises(ValueError, match=r"a.toml: TOML holds scenes; write results to .nc"):
+    with pytest.raises(ValueError, match=r"a.toml: its ending must be .nc or .csv"):
         ls.save(ls.sweep(ls.example("press"), 12), tmp_path / "a.toml")
     assert not [*tmp_path.iterdir()]

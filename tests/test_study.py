@@ -188,7 +188,7 @@ def test_the_command_of_one_design_prints_its_peaks(folder, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["scene.toml", "-o", "scene.toml"], "scene.toml: is no study that linksweep finished"),
+        (["scene.toml", "-o", "scene.toml"], "scene.toml: its ending must be .nc: a study file is NetCDF"),
         (["scene.toml", "-o", "no/study.nc"], "no/study.nc: there is no folder no; make it first"),
         (["scene.toml", "-o", "study.nc", "--of", "F33"], "of: nothing is named 'F33'"),
         (["scene.toml", "-o", "study.nc", "--chunk", "0"], "chunk = 0: must be a whole number"),

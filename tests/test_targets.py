@@ -1,7 +1,9 @@
 """What results are written to: only files are replaced, whatever their names, and nothing is left of killed writers."""
 
+import contextlib
 import fcntl
 import os
+import re
 import socket
 import stat
 import subprocess
@@ -10,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
 import linksweep as ls
 from linksweep.surface.atomic import whole
@@ -77,6 +80,62 @@ def test_the_command_line_refuses_it_before_it_computes(here, monkeypatch, capsy
     (here / "press.toml").write_text((Path(ls.__file__).parent / "scene/examples/press.toml").read_text())
     assert main(["sweep", "press.toml", "-o", "out.nc"]) == 2
     assert capsys.readouterr().err == "linksweep: out.nc: is a pipe, which no file replaces; choose another name\n"
+
+
+ENGINE = ls.example("engine")
+
+
+@pytest.mark.parametrize(
+    ("write", "allowed"),
+    [
+        (lambda path: ls.save(ls.check(ENGINE), path), ".nc or .csv"),
+        (lambda path: ls.save(ENGINE, path), ".toml or .nc"),
+        (lambda path: ls.study(ENGINE, path), ".nc: a study file is NetCDF; of a finished one ls.open_study"),
+        (lambda path: ls.plot.animate(ENGINE, 2).save(path), ".gif or .html"),
+        (lambda path: ls.report(ENGINE, path), ".html or .htm: a report is a page"),
+    ],
+)
+@pytest.mark.parametrize("name", ["x.xlsx", "x", "x.nc4", "x.CSVX", ".nc"])
+def test_an_ending_that_says_something_else_is_refused(here, write, allowed, name):
+    with pytest.raises(ValueError, match=f"^{re.escape(name)}: its ending must be {re.escape(allowed)}"):
+        write(name)
+    assert os.listdir(here) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("sweep press.toml -o x.xlsx", "x.xlsx: its ending must be .nc or .csv"),
+        ("sweep press.toml -o x", "x: its ending must be .nc or .csv"),
+        ("peaks press.toml -o x.txt", "x.txt: its ending must be .nc or .csv"),
+        ("study press.toml -o x.csv", "x.csv: its ending must be .nc: a study file is NetCDF"),
+        ("demo -o x.csv", "x.csv: give a name without ending; x.nc and x.png follow"),
+        ("demo -o y/x.nc", "y/x.nc: give a name without ending; x.nc and x.png follow"),
+    ],
+)
+def test_the_command_line_refuses_an_ending_before_it_computes(here, monkeypatch, capsys, arguments, said):
+    for name in {"sweep", "peaks", "example"}:
+        monkeypatch.setattr(f"linksweep.surface.cli.{name}", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("linksweep.surface.study.Job", lambda *_, **__: pytest.fail("computed"))
+    ls.save(ls.example("press"), "press.toml")
+    with contextlib.suppress(SystemExit):
+        assert main(arguments.split()) == 2
+    assert said in capsys.readouterr().err
+    assert os.listdir(here) == ["press.toml"]
+
+
+@pytest.mark.parametrize("command", ["sweep", "peaks"])
+def test_csv_is_the_table_of_the_netcdf_file(here, command):
+    ls.save(ls.example("press"), "press.toml")
+    for name in ("x.nc", "x.CSV"):
+        assert main([command, "press.toml", "-o", name]) == 0
+    with xr.open_dataset("x.nc") as found:
+        found.linksweep.to_csv("again.csv")
+    text = Path("x.CSV").read_text()
+    assert text == Path("again.csv").read_text()
+    first, *rows = text.splitlines()
+    assert "status" in first.split(",")
+    assert len(rows) == {"sweep": 720, "peaks": 1}[command]
 
 
 @pytest.mark.parametrize("length", [*range(241, 256)])

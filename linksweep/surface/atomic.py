@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from linksweep.mechanisms.validate import refuse
 from linksweep.scene.text_file import kind_of
 
 PREFIX, SUFFIX = ".linksweep-", ".part"
@@ -38,6 +39,16 @@ def whole(path: str | os.PathLike) -> Iterator[Path]:
             shutil.copymode(target, temporary)
         os.replace(temporary, target)
     sync_folder(target.parent)
+
+
+def ending_of(path: str | os.PathLike, endings: tuple[str, ...], advice: str = "") -> str:
+    """Return the ending of a file's name, in lower case, which says what is written.
+
+    Raises ValueError, with some advice, for another than these.
+    """
+    ending = Path(path).suffix.lower()
+    refuse([] if ending in endings else [f"{path}: its ending must be {' or '.join(endings)}{advice}"])
+    return ending
 
 
 def target_of(path: str | os.PathLike) -> Path:

@@ -17,10 +17,10 @@ from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
 from linksweep.surface.atomic import target_of
-from linksweep.surface.commands import PICTURES, a_file, add_commands, write_figure
+from linksweep.surface.commands import FILMS, PICTURES, a_file, add_commands, write_figure
 from linksweep.surface.page import report
 from linksweep.surface.report import check_lines, peak_table, study_report
-from linksweep.surface.storage import load_scene, save
+from linksweep.surface.storage import RESULTS, SCENES, load_scene, save
 from linksweep.surface.study import study
 
 if TYPE_CHECKING:
@@ -79,13 +79,13 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
     scenes, without = names(), "name of the files without ending (demo)"
     demo.add_argument("scene", nargs="?", choices=scenes, default="press", help=f"{', '.join(scenes)} (press)")
-    demo.add_argument("-o", "--output", type=Path, dest="stem", metavar="NAME", default=Path("demo"), help=without)
+    demo.add_argument("-o", "--output", type=_stem, dest="stem", metavar="NAME", default=Path("demo"), help=without)
     demo.set_defaults(run=_demo)
 
-    cycle = commands.add_parser("sweep", help="one revolution to NetCDF, and to a figure")
+    cycle = commands.add_parser("sweep", help="one revolution to a file, and to a figure")
     cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     cycle.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
-    cycle.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
+    cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
     cycle.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
     cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
     cycle.set_defaults(run=_sweep)
@@ -95,12 +95,12 @@ def _parser() -> argparse.ArgumentParser:
     said = "the largest of so many samples, not the exact peaks"
     worst.add_argument("--theta2", type=int, metavar="N", help=said)
     worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
-    worst.add_argument("-o", "--output", type=Path, help="NetCDF file to write")
+    worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
 
     many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
     many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write")
+    many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
     many.add_argument("--of", type=_names, nargs="+", help="names of the quantities wanted")
     chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
@@ -172,6 +172,16 @@ def _report(options: argparse.Namespace) -> None:
     part = tuple(options.theta2) if options.theta2 else None
     report(load_scene(options.scene), options.output, options.title or options.scene.stem, part)
     print(f"written: {options.output}")
+
+
+def _stem(text: str) -> Path:
+    """Return the name of files that differ by their endings."""
+    path = Path(text)
+    if path.suffix.lower() in (*RESULTS, *SCENES, *PICTURES, *FILMS, ".xlsx"):
+        raise argparse.ArgumentTypeError(
+            f"{text}: give a name without ending; {path.stem}.nc and {path.stem}.png follow"
+        )
+    return path
 
 
 def _names(text: str) -> list[str]:

@@ -25,7 +25,7 @@ from linksweep.scene.choose import design_labels
 from linksweep.scene.scene import Scene
 from linksweep.scene.units import quantity
 from linksweep.surface import summaries
-from linksweep.surface.atomic import whole
+from linksweep.surface.atomic import ending_of, whole
 from linksweep.surface.storage import load_scene
 
 if TYPE_CHECKING:
@@ -87,13 +87,14 @@ def _plots(parser: argparse.ArgumentParser) -> None:
 
 
 def a_file(endings: tuple[str, ...]) -> Callable[[str], Path]:
-    """What reads an argument as a file with one of these endings."""
+    """Return what reads an argument as a file with one of these endings."""
 
     def read(text: str) -> Path:
-        path = Path(text)
-        if path.suffix.lower() not in endings:
-            raise argparse.ArgumentTypeError(f"{text}: its ending must be one of {', '.join(endings)}")
-        return path
+        try:
+            ending_of(text, endings)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+        return Path(text)
 
     return read
 
@@ -142,7 +143,7 @@ def show(options: argparse.Namespace, draw: Callable[[], Any]) -> None:
 
 def write_figure(figure: Figure, path: Path) -> None:
     with whole(path) as temporary:
-        figure.savefig(temporary, format=path.suffix[1:].lower(), dpi=150)
+        figure.savefig(temporary, format=ending_of(path, PICTURES)[1:], dpi=150)
 
 
 def _animate(options: argparse.Namespace) -> None:

@@ -9,7 +9,6 @@ from base64 import b64encode
 from collections.abc import Callable, Iterable
 from functools import cached_property
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -18,8 +17,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
-from linksweep.mechanisms.validate import refuse
-from linksweep.surface.atomic import whole
+from linksweep.surface.atomic import ending_of, whole
 from linksweep.surface.machine_parts import BAR, EDGE
 from linksweep.surface.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION, small_type
 
@@ -110,8 +108,7 @@ class Film:
         OSError
             When the folder is missing, cannot be written or is full; what was there before stays.
         """
-        ending = Path(path).suffix.lower()
-        refuse([] if ending in ENDINGS else [f"{path}: its ending must be one of {', '.join(ENDINGS)}"])
+        ending = ending_of(path, ENDINGS)
         with whole(path) as temporary:
             if ending == ".html":
                 temporary.write_text(f'<!DOCTYPE html>\n<meta charset="utf-8">\n{self._repr_html_()}', "utf-8")

@@ -11,7 +11,6 @@ import os
 from collections.abc import Iterator
 from importlib.metadata import version
 from importlib.resources import files
-from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -22,6 +21,7 @@ from linksweep.scene.choose import design_labels
 from linksweep.scene.file import write_scene
 from linksweep.scene.scene import Scene
 from linksweep.surface import page_checks, page_figures, page_inputs, page_tables
+from linksweep.surface.atomic import ending_of
 from linksweep.surface.markup import Markup, joined, safe, tag
 from linksweep.surface.page_inputs import quantity
 from linksweep.surface.page_results import STEPS, Range, Results, results_of
@@ -29,6 +29,7 @@ from linksweep.surface.scene_at import scene_at
 from linksweep.surface.storage import write_text
 
 ENDINGS = (".html", ".htm")
+ADVICE = ": a report is a page, which a browser prints, to PDF as well"
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
 
 
@@ -73,7 +74,7 @@ def report(
     ...     "<h1>Rocket car</h1>" in path.read_text(encoding="utf-8")
     True
     """
-    refuse(_path_problems(Path(path)))
+    ending_of(path, ENDINGS, ADVICE)
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)
@@ -123,12 +124,6 @@ def _right(results: Results) -> Iterator[Markup]:
 def _section(title: str, *contents: Markup) -> Markup:
     """A part of the page; nothing where there is nothing to show."""
     return tag("section", tag("h2", title), *contents) if any(contents) else Markup()
-
-
-def _path_problems(path: Path) -> list[str]:
-    allowed = " or ".join(ENDINGS)
-    advice = f"{path}: a report is a page; its ending must be {allowed}; a browser prints it, to PDF as well"
-    return [] if path.suffix.lower() in ENDINGS else [advice]
 
 
 def _part_problems(part: Any, period: float) -> list[str]:

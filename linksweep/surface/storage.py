@@ -17,9 +17,12 @@ from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 from linksweep.scene.storable import label_problem, name_problem
 from linksweep.scene.text_file import kind_of
-from linksweep.surface.atomic import whole
+from linksweep.surface.atomic import ending_of, whole
 from linksweep.surface.seal import SAVED, mark_of, seal, sealed
+from linksweep.surface.table import to_csv
 
+RESULTS, SCENES = (".nc", ".csv"), (".toml", ".nc")
+"""Endings of the files of Datasets and of scenes."""
 NETCDF = RLock()
 """The NetCDF library is not made for two threads at once: the process dies."""
 
@@ -30,15 +33,15 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
     Parameters
     ----------
     ds : Dataset of linksweep, or any that NetCDF can hold; or a Scene
-    path : the file; one that exists is replaced only once the new one is complete. A scene goes to "scene.toml", a
-        text to be edited, or to "scene.nc"
+    path : the file; one that exists is replaced only once the new one is complete. Its ending says what is written: a
+        Dataset goes to "cycle.nc", NetCDF, or to "cycle.csv", a table as of `Dataset.linksweep.to_csv`, without its
+        scene; a scene to "scene.toml", a text to be edited, or to "scene.nc"
 
     Raises
     ------
     ValueError
-        For another ending of a scene's file, a Dataset that is to be TOML, and a function of theta2 that no samples
-        stand for, as `Scene.to_toml`; for names and labels that NetCDF cannot give back as
-        they are.
+        For another ending, and a function of theta2 that no samples stand for, as `Scene.to_toml`; for names and labels
+        that NetCDF cannot give back as they are.
     OSError
         When the folder is missing, cannot be written or is full, or `path` is no file; what was there before stays.
 
@@ -52,13 +55,12 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
     ...         ls.save(scene, os.path.join(folder, name))
     ...         assert ls.load_scene(os.path.join(folder, name)) == scene
     """
-    ending = Path(path).suffix.lower()
     if isinstance(ds, Scene):
-        refuse([] if ending in (".toml", ".nc") else [f"{path}: the file of a scene ends in .toml or .nc"])
-        if ending == ".toml":
+        if ending_of(path, SCENES) == ".toml":
             return write_text(ds.to_toml(), path)
         ds = _as_dataset(ds)
-    refuse([f"{path}: TOML holds scenes; write results to .nc"] if ending == ".toml" else [])
+    elif ending_of(path, RESULTS) == ".csv":
+        return to_csv(ds, path)
     refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
@@ -117,7 +119,7 @@ def load_scene(path: str | os.PathLike) -> Scene:
     True
     """
     path = Path(path)
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         return read_scene(path)
     if not path.exists():
         near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])

@@ -31,7 +31,7 @@ from linksweep.results.compute import requested, require_scene
 from linksweep.scene.lazy import in_memory
 from linksweep.scene.selection import Block
 from linksweep.surface.assemble import assemble
-from linksweep.surface.atomic import sync_folder, target_of
+from linksweep.surface.atomic import ending_of, sync_folder, target_of
 from linksweep.surface.checked import open_study
 from linksweep.surface.partial import Partial, differing, partial
 from linksweep.surface.seal import seal, sealed
@@ -44,6 +44,10 @@ SLOW_CHUNK = 1000
 
 LONGEST_NAME = 255
 """Bytes that the name of a file may have."""
+
+ADVICE = (
+    ': a study file is NetCDF; of a finished one ls.open_study("study.nc").linksweep.to_csv("study.csv") is a table'
+)
 
 SHOWN_AFTER = 1.0
 """Seconds of work after which a progress bar appears."""
@@ -67,7 +71,8 @@ def study(
     Parameters
     ----------
     scene : Scene
-    path : the NetCDF file; until it is finished there is a folder of its chunks beside it, ``study.nc.partial``
+    path : the NetCDF file, "study.nc"; until it is finished there is a folder of its chunks beside it,
+        ``study.nc.partial``
     of : names of quantities, as `linksweep.peaks` takes them; default: all pins and the torque
     chunk : designs computed at a time; default: 50 000, or 1000 where loads or speeds change with the angle
     threads : at most so many (default: all cores; on a cluster, one a chunk); the numbers do not depend on it
@@ -82,7 +87,8 @@ def study(
     Raises
     ------
     ValueError
-        For what `linksweep.peaks` refuses; for a file or folder that is there and is not of this study.
+        For what `linksweep.peaks` refuses; for another ending than .nc; for a file or folder that is there and is not
+        of this study.
     OSError
         When the folder is missing, cannot be written or is full, or `path` is no file; the finished chunks stay.
     KeyboardInterrupt
@@ -102,6 +108,7 @@ def study(
     """
     require_scene(scene)
     refuse([*count_problems("chunk", chunk), *count_problems("threads", threads)])
+    ending_of(path, (".nc",), ADVICE)
     client = client_of(client)
     scene = in_memory(scene)
     usual = CHUNK if scene.steady or "theta2" in options else SLOW_CHUNK
