@@ -5,6 +5,7 @@ import pytest
 from drawn import closed_figures, line, texts  # noqa: F401
 
 import linksweep as ls
+from linksweep.surface.with_peaks import with_peaks
 
 PRESS = ls.example("press")
 LINKS = [ls.Link(length, 1.0, 0.01, cg_distance=length / 2.0) for length in (0.08, 0.12, 0.11)]
@@ -34,7 +35,7 @@ def test_a_flywheel_that_does_not_turn_fully_is_refused():
 
 @pytest.mark.parametrize("frame", ["ground", "journal"])
 def test_three_pins_are_compared_in_a_fourth_panel(frame):
-    cycle = ls.sweep(ls.example("engine"), theta2=90)
+    cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))
     figure = cycle.linksweep.bearings(frame)
     *panels, together = figure.axes
     assert together.get_title(loc="left") == "All to one scale [N]"

@@ -105,7 +105,7 @@ class Number(Field):
         if isinstance(raw, dict) and "variable" in raw:
             return log.variable(raw["variable"], where)
         if isinstance(raw, dict) and "function" in raw:
-            return log.problem(where, f": was a function {raw['function']}; {INSTEAD}")
+            return log.function(f": was a function {raw['function']}; {INSTEAD}", where)
         try:
             if isinstance(raw, dict) and "csv" in raw:
                 return csv_column(raw, self.kind, log.folder)
@@ -269,7 +269,9 @@ def read_scene(path: str | Path) -> Scene:
     return parse_scene(text_of(path, str(path), ".toml"), str(path))
 
 
-def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArray] | None = None) -> Scene:
+def parse_scene(
+    text: str, name: str = "scene", arrays: Mapping[str, xr.DataArray] | None = None, whole: bool = True
+) -> Scene:
     """Make a scene of the text of a scene file.
 
     Parameters
@@ -278,6 +280,8 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
         The TOML text, and what messages call the file.
     arrays : mapping of str to DataArray, optional
         What ``{variable = "coupler.length"}`` in the text refers to, as `write_scene` puts it there.
+    whole : bool
+        Whether a function that no samples stand for is refused; else those of `arrays` are taken.
 
     Raises
     ------
@@ -286,7 +290,7 @@ def parse_scene(text: str, name: str = "scene", arrays: Mapping[str, xr.DataArra
     """
     raw = document(text, name)
     machine = {key for kind in _machines(raw) for key in SCHEMA[kind]}
-    log = Log(raw, arrays or {}, SCHEMA[Scene], machine, Path(name).parent)
+    log = Log(raw, arrays or {}, SCHEMA[Scene], machine, Path(name).parent, whole)
     scene: Scene = _built(Scene, raw, (), log)
     if log.problems:
         raise ValueError(log.report(text, name))

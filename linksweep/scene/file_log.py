@@ -38,6 +38,7 @@ class Log:
     top : keys that belong at the top of a file
     machine : keys that belong to a mechanism, whose paths leave out "mechanism"
     folder : where the file is, and what it names
+    whole : whether functions that no samples stand for are refused; else the samples among `arrays` will do
     """
 
     def __init__(
@@ -47,10 +48,11 @@ class Log:
         top: Collection[str],
         machine: Collection[str],
         folder: Path,
+        whole: bool = True,
     ) -> None:
         named = [str(item) for at, item in _places(raw) if "dim" in at[-1:] or "dims" in at[-2:-1]]
         self.arrays, self.dims = arrays, Counter(named)
-        self.top, self.machine, self.folder = top, machine, folder
+        self.top, self.machine, self.folder, self.whole = top, machine, folder, whole
         self.problems: list[tuple[Where, str]] = []
         self.misplaced: set[Where] = set()  # where keys that are not understood were meant to be
 
@@ -78,6 +80,10 @@ class Log:
         if str(name) in self.arrays:
             return self.arrays[name]
         return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
+
+    def function(self, text: str, where: Where) -> Any:
+        samples = self.arrays.get(path_of(where))
+        return self.problem(where, text) if self.whole or samples is None else samples
 
     def chosen(self, array: xr.DataArray) -> xr.DataArray:
         """Return the designs of an array in the text that the Dataset still has, by their labels."""

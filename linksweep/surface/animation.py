@@ -85,7 +85,7 @@ def animate(ds_or_scene: xr.Dataset | Scene, frames: int = 72, point: tuple[floa
     """
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
     require_memory(f"frames = {said(frames)}", float(frames * math.prod(SIZE) * DPI**2))
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
+    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
     angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
     with small_type():
         if isinstance(scene.mechanism, LoopTrack):

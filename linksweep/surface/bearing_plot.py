@@ -14,6 +14,7 @@ from linksweep.surface import signals
 from linksweep.surface.drawings import Drawing, drawing_of_results
 from linksweep.surface.storage import scene_of
 from linksweep.surface.style import BLUE, FORCE_COLORS, GREY, VERMILION, axes_or_new, grid, small_type
+from linksweep.surface.with_peaks import with_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,6 +59,7 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     """
     refuse(choice_problems("frame", frame, (*FRAMES, "link")))
     signals.require_angles(ds)
+    ds = with_peaks(ds)
     angles, x, y = _locus(ds, pin, frame)
     drawing, link = drawing_of_results(ds), _link_of(pin, frame)
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
@@ -110,7 +112,7 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
     import matplotlib.pyplot as plt
 
     refuse(choice_problems("frame", frame, FRAMES))
-    drawing = drawing_of_results(ds)
+    drawing, ds = drawing_of_results(ds), with_peaks(ds)
     forces = [force for force in drawing.forces if drawing.at_pin(force) and signals.has_pin(ds, force)]
     refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
     rows = (len(forces) + 1) // 2
@@ -158,7 +160,7 @@ def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
 def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Components of the same force in axes turned by an angle, a variable of the sweep or a parameter."""
     if name not in ds:
-        scene = scene_of(ds)
+        scene = scene_of(ds, whole=False)
         standing = getattr(scene.mechanism, name, None)
         given = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
         ds = ds.assign({name: given[name]})

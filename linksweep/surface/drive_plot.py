@@ -114,7 +114,7 @@ def torque_with_flywheel(found: xr.Dataset) -> Figure:
 
 def _torques(ax: Axes, found: xr.Dataset) -> None:
     """The torque at constant speed around the constant torque, what is given too much and too little shaded."""
-    steady = replace(scene_of(found), alpha2=0.0)
+    steady = replace(scene_of(found, whole=False), alpha2=0.0)
     cycle = sweep(steady, found[signals.INDEX].values, ["reduced_torque"])
     angles, without = signals.revolution(cycle, cycle["reduced_torque"])
     constant = float(found["drive_torque"])

@@ -27,6 +27,7 @@ from linksweep.surface.style import (
     crank_angles,
     grid,
 )
+from linksweep.surface.with_peaks import with_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -89,6 +90,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     'pin force [N]'
     """
     signals.require_angles(ds)
+    ds = with_peaks(ds)
     wanted = force_names(ds, names)
     found = {name: signals.magnitude(ds, name) for name in wanted}
     if len(wanted) > 1:
@@ -145,6 +147,7 @@ def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     'drive torque $T_{12}$ [N m]'
     """
     signals.require_angles(ds)
+    ds = with_peaks(ds)
     name = signals.drive_name(ds)
     units = signals.unit(ds[name], "N m")
     curves = _curves(ds, {name: ds[name]})

@@ -76,7 +76,7 @@ def mechanism(
     >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
     'x [m]'
     """
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene)
+    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
     drawing = drawing_of(scene.mechanism)
     angle = _angle(theta2)
     places = positions(scene, drawing, [angle])

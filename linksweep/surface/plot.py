@@ -1,8 +1,9 @@
 """All plots by name, and the page that shows a cycle: mechanism, forces, torque and the bearing of the worst pin.
 
 Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
-settings. Peaks marked are those of the samples in the Dataset. Colours are Okabe and Ito's, told apart by colour-blind
-readers; lines also differ in dashes, so that one force on top of another is seen, in grey too.
+settings. Peaks marked are those of `linksweep.peaks` where the Dataset is a whole cycle of one design, which holds its
+scene; else those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in
+dashes, so that one force on top of another is seen, in grey too.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from linksweep.surface.mechanism_plot import mechanism
 from linksweep.surface.shaking_plot import hodograph, orders
 from linksweep.surface.study_plot import parallel_coordinates, scatter
 from linksweep.surface.style import small_type
+from linksweep.surface.with_peaks import with_peaks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,6 +90,7 @@ def cycle(ds: xr.Dataset) -> Figure:
     if LoopTrack.index in ds.dims:
         return loop(ds)
     signals.require_angles(ds)
+    ds = with_peaks(ds)
     pin, angle = _most_loaded(ds)
     drawing = drawing_of_results(ds)
     with small_type():

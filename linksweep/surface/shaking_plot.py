@@ -11,6 +11,7 @@ import xarray as xr
 from linksweep.mechanisms.validate import refuse
 from linksweep.surface import signals
 from linksweep.surface.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, axes_or_new, grid
+from linksweep.surface.with_peaks import with_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,6 +53,7 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     signals.require_angles(ds)
     missing = [part for part in (f"{name}x", f"{name}y") if part not in ds]
     refuse([f"ds has no {part}: sweep with outputs=[..., {part!r}]" for part in missing])
+    ds = with_peaks(ds)
     angles, x, y = signals.revolution(ds, ds[f"{name}x"], ds[f"{name}y"])
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     ax.set_aspect("equal", adjustable="datalim")

@@ -13,6 +13,7 @@ from linksweep.scene.grid import whole_turns
 from linksweep.surface.drawings import drawing_of_results, drive_of_results
 
 INDEX = "theta2"
+WHOLE_TURN = "whole_turn"  # attribute of a cycle whose angles are no even grid, though they go all the way round
 MOST_LINES = 6  # designs that one plot still tells apart
 
 
@@ -119,7 +120,7 @@ def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]
     angles = ds[INDEX].values.astype(float)
     order = np.argsort(angles, kind="stable")
     rows = [angles[order], *(_spread(signal, len(angles))[order] for signal in signals)]
-    period = full_turn(rows[0])
+    period = ds.attrs.get(WHOLE_TURN) or full_turn(rows[0])
     if period is None:
         return tuple(rows)
     return (np.append(rows[0], rows[0][0] + period), *(np.append(row, row[0]) for row in rows[1:]))
@@ -197,7 +198,7 @@ def number(value: float) -> str:
 
 
 def angle_text(angle: float) -> str:
-    return f"{angle:.5g}°".replace("-", "−")
+    return f"{round(angle, 2):.5g}°".replace("-", "−")
 
 
 def symbol(name: str) -> str:

@@ -140,8 +140,10 @@ def _loaded(path: Path) -> xr.Dataset:
         return ds.load()
 
 
-def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
+def scene_of(ds: xr.Dataset, name: str = "Dataset", whole: bool = True) -> Scene:
     """The scene that a Dataset of linksweep came from, or of the branch chosen from it.
+
+    A function that jumps is refused; unless it need not be the `whole` scene: then a cycle's own samples stand for it.
 
     Raises ValueError where the Dataset holds none.
     """
@@ -151,7 +153,7 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset") -> Scene:
             f"{name}: holds no scene; only Datasets made by linksweep do, and only while they keep their attributes"
         )
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
-    scene = parse_scene(text, name, arrays)
+    scene = parse_scene(text, name, arrays, whole)
     machine: Any = scene.mechanism
     if getattr(machine, "branch", "") == "both" and "branch" in ds.coords and not ds["branch"].dims:
         return replace(scene, mechanism=replace(machine, branch=str(ds["branch"].item())))
