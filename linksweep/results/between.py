@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from functools import singledispatch
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,9 +64,8 @@ class Group(NamedTuple):
         return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
 
 
-def groups(
-    scene: Scene, names: tuple[str, ...], designs: Array | None = None, at_once: int = AT_ONCE
-) -> Iterator[Group]:
+@singledispatch
+def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_once: int = AT_ONCE) -> Iterator[Any]:
     """Designs in groups small enough to be looked at together: these, or one of all that share these quantities."""
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
@@ -77,7 +77,8 @@ def groups(
         yield _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
 
 
-def empty(scene: Scene, names: tuple[str, ...]) -> dict[str, Field]:
+@singledispatch
+def empty(scene: Any, names: tuple[str, ...]) -> dict[str, Field]:
     """Fields of NaN for each of these quantities, over its design dims."""
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     request = plan(scene.table, names, inputs.forms)

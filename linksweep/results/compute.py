@@ -14,6 +14,11 @@ from linksweep.mechanisms.validate import name_problems, refuse
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Inputs, Scene
 
+SEVERAL = (
+    "scene is a MultiCylinder, which this does not take; give a Scene, such as its engine, or ask it for four.sweep(), "
+    "ls.peaks, ls.duty, ls.flywheel"
+)
+
 
 def requested(path: str, names: Any) -> list[str]:
     """Names asked for, as a list; one name alone counts as one."""
@@ -35,7 +40,8 @@ def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) 
 
 def require_scene(scene: Any) -> None:
     kind = type(scene).__name__
-    refuse([] if isinstance(scene, Scene) else [f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"])
+    said = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
+    refuse([] if isinstance(scene, Scene) else [said])
 
 
 def angles_missing(scene: Scene) -> list[str]:

@@ -1,45 +1,44 @@
 """MultiCylinder: an engine of several cylinders on one crankshaft, each a slider-crank like the first.
 
-Cylinder k is the engine's slider-crank turned by its bank angle β about A, its crank ahead by its crank angle φ. In
-axes that turn with the cylinder its crank stands at θ2 + φ − β: each cylinder is thus the same cycle at other angles,
-its forces turned by β. With z the place along the crankshaft, forces of the cylinders add up to
-
-    Fs = Σ R(β) Fs(θ2 + φ − β)        Ms = Σ Ms(θ2 + φ − β)        T12 = Σ T12(θ2 + φ − β)
-    Msx = −Σ z·Fsy,  Msy = Σ z·Fsx    (moments about the axes x and y at z = 0)
-
-Source: C. F. Taylor, The Internal-Combustion Engine in Theory and Practice, volume 2 (engine balance and vibration); R.
-L. Norton, Design of Machinery, chapter "Multicylinder Engines".
+Equations and source: `linksweep.results.cylinder_sums`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.quantity import Quantity
 from linksweep.mechanisms import SliderCrank
 from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.conversion import to_float64
 from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Rule, is_array, number_problems, refuse, said
+from linksweep.mechanisms.validate import Rule, is_array, name_problems, number_problems, refuse, said
+from linksweep.results.compute import requested
+from linksweep.results.cylinder_sums import (
+    QUANTITIES,
+    Made,
+    Sum,
+    Throw,
+    main_quantities,
+    makers,
+    sources_of,
+    together,
+)
 from linksweep.results.record import index_coordinate, origin_attributes
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 ANGLE, LENGTH = Rule("angle"), Rule("length")
-SAID = {
-    "T12": ("N m", "torque of the drive on the crankshaft, positive counter-clockwise"),
-    "Fsx": ("N", "shaking force of all cylinders, component along x"),
-    "Fsy": ("N", "shaking force of all cylinders, component along y"),
-    "Fs": ("N", "magnitude of the shaking force of all cylinders"),
-    "Ms": ("N m", "shaking moment of all cylinders about the crankshaft, positive counter-clockwise"),
-    "Msx": ("N m", "moment of the shaking forces about the x axis, -z times Fsy"),
-    "Msy": ("N m", "moment of the shaking forces about the y axis, z times Fsx"),
-}
+SHAKING = ("T12", "Fsx", "Fsy", "Fs", "Ms", "Msx", "Msy")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +53,8 @@ class MultiCylinder(ByContent):
         they also say where in its cycle each cylinder is: [0, 540, 180, 360]
     bank_angles : of each cylinder, turned from the engine's guide [degree]; none by default
     positions : of each cylinder along the crankshaft [m], z pointing towards the viewer; all 0 by default
+    main_positions : of the main bearings along the crankshaft [m], in order, with every cylinder between two of them;
+        by default halfway between neighbouring throws, and as far outside the first and the last
 
     Raises
     ------
@@ -62,7 +63,7 @@ class MultiCylinder(ByContent):
 
     Notes
     -----
-    Loads turn with their cylinder; gravity does not. Equations and source: `linksweep.results.cylinders`.
+    Loads turn with their cylinder; gravity does not. Equations and source: `linksweep.results.cylinder_sums`.
 
     Examples
     --------
@@ -86,17 +87,19 @@ class MultiCylinder(ByContent):
     crank_angles: tuple[float, ...]
     bank_angles: tuple[float, ...] = ()
     positions: tuple[float, ...] = ()
+    main_positions: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         refuse(_engine_problems(self.engine))
         given = {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}
         for word, rule in given.items():
             refuse(self._take(word, rule))
+        refuse(self._take_mains())
 
     def _take(self, word: str, rule: Rule) -> list[str]:
         """Numbers of the cylinders as a tuple, one for each."""
         value: Any = getattr(self, word)
-        if is_array(value) or isinstance(value, str) or not isinstance(value, Iterable):
+        if _no_list(value):
             return [f"{word} = {said(value)}: must be a list of numbers, one for each cylinder"]
         numbers = tuple(to_float64(number, rule.kind) for number in value)
         if word != "crank_angles":
@@ -109,13 +112,80 @@ class MultiCylinder(ByContent):
             )
         return found + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
 
-    def sweep(self, theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
+    def _take_mains(self) -> list[str]:
+        """Take the places of the main bearings; what is wrong with them."""
+        value: Any = self.main_positions
+        if _no_list(value):
+            return [f"main_positions = {said(value)}: must be a list of numbers, one for each main bearing"]
+        places = tuple(to_float64(number, LENGTH.kind) for number in value)
+        object.__setattr__(self, "main_positions", places)
+        found = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
+        if found or not places:
+            return found
+        if len(places) < 2 or not np.all(np.diff(places) > 0.0):
+            return [f"main_positions = {said(list(places))}: must be two places or more, in order along the crankshaft"]
+        return [
+            f"positions[{k}] = {z:g} m: must lie between the first and the last main bearing, at {places[0]:g} m and "
+            f"{places[-1]:g} m"
+            for k, z in enumerate(self.positions, 1)
+            if not places[0] <= z <= places[-1]
+        ]
+
+    @cached_property
+    def quantity(self) -> Mapping[str, Quantity]:
+        """All quantities of the whole engine, by name."""
+        return {quantity.name: quantity for quantity in (*QUANTITIES, *main_quantities(len(self.mains)))}
+
+    @cached_property
+    def makers(self) -> Mapping[str, Sum | Made]:
+        """How each of them is made of the cylinders' own."""
+        return makers(len(self.mains))
+
+    @property
+    def in_memory(self) -> MultiCylinder:
+        """The same engine, its numbers computed where they are lazy."""
+        return replace(self, engine=in_memory(self.engine))
+
+    @property
+    def pin_forces(self) -> tuple[str, ...]:
+        """Magnitudes of the forces in the pins of one cylinder, which its bank leaves alone."""
+        return tuple(f"F{i}{j}" for a, b in self.engine.mechanism.pins.values() for i, j in ((a, b), (b, a)))
+
+    @property
+    def period(self) -> float:
+        """Of the whole cycle [degree]."""
+        return self.engine.period
+
+    @cached_property
+    def mains(self) -> tuple[float, ...]:
+        """Places of the main bearings along the crankshaft [m], in order; none where nothing says where they are."""
+        return self.main_positions or _halfway(sorted({*self.positions}))
+
+    @cached_property
+    def throws(self) -> tuple[Throw, ...]:
+        """How each cylinder stands in the engine."""
+        standing = zip(self.crank_angles, self.bank_angles, self.positions, strict=True)
+        return tuple(Throw(ahead - bank, cos_sin(bank), z, _shares(z, self.mains)) for ahead, bank, z in standing)
+
+    @cached_property
+    def cylinders(self) -> tuple[Scene, ...]:
+        """The scene of each cylinder, in axes that turn with it: all differ by the direction of gravity alone."""
+        gx, gy = self.engine.gravity
+        banks = [throw.bank for throw in self.throws]
+        turned = {
+            (cos, sin): replace(self.engine, gravity=(cos * gx + sin * gy, cos * gy - sin * gx)) for cos, sin in banks
+        }
+        return tuple(turned[bank] for bank in banks)
+
+    def sweep(self, theta2: Any = 720, threads: int | None = None, outputs: Iterable[str] | None = None) -> xr.Dataset:
         """Torque, shaking force and moments of all cylinders together over the cycle.
 
         Parameters
         ----------
         theta2 : count of crank angles, or angles [degree], as `linksweep.sweep` takes them
         threads : at most so many (default: all cores)
+        outputs : names of the variables wanted. Default: T12, the shaking force and its moments. Others are `power`,
+            `reduced_torque`, `reduced_inertia`, `F_main1`, `F_main1x` … and the like
 
         Returns
         -------
@@ -125,33 +195,54 @@ class MultiCylinder(ByContent):
         Raises
         ------
         ValueError
-            For angles that are no angles.
+            For angles that are no angles, and unknown names.
         """
-        grid = crank_grid(theta2, self.engine.period)
-        cylinders = [self._cylinder(k, grid.angles, threads) for k in range(len(self.crank_angles))]
-        names = [name for name in SAID if name != "Fs"]
-        found = {name: _sum(cylinder[name] for cylinder in cylinders) for name in names}
-        found["Fs"] = xr.DataArray(np.hypot(found["Fsx"], found["Fsy"]))
-        labelled = {name: found[name].assign_attrs(units=SAID[name][0], long_name=SAID[name][1]) for name in SAID}
-        status = cylinders[0]["status"]
-        for other in cylinders[1:]:
-            status = xr.where(other["status"] > status, other["status"], status)
-        labelled["status"] = status.assign_attrs(cylinders[0]["status"].attrs)
+        names = list(SHAKING) if outputs is None else requested("outputs", outputs)
+        refuse([problem for name in names for problem in name_problems("outputs", name, [*self.quantity, "status"])])
+        grid = crank_grid(theta2, self.period)
+        wanted = dict.fromkeys((*names, "status"))
+        sources = sources_of(wanted, self.makers)
+        cycles = [
+            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), sources, threads=threads))
+            for scene, throw in zip(self.cylinders, self.throws, strict=True)
+        ]
+        found = together(wanted, self.makers, self.throws, cycles)
+        status = found.pop("status").assign_attrs(cycles[0]["status"].attrs)
+        labelled = {name: self._labelled(name, values.where(status == 0)) for name, values in found.items()}
         command = f"linksweep.MultiCylinder(...).sweep(theta2={said(theta2)})"
-        ds = xr.Dataset(labelled, attrs=origin_attributes(self.engine, command))
+        ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
         return ds.assign_coords(index_coordinate(self.engine, grid))
 
-    def _cylinder(self, k: int, angles: np.ndarray, threads: int | None) -> xr.Dataset:
-        """What cylinder k adds, in ground axes, over the crankshaft's angles."""
-        ahead, bank, z = self.crank_angles[k], self.bank_angles[k], self.positions[k]
-        cos, sin = cos_sin(bank)
-        own = np.mod(angles + (ahead - bank), self.engine.period)
-        gx, gy = self.engine.gravity
-        seen = replace(self.engine, gravity=(cos * gx + sin * gy, cos * gy - sin * gx))
-        cycle = sweep(seen, own, ["T12", "Fsx", "Fsy", "Ms"], threads=threads)
-        cycle = cycle.drop_vars([name for name, array in cycle.coords.items() if "theta2" in array.dims])
-        x, y = cos * cycle["Fsx"] - sin * cycle["Fsy"], sin * cycle["Fsx"] + cos * cycle["Fsy"]
-        return cycle.assign({"Fsx": x, "Fsy": y, "Msx": -z * y, "Msy": z * x})
+    def _labelled(self, name: str, values: xr.DataArray) -> xr.DataArray:
+        return values.assign_attrs(units=self.quantity[name].units, long_name=self.quantity[name].long_name)
+
+
+def _bare(cycle: xr.Dataset) -> xr.Dataset:
+    """Return a cylinder's cycle without its own angles."""
+    return cycle.drop_vars([name for name, array in cycle.coords.items() if "theta2" in array.dims])
+
+
+def _halfway(throws: list[float]) -> tuple[float, ...]:
+    """Return places halfway between throws, and as far outside; none for one throw."""
+    if len(throws) < 2:
+        return ()
+    between = [0.5 * (a + b) for a, b in pairwise(throws)]
+    return (2.0 * throws[0] - between[0], *between, 2.0 * throws[-1] - between[-1])
+
+
+def _shares(z: float, mains: tuple[float, ...]) -> tuple[float, ...]:
+    """Return what each main carries of a force at z, by the lever rule in the bay where it lies."""
+    weights = np.zeros(len(mains))
+    if len(mains):
+        right = min(max(int(np.searchsorted(mains, z)), 1), len(mains) - 1)
+        bay = mains[right] - mains[right - 1]
+        weights[right - 1], weights[right] = (mains[right] - z) / bay, (z - mains[right - 1]) / bay
+    return tuple(map(float, weights))
+
+
+def one_cylinder(machine: Scene | MultiCylinder) -> Scene:
+    """Return the scene of a machine's cylinder, or of a machine of one mechanism itself."""
+    return machine.engine if isinstance(machine, MultiCylinder) else machine
 
 
 def _engine_problems(engine: Any) -> list[str]:
@@ -163,6 +254,10 @@ def _engine_problems(engine: Any) -> list[str]:
     return found + ([wrong] if engine.drive != "crank" else [])
 
 
+def _no_list(value: Any) -> bool:
+    return is_array(value) or isinstance(value, str) or not isinstance(value, Iterable)
+
+
 def _over_angle(value: Any) -> bool:
     return (callable(value) and not is_array(value)) or "theta2" in getattr(value, "dims", ())
 
@@ -170,8 +265,3 @@ def _over_angle(value: Any) -> bool:
 def _plain_problems(path: str, number: Any, rule: Rule) -> list[str]:
     array = [f"{path} has dims: must be a number"] if is_array(number) and number.dims else []
     return array or number_problems(path, number, rule)
-
-
-def _sum(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
-    first, *others = arrays
-    return sum(others, first)

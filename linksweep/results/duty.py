@@ -10,6 +10,7 @@ import xarray as xr
 from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.validate import refuse
 from linksweep.results.compute import require_scene
+from linksweep.results.cylinders import MultiCylinder, one_cylinder
 from linksweep.results.peaks import peaks
 from linksweep.results.quadrature import cycle_time
 from linksweep.scene.grid import crank_grid
@@ -44,12 +45,12 @@ ENTRIES = (
 LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a cycle, never positive", work=True)
 
 
-def duty(scene: Scene, threads: int | None = None) -> xr.Dataset:
+def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset:
     """Torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
 
     Parameters
     ----------
-    scene : Scene of a machine whose crank turns in one direction: omega2 is nowhere 0
+    scene : Scene, or MultiCylinder, of a machine whose crank turns in one direction: omega2 is nowhere 0
     threads : at most so many (default: all cores)
 
     Returns
@@ -76,14 +77,15 @@ def duty(scene: Scene, threads: int | None = None) -> xr.Dataset:
     >>> found.work.units, bool(abs(found.work + found.work_of_loads) < 1e-9)
     ('J', True)
     """
-    require_scene(scene)
-    refuse(turning_problems(scene))
-    drive = scene.mechanism.drives[scene.drive]
-    entries = (*ENTRIES, LOSS) if "friction_power" in scene.table.quantity else ENTRIES
+    one = one_cylinder(scene)
+    require_scene(one)
+    refuse(turning_problems(one))
+    drive = one.mechanism.drives[one.drive]
+    entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
     sources = {entry.source.format(drive=drive): entry for entry in entries}
     wanted = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
     found = peaks(scene, of=list(dict.fromkeys(wanted)), threads=threads)
-    time = cycle_time(scene, threads)
+    time = cycle_time(one, threads)
     variables = {entry.name: _value(entry, found[entry.source.format(drive=drive)], time) for entry in entries}
     whole = found["status"] == 0
     for entry in entries:

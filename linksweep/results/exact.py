@@ -67,18 +67,18 @@ def exact_peaks(
         for group in groups(scene, (*signals, "assembly")):
             (kinds,) = group.constants("assembly")
             if np.any(kinds < NEVER):
-                _raise_to_poles(group.some(kinds < NEVER), found, threads)
+                raise_to_poles(group.some(kinds < NEVER), found, threads)
     return found
 
 
 def _along_paths(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, Found]:
     """Peaks of a scene whose loads change with the angle in ways that only the scene knows."""
-    found = {signal: _nothing(field) for signal, field in empty(scene, signals).items()}
+    found = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     for group in groups(scene, (*signals, "assembly")):
         (kinds,) = group.constants("assembly")
         for kind in (WHOLLY, PARTLY):
             if np.any(kinds == kind):
-                _follow_all(group.some(kinds == kind), found, _paths(scene, kind), threads)
+                follow(group.some(kinds == kind), found, _paths(scene, kind), threads)
     return found if scene.quick.all else {signal: _doubted(scene, signal, peak) for signal, peak in found.items()}
 
 
@@ -99,13 +99,17 @@ def _between(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: i
         for group in groups(scene, names, narrow, JUMPS_AT_ONCE):
             _follow(group, found, about_approaches, threads)
     for group in groups(scene, names, partly):
-        _follow_all(group, found, _paths(scene, PARTLY), threads)
+        follow(group, found, _paths(scene, PARTLY), threads)
     return found
 
 
 def _paths(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
     """Return all paths along which designs of one kind of assembly are searched."""
-    along, close = {WHOLLY: (turns, about_approaches), PARTLY: (arcs, about_approaches_on_arcs)}[kind]
+    of_kind: dict[float, tuple[PathsOf, PathsOf]] = {
+        WHOLLY: (turns, about_approaches),
+        PARTLY: (arcs, about_approaches_on_arcs),
+    }
+    along, close = of_kind[kind]
     return (along, close) if scene.approaches() else (along,)
 
 
@@ -119,7 +123,7 @@ def _doubted(scene: Scene, signal: str, peak: Found) -> Found:
     return peak._replace(beyond=Field(peak.beyond.dims, beyond))
 
 
-def _nothing(field: Field) -> Found:
+def nothing(field: Field) -> Found:
     return Found(*(Field(field.dims, field.values.copy()) for _ in Found._fields))
 
 
@@ -193,7 +197,7 @@ class Best(NamedTuple):
     samples: Array
 
 
-def _follow_all(group: Group, found: dict[str, Found], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
+def follow(group: Group, found: dict[str, Found], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
     for paths_of in all_paths:
         _follow(group, found, paths_of, threads)
 
@@ -212,7 +216,7 @@ def _follow(group: Group, found: dict[str, Found], paths_of: PathsOf, threads: i
         _raise(peak, place, Best(*(numbers[:, k] for numbers in best)))
 
 
-def _raise_to_poles(group: Group, found: dict[str, Found], threads: int | None) -> None:
+def raise_to_poles(group: Group, found: dict[str, Found], threads: int | None) -> None:
     """Make infinite what has a pole."""
     row, angle, infinite = poles(group, tuple(found), threads)
     places, angle = group.some(row).places, _place(angle, group.scene.period)

@@ -22,6 +22,7 @@ import xarray as xr
 
 from linksweep.mechanisms.validate import Number, Rule, refuse, said
 from linksweep.results.compute import require_scene
+from linksweep.results.cylinders import MultiCylinder, one_cylinder
 from linksweep.results.duty import steady_problems
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_number
@@ -33,13 +34,13 @@ BISECTIONS = 60
 
 
 def flywheel(
-    scene: Scene, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
+    scene: Scene | MultiCylinder, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
 ) -> xr.Dataset:
     """The flywheel on the crank for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
 
     Parameters
     ----------
-    scene : Scene whose omega2 is the mean speed, (largest + least)/2
+    scene : Scene or MultiCylinder whose omega2 is the mean speed, (largest + least)/2
     fluctuation : wanted coefficient, (largest − least speed)/mean; or
     inertia : of a given flywheel about the crank's axis [kg m²]; 0 for none. Either may be a DataArray
     theta2 : a count of angles in the cycle
@@ -74,25 +75,24 @@ def flywheel(
     >>> found.flywheel_inertia.units, round(float(found.fluctuation), 12)
     ('kg m2', 0.05)
     """
-    require_scene(scene)
-    refuse(_problems(scene, fluctuation, inertia))
+    require_scene(one_cylinder(scene))
+    refuse(_problems(one_cylinder(scene), fluctuation, inertia))
     if inertia is None:
         fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
         refuse(_too_large(fluctuation))
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
-    steady = replace(scene, alpha2=0.0)
-    cycle = sweep(steady, theta2, outputs=["reduced_torque", "reduced_inertia"])
-    index, mean = scene.mechanism.index, abs(scene.omega2)
+    cycle, one = _at_constant_speed(scene, theta2), one_cylinder(scene)
+    index, mean = one.mechanism.index, abs(one.omega2)
     J, torque = (cycle[name].broadcast_like(cycle[index]) for name in ("reduced_inertia", "reduced_torque"))
-    stored, drive = _work(torque, scene.period, index)
+    stored, drive = _work(torque, one.period, index)
     E = stored + 0.5 * mean**2 * J
     size = _wanted(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
     speed = _speed(E, J, size, mean, index)
     spread = (speed.max(index, skipna=False) - speed.min(index, skipna=False)) / mean
     made = {
         "flywheel_inertia": (size, "kg m2", "moment of inertia of the flywheel about the crank's axis"),
-        "speed": (np.sign(scene.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
+        "speed": (np.sign(one.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
         "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
         "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
         "energy_fluctuation": (
@@ -103,6 +103,13 @@ def flywheel(
     variables = {name: xr.DataArray(v).assign_attrs(units=u, long_name=said) for name, (v, u, said) in made.items()}
     attributes = cycle.attrs | {"command": "linksweep.flywheel(scene, ...)"}
     return cycle[["status"]].assign(variables).assign_attrs(attributes)
+
+
+def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
+    names = ["reduced_torque", "reduced_inertia"]
+    if isinstance(scene, MultiCylinder):
+        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, outputs=names)
+    return sweep(replace(scene, alpha2=0.0), theta2, outputs=names)
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:

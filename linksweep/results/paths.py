@@ -7,6 +7,7 @@ there is smooth in x.
 
 from __future__ import annotations
 
+from functools import singledispatch
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,7 +80,8 @@ class Paths(NamedTuple):
         return np.ones(x.shape) if self.half is None else self.half[path] * np.cos(x)
 
 
-def turns(group: Group) -> Paths:
+@singledispatch
+def turns(group: Any) -> Paths:
     """The whole period of each of these designs."""
     period, turn = group.scene.period, group.scene.mechanism.period
     rounds = round(period / turn)
@@ -87,7 +89,7 @@ def turns(group: Group) -> Paths:
     even = (np.arange(PER_TURN * rounds) + 0.381966) * step  # off the round angles, where pinches have samples too
     even = np.broadcast_to(even, (len(group.designs), len(even)))
     pinched = _samples_of_period(group)
-    sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
+    sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
     quick, close = _quick(group), _cuts_at_approaches(group)
     samples, edges = (even, pinched, sides, quick), (even[:, ::30], pinched[:, ::2], jumps, close, _thinned(quick))
     x, cuts = (_in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
@@ -149,7 +151,7 @@ def _breaks(group: Group) -> Array:
     """Angles (design, break) of every jump in every turn of the period, and of every kink, but for a little: no place
     to cut at for a mean."""
     kinks = [kink for name in group.scene.mechanism.kinks() for kink in _changes_of_sign(group, name)]
-    return _for_each(group, [*_jumps(group), *kinks])
+    return _for_each(group, [*jump_angles(group), *kinks])
 
 
 def _for_each(group: Group, found: list[Array]) -> Array:
@@ -157,7 +159,7 @@ def _for_each(group: Group, found: list[Array]) -> Array:
     return np.stack(found, axis=1) if found else np.empty((len(group.designs), 0))
 
 
-def _jumps(group: Group) -> list[Array]:
+def jump_angles(group: Group) -> list[Array]:
     """Angles of each design's jumps; NaN where a crank that does not turn fully has none."""
     turn = group.scene.mechanism.period
     rounds = range(round(group.scene.period / turn))
@@ -192,7 +194,8 @@ def about_breaks(group: Group) -> Paths:
     return Paths(row, x, before, after, x, ends="pass")
 
 
-def about_approaches(group: Group) -> Paths:
+@singledispatch
+def about_approaches(group: Any) -> Paths:
     """Return a window about every closest approach of the ends of a spring or damper of each of these designs."""
     return _windows(_approaches(group))
 
@@ -264,7 +267,7 @@ def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array
     even = _even_on_arc()
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
-    given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, _jumps(group)))
+    given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
     pinched, sides, jumps = (_anywhere_beyond(_on_arc(angles, middle, half)) for angles in given)
     quick = _on_arc(_quick_and_even(group), middle, half)
     x = _in_order(np.concatenate([shared, pinched, sides, quick], axis=1))
@@ -308,7 +311,8 @@ def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
     return np.clip(0.01 * np.sqrt(2.0 * away / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
 
 
-def limits(group: Group) -> tuple[Array, ...]:
+@singledispatch
+def limits(group: Any) -> tuple[Array, ...]:
     """Starts and ends (design, arc) of the arcs of each of these designs [degree]; none for a machine without arcs."""
     for findings, numbers in group.scene.mechanism.findings():
         found = findings(*map(group.number, numbers))

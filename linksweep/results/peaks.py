@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.engine.writer import Reduction
-from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
+from linksweep.mechanisms.validate import choice_problems, count_problems, refuse, said
 from linksweep.results.compute import (
     angles_missing,
     assembly_of,
@@ -25,6 +25,7 @@ from linksweep.results.compute import (
     require_scene,
     surely_ok,
 )
+from linksweep.results.cylinders import MultiCylinder
 from linksweep.results.exact import Found, exact_peaks, peaks_where
 from linksweep.results.lazy import by_blocks
 from linksweep.results.poles import with_dead_centres
@@ -51,7 +52,7 @@ class Wanted(NamedTuple):
 
 
 def peaks(
-    scene: Scene,
+    scene: Scene | MultiCylinder,
     of: Iterable[str] | None = None,
     theta2: Any = None,
     threads: int | None = None,
@@ -69,7 +70,8 @@ def peaks(
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene; or a MultiCylinder, whose quantities are those of its `sweep`, and "F32" and the like, the forces in
+        the pins of each cylinder, over the dim `cylinder`
     of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much
         larger the peak could be than what was found (inf where a function changes too quickly to be followed),
         "F32_samples" how many crank angles were looked at. Default: all pins and the torque
@@ -100,8 +102,17 @@ def peaks(
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
     """
-    require_scene(scene)
     refuse([*count_problems("threads", threads), *_solver_problems(solver, theta2)])
+    if isinstance(scene, MultiCylinder):
+        from linksweep.results.cylinder_peaks import peaks_of_cylinders  # here: it takes the peaks of one cylinder
+
+        refuse(
+            []
+            if theta2 is None
+            else [f"theta2 = {said(theta2)}: must be left out: peaks of several cylinders are exact"]
+        )
+        return peaks_of_cylinders(scene.in_memory, of, threads)
+    require_scene(scene)
     names = None if of is None else requested("of", of)
     return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads, solver=solver)
 
@@ -114,7 +125,7 @@ def _solver_problems(solver: Any, theta2: Any) -> list[str]:
 
 def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | None, solver: str) -> xr.Dataset:
     """The same of a scene whose numbers are in memory."""
-    wanted = _wanted(scene, names)
+    asked = _wanted(scene, names)
     index = scene.mechanism.index
     if theta2 is None:
         refuse(angles_missing(scene))
@@ -125,16 +136,16 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
         sampled = scene.at(grid)
     assembly = assembly_of(scene, threads)
     if theta2 is None:
-        found, averages = _exact(scene, wanted, assembly, threads)
+        found, averages = _exact(scene, asked, assembly, threads)
         assembly = with_dead_centres(scene, assembly)
     else:
-        found, averages = _of_samples(sampled, grid, wanted, threads, solver)
+        found, averages = _of_samples(sampled, grid, asked, threads, solver)
     order = tuple(sampled.inputs.sizes)
-    status = _status(scene, sampled, grid, assembly, found, averages, threads)
+    status = status_of(scene, sampled, grid, assembly, found, averages, threads)
     variables: dict[str, xr.Variable] = {}
-    for item in wanted:
-        for name, field, units, said in _named(item, found, averages, scene.mechanism.spot):
-            variables[name] = variable(field, units, said, order)
+    for item in asked:
+        for name, field, units, words in named(item, found, averages, scene.mechanism.spot):
+            variables[name] = variable(field, units, words, order)
     variables["status"] = status
     angles = "" if theta2 is None else f", theta2={np.size(grid.angles)}"
     by = "" if solver == "fast" else f", solver={solver!r}"
@@ -143,18 +154,27 @@ def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | No
     return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
 
 
-def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:
-    quantities = scene.table.quantity
+def wanted(
+    quantities: Mapping[str, Quantity], names: Iterable[str], problems_of: Callable[[str], list[str]]
+) -> list[Wanted]:
+    """Return what is asked of each quantity by names such as "F32", "T12_mean"; ValueError for other names."""
     found, problems = [], []
-    for name in scene.mechanism.peak_quantities(scene.drive) if names is None else names:
+    for name in names:
         stem, _, ending = name.rpartition("_")
         stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
         if stem not in quantities or stem == "cond":
-            problems += quantity_problems("of", name, [known for known in quantities if known != "cond"], scene)
+            problems += problems_of(name)
         else:
             found.append(_takes(quantities[stem], ending))
     refuse(problems)
     return found
+
+
+def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:
+    quantities = scene.table.quantity
+    known = [name for name in quantities if name != "cond"]
+    default = scene.mechanism.peak_quantities(scene.drive)
+    return wanted(quantities, default if names is None else names, lambda n: quantity_problems("of", n, known, scene))
 
 
 def _takes(quantity: Quantity, summary: str) -> Wanted:
@@ -218,7 +238,7 @@ def _over_time(
     return averages
 
 
-def _status(
+def status_of(
     scene: Scene,
     sampled: Scene,
     grid: Grid,
@@ -269,7 +289,7 @@ def _blank(ok: xr.Variable, found: dict[str, Found], averages: Averages) -> None
         averages |= {power: only_where(good, field) for power, field in averages.items()}
 
 
-def _named(
+def named(
     item: Wanted, found: dict[str, Found], averages: Averages, spot: str
 ) -> Iterator[tuple[str, Field, str, str]]:
     """Names, fields, units and words of what is asked of a quantity."""

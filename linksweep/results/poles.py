@@ -7,8 +7,9 @@ of the distance, on one side at least: no rounding does that, nor a quantity tha
 
 from __future__ import annotations
 
+from functools import singledispatch
 from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -36,6 +37,9 @@ TOGGLE = 2.0
 
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
 """Quantities with a pole where the output stands still, whatever drives."""
+
+
+Places = tuple[Array, Array, Array]
 
 
 class Poles(NamedTuple):
@@ -69,9 +73,7 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
 
 def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> Poles:
     """Return the poles of these designs, inside the angles at which they can be assembled."""
-    row, angle, step = (
-        np.concatenate(parts) for parts in zip(_known(group, signals), _change_points(group), strict=True)
-    )
+    row, angle, step = places_of_poles(group, signals)
     if not len(row):
         return Poles(row, angle, np.zeros((0, len(signals)), dtype=bool))
     side = np.array([-1.0, 1.0])
@@ -81,6 +83,15 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
         values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
     return Poles(row, angle, np.any(infinite, axis=-1).T)
+
+
+@singledispatch
+def places_of_poles(group: Any, signals: tuple[str, ...]) -> Places:
+    """Return designs, angles [degree] at which poles may be, and how near to look."""
+    row, angle, step = (
+        np.concatenate(parts) for parts in zip(_known(group, signals), _change_points(group), strict=True)
+    )
+    return row, angle, step
 
 
 def _grows_as_a_power(size: Array) -> Array:
@@ -96,7 +107,7 @@ def _singular_angles(found: dict[str, Finding]) -> list[Array]:
     return [found[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in found]
 
 
-def _known(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]:
+def _known(group: Group, signals: tuple[str, ...]) -> Places:
     """Dead centres and jams: designs, angles [degree], and how near to look."""
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
@@ -107,7 +118,7 @@ def _known(group: Group, signals: tuple[str, ...]) -> tuple[Array, Array, Array]
     return row, angle[row, which], np.full(len(row), CLOSEST)
 
 
-def _change_points(group: Group) -> tuple[Array, Array, Array]:
+def _change_points(group: Group) -> Places:
     """The middles of the pinches of these designs where they cannot be told from toggles."""
     middle = group.number(group.scene.mechanism.pinch_angle)
     row, angle = np.tile(np.arange(len(middle)), 2), np.concatenate([middle, middle + 180.0])

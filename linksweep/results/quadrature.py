@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -99,7 +99,11 @@ class Rules(NamedTuple):
 
 def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
     """Return means over time of powers of quantities, for every design; NaN where no angle is ok."""
-    pace = changing_pace(scene, scene.at_one_angle.inputs)
+    return means_at(changing_pace(scene, scene.at_one_angle.inputs), scene, powers, threads)
+
+
+def means_at(pace: tuple[str, ...], scene: Any, powers: tuple[Power, ...], threads: int | None) -> dict[Power, Field]:
+    """Return such means where a quantity, or none, says how fast the index runs."""
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
     found = integrals(scene, weighted | times, threads=threads)
@@ -127,7 +131,7 @@ def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
 
 
 def integrals(
-    scene: Scene, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
+    scene: Any, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
 ) -> dict[Key, Field]:
     """Integrate over the crank angle [degree] for every design, the whole cycle or between two angles; NaN, or 0,
     where no angle is ok."""
@@ -144,11 +148,11 @@ def integrals(
     return found
 
 
-def _nothing(scene: Scene, names: tuple[str, ...]) -> Field:
+def _nothing(scene: Any, names: tuple[str, ...]) -> Field:
     """NaN for every design that one of these quantities tells from others."""
-    fields, sizes = empty(scene, names).values(), scene.at_one_angle.inputs.sizes
-    dims = tuple(dict.fromkeys(dim for field in fields for dim in field.dims))
-    return Field(dims, np.full(tuple(sizes[dim] for dim in dims), np.nan))
+    fields = empty(scene, names).values()
+    sizes = {dim: n for field in fields for dim, n in zip(field.dims, field.values.shape, strict=True)}
+    return Field(tuple(sizes), np.full(tuple(sizes.values()), np.nan))
 
 
 def _put(

@@ -1,0 +1,179 @@
+"""Peaks, duty and flywheel of several cylinders: against sums of single sweeps made here, closed forms and energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from refusals import refusal
+from scipy.integrate import solve_ivp
+
+import linksweep as ls
+
+ENGINE = ls.example("engine")
+CRANK, ROD = ENGINE.mechanism.crank, ENGINE.mechanism.rod
+PLACES = [-0.15, -0.05, 0.05, 0.15]
+FIRING = [0, 540, 180, 360]
+FOUR = ls.MultiCylinder(ENGINE, FIRING, positions=PLACES)
+TWIN = ls.MultiCylinder(ENGINE, [0, 450], bank_angles=[45, -45], positions=[-0.01, 0.01])
+MACHINES = {"inline four": FOUR, "V-twin": TWIN}
+NAMES = ("T12", "Fsx", "Fsy", "Ms", "F12x", "F12y")
+
+
+def by_hand(machine, theta2):
+    """Sums of sweeps of single cylinders at shifted angles, each with its guide turned instead of its axes."""
+    total = dict.fromkeys((*NAMES, "Msx", "Msy"), 0.0)
+    for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
+        engine = machine.engine
+        turned = replace(engine, mechanism=replace(engine.mechanism, slide_angle=engine.mechanism.slide_angle + bank))
+        found = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=NAMES)
+        each = {name: found[name].values for name in NAMES}
+        each |= {"Msx": -z * each["Fsy"], "Msy": z * each["Fsx"]}
+        total = {name: total[name] + each[name] for name in total}
+    total["Fs"] = np.hypot(total["Fsx"], total["Fsy"])
+    return total
+
+
+@pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
+def test_peaks_are_those_of_the_sum_of_single_cylinders(machine):
+    """The turned guide of a bank moves the cycle of the gas with it, so that its crank is ahead by φ as it stands."""
+    found, step = ls.peaks(machine), 0.05
+    dense = by_hand(machine, np.arange(0.0, 720.0, step) + 0.013)
+    for name in ("T12", "Ms", "Msx", "Msy"):
+        size = max(np.abs(dense[name]).max(), 1e-4 * dense["Fs"].max())  # else rounding of what cancels
+        for end, sign in (("max", 1.0), ("min", -1.0)):
+            highest, peak = (sign * dense[name]).max(), sign * float(found[f"{name}_{end}"])
+            assert -1e-11 * size <= peak - highest <= 2e-3 * size, (name, end)  # beside a jump, a step is first order
+            at = float(found[f"{name}_{end}_at"]) + np.array([-1e-6, 0.0, 1e-6])
+            assert sign * float(found[f"{name}_{end}"]) == pytest.approx(
+                (sign * by_hand(machine, at)[name]).max(), rel=1e-6, abs=1e-11 * size
+            )
+    assert float(found.Fs_peak) == pytest.approx(dense["Fs"].max(), rel=1e-5)
+    assert int(found.status) == 0
+
+
+def test_an_inline_four_shakes_most_half_way():
+    """Pairs of pistons 180 degrees apart: m·r·ω²·λ/√(1 − λ²) of each, where cranks are square to the guide."""
+    ratio = CRANK.length / ROD.length
+    mass = ENGINE.mechanism.slider_mass + ROD.mass * ROD.cg_distance / ROD.length
+    expected = 4.0 * mass * CRANK.length * ENGINE.omega2**2 * ratio / np.sqrt(1.0 - ratio**2)
+    found = ls.peaks(FOUR, of=["Fs", "Fs_bound"])
+    assert float(found.Fs_peak) == pytest.approx(expected, rel=1e-12)
+    assert float(found.Fs_peak_at) % 180.0 == pytest.approx(0.0, abs=1e-5) or float(found.Fs_peak_at) % 180.0 > 179.9999
+    assert float(found.Fs_bound) < 1e-9 * expected
+
+
+def test_one_cylinder_has_the_peaks_of_its_scene():
+    one = ls.peaks(ls.MultiCylinder(ENGINE, [0.0]), of=["T12", "Fs", "Ms", "power_fed_mean", "T12_rms"])
+    scene = ls.peaks(ENGINE, of=["T12", "Fs", "Ms", "power_fed_mean", "T12_rms"])
+    for name in {*scene.data_vars} - {"Fs_peak_at", "Ms_max_at", "Ms_min_at"}:  # those are the same in both turns
+        np.testing.assert_allclose(one[name], scene[name], rtol=1e-10, atol=1e-5 if name.endswith("_at") else 0.0)
+
+
+def test_means_and_work_add_up():
+    one, four = ls.duty(ENGINE), ls.duty(FOUR)
+    for name in ("effort_mean", "power_mean", "work", "work_of_loads", "work_of_friction"):
+        assert float(four[name]) == pytest.approx(4.0 * float(one[name]), rel=1e-10), name
+    assert float(four.work) == pytest.approx(float(four.work_fed - four.work_regenerated), rel=1e-10)
+    assert float(four.work_fed) < float(one.work_fed)  # what one cylinder takes, another gives
+
+
+@pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
+def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
+    """d/dθ [½ (J_f + J) ω²] = T_d − T_s, integrated by Runge and Kutta from sums of single sweeps made here; of T12 at
+    constant speed Ω the part that turns the links' own inertia, ½ J' Ω², is none of T_s."""
+    wheel = ls.flywheel(machine, fluctuation=0.005)
+    assert float(wheel.flywheel_inertia) > 0.0
+    theta = np.arange(0.0, 720.5, 0.5)
+    drive, torque, inertia = 0.0, 0.0, 0.0
+    for ahead, bank in zip(machine.crank_angles, machine.bank_angles, strict=True):
+        turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
+        found = ls.sweep(turned, np.mod(theta + ahead, 720.0), outputs=["T12", "reduced_inertia"])
+        torque, inertia = torque + found.T12.values, inertia + found.reduced_inertia.values
+        drive += float(ls.duty(turned).effort_mean)
+    total = float(wheel.flywheel_inertia) + inertia
+
+    def slope(at, energy):
+        return np.radians(drive - np.interp(at, theta, torque))
+
+    start = 0.5 * total[0] * float(wheel.speed[0]) ** 2
+    energy = solve_ivp(slope, (0.0, 720.0), [start], t_eval=theta, max_step=0.5, rtol=1e-9).y[0]
+    speed = np.sqrt((2.0 * energy + ENGINE.omega2**2 * (inertia - inertia[0])) / total)
+    assert (speed.max() - speed.min()) / ENGINE.omega2 == pytest.approx(0.005, rel=5e-3)
+    assert 0.5 * (speed.max() + speed.min()) == pytest.approx(ENGINE.omega2, rel=1e-4)
+
+
+def test_each_cylinder_has_the_pin_forces_of_one():
+    found, one = ls.peaks(FOUR, of=["F32", "F12_mean", "T12"]), ls.peaks(ENGINE, of=["F32", "F12_mean"])
+    assert found.F32_peak.dims == ("cylinder",)
+    assert list(found.cylinder.values) == [1, 2, 3, 4]
+    np.testing.assert_allclose(found.F32_peak, float(one.F32_peak), rtol=1e-12)
+    np.testing.assert_allclose(found.F12_mean, float(one.F12_mean), rtol=1e-9)
+    np.testing.assert_allclose(found.F32_peak_at, [(float(one.F32_peak_at) - ahead) % 720.0 for ahead in FIRING])
+    assert found.T12_max.dims == ()
+
+
+def test_cylinders_that_jump_together_do_so_to_the_digit():
+    """One fires as another turns round below: what is between the two jumps is rounding, and no load."""
+    found = ls.peaks(FOUR, of=["F_main2", "F_main2_bound"])
+    beside = FOUR.sweep(270.0 + np.array([-1e-6, 1e-6]), outputs=["F_main2"]).F_main2
+    assert float(found.F_main2_peak) == pytest.approx(float(beside.max()), rel=1e-6)
+    assert float(found.F_main2_peak_at) == pytest.approx(270.0, abs=1e-5)
+    assert float(found.F_main2_bound) < 1e-9 * float(found.F_main2_peak)
+
+
+@pytest.mark.parametrize("mains", [(), (-0.25, -0.06, 0.02, 0.15)])
+def test_main_bearings_hold_the_throws_in_balance(mains):
+    """Forces and their moments about the axes square to the shaft are those of the throws, at every angle."""
+    machine = ls.MultiCylinder(ENGINE, FIRING, [0, 10, -20, 30], PLACES, mains)
+    names = [f"F_main{k}{axis}" for k in range(1, len(machine.mains) + 1) for axis in "xy"]
+    theta2 = np.arange(0.0, 720.0, 7.3)
+    found = machine.sweep(theta2, outputs=names)
+    for axis in "xy":
+        carried = np.array([found[name] for name in names if name.endswith(axis)])
+        force, moment = 0.0, 0.0
+        for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
+            turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
+            throw = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=[f"F12{axis}"])[f"F12{axis}"].values
+            force, moment = force + throw, moment + z * throw
+        np.testing.assert_allclose(carried.sum(axis=0), force, rtol=1e-9, atol=1e-6)
+        np.testing.assert_allclose(np.array(machine.mains) @ carried, moment, rtol=1e-9, atol=1e-6)
+
+
+def test_designs_go_along():
+    speeds = xr.DataArray([100.0, 200.0], {"speed": [1, 2]}, "speed")
+    found = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=speeds)), of=["Fs", "T12", "F32"])
+    assert (found.Fs_peak.dims, found.F32_peak.dims) == (("speed",), ("cylinder", "speed"))
+    assert float(found.Fs_peak[1]) == pytest.approx(4.0 * float(found.Fs_peak[0]), rel=1e-9)
+    for k, speed in enumerate(speeds.values):
+        alone = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=float(speed))), of=["T12"])
+        assert float(found.T12_max[k]) == float(alone.T12_max)
+
+
+def test_what_does_not_turn_round_has_no_sums():
+    pump = ls.SliderCrank(ls.Bar(0.2, 0.02, 0.02, 7750), ls.Bar(0.1, 0.02, 0.02, 7750), slider_mass=1.0)
+    found = ls.peaks(ls.MultiCylinder(ls.Scene(pump, omega2=10.0), [0, 180]), of=["T12", "T12_mean"])
+    assert int(found.status) == 1
+    assert np.isnan(found.T12_max) and np.isnan(found.T12_mean)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: ls.peaks(FOUR, of=["T21"]), "of: nothing is named 'T21'; did you mean \"T12\"?"),
+        (lambda: ls.peaks(FOUR, of=["F32x"]), "of: nothing is named 'F32x'; did you mean \"F32\"?"),
+        (lambda: ls.peaks(FOUR, theta2=720), "theta2 = 720: must be left out: peaks of several cylinders are exact"),
+        (lambda: FOUR.sweep(outputs=["F_mian1"]), "outputs: nothing is named 'F_mian1'; did you mean \"F_main1\"?"),
+        (lambda: ls.sweep(FOUR), "scene is a MultiCylinder, which this does not take"),
+        (lambda: ls.breakdown(FOUR, "F32"), "scene is a MultiCylinder, which this does not take"),
+        (lambda: ls.flywheel(FOUR, fluctuation=2.0), "fluctuation = 2.0: must be less than 2"),
+        (
+            lambda: replace(FOUR, main_positions=(0.0, 0.2)),
+            "positions[1] = -0.15 m: must lie between the first and the last main bearing, at 0 m and 0.2 m",
+        ),
+        (lambda: replace(FOUR, main_positions=[0.2, -0.2]), "main_positions = [0.2, -0.2]: must be two places or more"),
+        (lambda: replace(FOUR, main_positions=0.2), "main_positions = 0.2: must be a list of numbers"),
+    ],
+)
+def test_refusals(call, said):
+    assert said in refusal(call)[0]
