@@ -19,18 +19,19 @@ def massless(load, friction=0.0, **more):
 
 
 def test_the_main_bearing_alone():
-    """A load at A is borne there alone: the drive gives μ·r·F, against the rotation whichever way it turns."""
+    """A load at A is borne there alone: the drive gives r·sin φ·F, tan φ = μ, against either rotation."""
     for omega2 in (20.0, -20.0):
         scene = replace(massless(ls.Load("crank", force=(300.0, -400.0))), omega2=omega2)
         found = ls.pin_friction(scene, {"A": ls.Bearing(diameter=0.04, friction=0.15)}, theta2=24)
-        np.testing.assert_allclose(found.T12, np.sign(omega2) * 0.15 * 0.02 * 500.0, rtol=1e-12)
-        np.testing.assert_allclose(found.friction_loss.sel(pin="A"), 0.15 * 0.02 * 500.0 * 20.0, rtol=1e-12)
+        radius = 0.02 * np.sin(np.arctan(0.15))
+        np.testing.assert_allclose(found.T12, np.sign(omega2) * radius * 500.0, rtol=1e-12)
+        np.testing.assert_allclose(found.friction_loss.sel(pin="A"), radius * 500.0 * 20.0, rtol=1e-12)
         assert float(found.efficiency) == pytest.approx(0.0, abs=1e-12)  # all of it warms the bearing
 
 
 def test_the_force_in_a_massless_rod_touches_both_friction_circles():
-    """Tangent to circles of μ·r its line crosses the line of pins, or runs beside it."""
-    radius = {"B": 0.1 * 0.015, "C": 0.2 * 0.010}
+    """Tangent to circles of r·sin φ its line crosses the line of pins, or runs beside it."""
+    radius = {"B": np.sin(np.arctan(0.1)) * 0.015, "C": np.sin(np.arctan(0.2)) * 0.010}
     pins = {"B": ls.Bearing(diameter=0.03, friction=0.1), "C": ls.Bearing(diameter=0.02, friction=0.2)}
     scene = massless(ls.Load("slider", force=-1000.0))
     found = ls.pin_friction(scene, pins, theta2=720, outputs=["F43x", "F43y", "F43", "theta3", "omega3", "omega2"])

@@ -35,7 +35,7 @@ from linksweep.mechanisms.motion import (
     straight_rows,
     turned,
 )
-from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
 from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
@@ -43,6 +43,7 @@ from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, fo
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
+JOURNALS = {"A": 2, "B": 2, "C": 3, "D": 4}
 DRIVEN = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
@@ -99,6 +100,7 @@ class FourBar(CrankDriven):
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
     links: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
     pins: ClassVar[Pins] = rotating(PINS)
+    journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 

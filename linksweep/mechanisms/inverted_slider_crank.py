@@ -36,7 +36,7 @@ from linksweep.mechanisms.motion import (
     straight_rows,
     turned,
 )
-from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, block_stroke
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
@@ -44,6 +44,7 @@ from linksweep.physics import advantage, crank_driven, dyad_rpr, inverted_slider
 
 LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
+JOURNALS = {"A": 2, "B": 2, "D": 4}
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
     on_crank_pin(3, "block", "ratio4", "slope4"),
@@ -149,6 +150,7 @@ class InvertedSliderCrank(CrankDriven):
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
     links: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
     pins: ClassVar[Pins] = rotating(PINS)
+    journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
 

@@ -14,6 +14,7 @@ from linksweep.mechanisms.content import ByContent
 from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.loop_track_limits import events, lap
 from linksweep.mechanisms.motion import OverDesigns, between_rows, straight_rows
+from linksweep.mechanisms.pins import Journals, Pins
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 from linksweep.physics import loop_track, planar
 
@@ -70,7 +71,8 @@ class LoopTrack(ByContent):
     profiles: ClassVar[Mapping[str, float]] = {"constant": 0.0, "energy": 1.0}
     drives: ClassVar[dict[str, str]] = {}
     links: ClassVar[tuple[str, ...]] = ()
-    pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
+    pins: ClassVar[Pins] = {}
+    journals: ClassVar[Journals] = {}
     bodies: ClassVar[tuple[Any, ...]] = ()
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"

@@ -1,8 +1,8 @@
 """Rows of a pin between two links: where each link has it, how fast it turns in its bearing, and its force in the axes
 of either link.
 
-The force Fij is that of link i on link j: link i bears link j, so that i has the bearing (the bush, the big end) and j
-the journal (the pin that turns in it).
+The force Fij is that of link i on link j. Which of the two has the journal (the pin that turns) and which the bearing
+(the bush, the big end) is the mechanism's to say: its `journals` name the journal's link of each pin.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from linksweep.mechanisms.bodies import Body
 from linksweep.physics import bearing
 
 Pins = Mapping[str, tuple[int, int]]
+Journals = Mapping[str, int]
 
 
 def rotating(pins: Pins) -> dict[str, tuple[int, int]]:

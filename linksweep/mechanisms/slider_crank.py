@@ -16,7 +16,7 @@ from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
 from linksweep.mechanisms.motion import BRANCH_SIGN, CrankDriven, in_range, turned
-from linksweep.mechanisms.pins import Pins, rotating
+from linksweep.mechanisms.pins import Journals, Pins, rotating
 from linksweep.mechanisms.slider_crank_limits import (
     angles,
     classes,
@@ -25,7 +25,7 @@ from linksweep.mechanisms.slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.slider_crank_rows import BODIES, DRIVES, PINS, table
+from linksweep.mechanisms.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
 from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 
@@ -94,6 +94,7 @@ class SliderCrank(CrankDriven):
     drives: ClassVar[dict[str, str]] = DRIVES
     links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
     pins: ClassVar[Pins] = rotating(PINS)
+    journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = (
         "ok",

@@ -24,6 +24,8 @@ LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 DRIVES = {"crank": "T12", "coupler": "T13"}
 DRIVEN = {"crank": "omega2", "coupler": "omega3"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
+JOURNALS = {"A": 2, "B": 2, "C": 4}
+"""As in engines: crankshaft and crankpin are the crank's, the gudgeon pin the piston's; the rod has both its bushes."""
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
     on_crank_pin(3, "rod", "ratio3", "slope3"),

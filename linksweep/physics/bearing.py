@@ -2,7 +2,11 @@
 
     p = F/(d·l)                projected pressure
     v = |ω|·d/2                sliding speed
-    P = μ·F·v                  power of friction
+    ρ = (d/2)·sin φ = (d/2)·μ/√(1 + μ²)    radius of the friction circle
+    P = ρ·F·|ω|                power of friction
+
+Coulomb friction acts where the journal touches its bush; the load leans there from the normal by φ, tan φ = μ.
+Textbooks shorten ρ to μ·d/2, which is larger by √(1 + μ²): 0.5 % at μ = 0.1, 2 % at 0.2, 12 % at 0.5.
 
 Source: R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Lubrication and Journal
 Bearings" (boundary-lubricated bearings: nominal pressure, PV).
@@ -12,9 +16,9 @@ from linksweep.physics.arithmetic import Number
 from linksweep.physics.planar import cross, dot
 
 
-def relative_rotation(omega_journal: Number, omega_bearing: Number) -> Number:
-    """Angular velocity of the journal's link seen from the bearing's."""
-    return omega_journal - omega_bearing
+def relative_rotation(omega_j: Number, omega_i: Number) -> Number:
+    """Return the angular velocity of link j seen from link i."""
+    return omega_j - omega_i
 
 
 def in_link_axes(x: Number, y: Number, length: Number, rx: Number, ry: Number) -> tuple[Number, Number]:
@@ -30,6 +34,11 @@ def sliding_speed(rotation_speed: Number, diameter: Number) -> Number:
     return abs(rotation_speed) * diameter / 2.0
 
 
-def friction_loss(friction: Number, force: Number, speed: Number) -> Number:
-    """Power that friction takes, never negative."""
-    return friction * force * speed
+def friction_circle(friction: Number, diameter: Number) -> Number:
+    """Return the radius at which the load passes the pin's centre."""
+    return 0.5 * diameter * friction / (1.0 + friction * friction) ** 0.5
+
+
+def friction_loss(radius: Number, force: Number, rotation_speed: Number) -> Number:
+    """Return the power that friction takes, never negative; `radius` is that of the friction circle."""
+    return radius * force * abs(rotation_speed)

@@ -39,9 +39,9 @@ EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
 FRAMES = ("ground", "journal", "bearing")
 SAID = {
     "F": ("N", "magnitude of the pin force"),
-    "Fx": ("N", "force of the bearing on the journal, component along the x axis of the frame"),
-    "Fy": ("N", "force of the bearing on the journal, component along the y axis of the frame"),
-    "rotation_speed": ("rad s-1", "angular velocity of the journal in its bearing, positive counter-clockwise"),
+    "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
+    "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
+    "rotation_speed": ("rad s-1", "angular velocity of link j relative to link i, of the pin force Fij"),
     "rotation_share": ("1", "share of the cycle's rotation of the journal in its bearing that this sample stands for"),
     "rotation": ("degree", "angle that the journal turns in its bearing on the crank's way, to and fro added up"),
     "pressure": ("Pa", "projected pressure, force over diameter times length"),
@@ -62,7 +62,7 @@ class Bearing(ByContent):
     ----------
     diameter : of the journal [m]
     length : of the bush [m]
-    friction : coefficient of friction between the two
+    friction : coefficient of Coulomb friction between the two; its friction circle is exact, μ·r/√(1 + μ²)
     capacity : basic dynamic load rating C of a rolling bearing [N]
     kind : "ball" or "roller", for the exponent of its life
 
@@ -114,10 +114,11 @@ def bearings(
     -------
     Dataset over (design dims…, pin, frame, theta2), each variable over those that it depends on:
 
-    - `F`, and `Fx`, `Fy` in each `frame` [N]: of Fij the force of link i on link j, link j has the journal and link i
-      the bearing. "ground" are the ground's axes, "journal" and "bearing" those of these links (x along the line of
-      pins, of a slider along its guide). What the bearing feels is the opposite.
-    - `rotation_speed` [rad/s] of the journal in its bearing; `rotation_share` of each sample in all of its rotation
+    - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on link j;
+      what link i feels is the opposite. "ground" are the ground's axes, "journal" and "bearing" those of the links that
+      have them (x along the line of pins, of a slider along its guide). At A and B the crank has the journal, at D the
+      rocker; at C the coupler, but of a slider-crank the slider, as an engine's piston has the gudgeon pin.
+    - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` of each sample in all rotation in the pin
     - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
       friction; `linksweep.pin_friction` couples the two
     - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
@@ -157,6 +158,7 @@ def bearings(
     turned, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
     parts = [
         _of_pin(cycle, pins[pin], cycle[f"omega_{pin}"], bearing, reach)
+        | _in_frames(cycle, *pins[pin], scene.mechanism.journals[pin])
         | turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
         for pin, bearing in fitted.items()
     ]
@@ -217,12 +219,12 @@ def _of_pin(
     """Return load, motion and friction at each sample."""
     force = cycle[_force(links)]
     found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
-    found |= {f"F{axis}": _in_frames(cycle, *links, axis) for axis in "xy"}
     diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
     found |= {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
-    return found | {"friction_loss": plain.friction_loss(bearing.friction, force, sliding)}
+    radius = plain.friction_circle(bearing.friction, diameter)
+    return found | {"friction_loss": plain.friction_loss(radius, force, speed)}
 
 
 def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
@@ -242,10 +244,18 @@ def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
     return angles.copy(data=reach)
 
 
-def _in_frames(cycle: xr.Dataset, i: int, j: int, axis: str) -> xr.DataArray:
-    component = f"F{i}{j}{axis}"
-    names = [component] + [component if k == 1 else f"{component}_link{k}" for k in (j, i)]
-    return joined([cycle[name] for name in names], "frame", FRAMES)
+def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.DataArray]:
+    """Return Fx and Fy in the axes of the ground, of the journal's link and of the bearing's."""
+    force, bearing = f"F{i}{j}", i + j - journal
+    suffixes = [_link_axes(k) for k in (1, journal, bearing)]
+    return {
+        f"F{axis}": joined([cycle[f"{force}{axis}{suffix}"] for suffix in suffixes], "frame", FRAMES) for axis in "xy"
+    }
+
+
+def _link_axes(link: int) -> str:
+    """Return the ending of a force component's name in a link's axes; the ground's have none."""
+    return "" if link == 1 else f"_link{link}"
 
 
 def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:

@@ -1,8 +1,9 @@
 """pin_friction(scene, {...}): the cycle with friction in the pins, coupled to the loads that it changes.
 
-A pin of radius r, loaded by F, resists with the moment μ·r·F against its rotation: on the journal's link j and,
-opposite, on the bearing's link i. The force thus passes the pin's centre at the distance μ·r (friction circle). F
-depends on these moments in turn: they are computed from the forces, and the forces with them, until nothing changes.
+A pin of radius r, loaded by F, resists with the moment ρ·F against its rotation: on link j of its force Fij and,
+opposite, on link i. F thus passes the pin's centre at the distance ρ = μ·r/√(1 + μ²), the radius of the friction circle
+(see `linksweep.physics.bearing`). F depends on these moments in turn: they are computed from the forces, and the forces
+with them, until nothing changes.
 
 Source: the friction circle of textbooks on the theory of machines, such as R. S. Khurmi and J. K. Gupta, Theory of
 Machines, chapter "Friction".
@@ -18,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.validate import Number, count_problems, refuse
+from linksweep.physics.bearing import friction_circle
 from linksweep.results.bearings import Bearing, checked_pins, joined
 from linksweep.results.record import flags
 from linksweep.results.sweep import sweep
@@ -31,15 +33,15 @@ Arrays = dict[str, xr.DataArray]
 
 
 class RubbingPin(NamedTuple):
-    """A pin with friction: its links, bearing first, and the radius of its friction circle [m]."""
+    """A pin with friction: links i and j of its force Fij, and the radius of its friction circle [m]."""
 
-    bearing: int
-    journal: int
+    i: int
+    j: int
     radius: Number
 
     @property
     def force(self) -> str:
-        return f"F{self.bearing}{self.journal}"
+        return f"F{self.i}{self.j}"
 
 
 def pin_friction(
@@ -65,7 +67,7 @@ def pin_friction(
     -------
     Dataset as from `linksweep.sweep`, and besides
 
-    - `friction_torque` (…, pin, theta2) [N m]: moment of the bearing on the journal's link
+    - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
     - `friction_loss` (…, pin, theta2) [W], never negative
     - `convergence` (…, theta2): converged, not_converged; where it has not, forces and torques are NaN: friction in the
       pins holds the machine fast there, or nearly
@@ -81,7 +83,8 @@ def pin_friction(
 
     Notes
     -----
-    A pin that stands still in its bearing has no friction. Source: module's equations.
+    A pin that stands still in its bearing has no friction. The friction circle is that of exact Coulomb friction, of
+    radius μ·r/√(1 + μ²); textbooks' μ·r is 0.5 % more at μ = 0.1. Source: module's equations.
 
     Examples
     --------
@@ -97,7 +100,7 @@ def pin_friction(
     wanted = None if outputs is None else [outputs] if isinstance(outputs, str) else list(outputs)
     cycle = sweep(with_friction, theta2, wanted, threads=threads)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
-    told = {"units": "N m", "long_name": "moment of friction on the journal's link, positive counter-clockwise"}
+    told = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
     found = {
         "friction_torque": joined(torques.values(), "pin", torques).assign_attrs(told),
         "friction_loss": _losses(scene, torques, theta2, threads),
@@ -121,11 +124,11 @@ def _rubbing(scene: Scene, given: Mapping[str, Bearing]) -> dict[str, RubbingPin
     )
     both = getattr(scene.mechanism, "branch", "") == "both"
     refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
-    return {pin: RubbingPin(*pins[pin], b.friction * b.diameter / 2.0) for pin, b in rubs.items()}
+    return {pin: RubbingPin(*pins[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
 
 
 def _senses(scene: Scene, pins: Mapping[str, RubbingPin], theta2: int, threads: int | None) -> Arrays:
-    """−1, 0 or 1 of the moment on the journal's link, against its rotation; 0 where nothing is known."""
+    """Return −1, 0 or 1 of the moment on link j, against its rotation; 0 where nothing is known."""
     names = [f"omega_{pin}" for pin in pins]
     speeds = sweep(scene, theta2, names, threads=threads)
     return {pin: xr.DataArray(-np.sign(speeds[name])).fillna(0.0) for pin, name in zip(pins, names, strict=True)}
@@ -154,8 +157,8 @@ def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, the
     angles = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2))
     loads = []
     for body in scene.mechanism.bodies:
-        acting = [torques[pin] for pin, rub in pins.items() if rub.journal == body.number]
-        acting += [-torques[pin] for pin, rub in pins.items() if rub.bearing == body.number]
+        acting = [torques[pin] for pin, rub in pins.items() if rub.j == body.number]
+        acting += [-torques[pin] for pin, rub in pins.items() if rub.i == body.number]
         if acting:
             total = sum(acting[1:], acting[0]).broadcast_like(xr.DataArray(angles, {"theta2": angles}))
             loads.append(Load(body.role, torque=_bare(total)))

@@ -35,9 +35,9 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     pin : str
         The force, as "Fij": of link i on link j.
     frame : {"ground", "journal", "bearing"}
-        Axes of the components: "ground", or those of the "journal", link j, or of the "bearing", link i, that turn with
-        them (x along its line of pins, of a slider along its guide); "link" is the same as "journal". Of a force on the
-        ground ("F21") the ground and the journal are the same.
+        Axes of the components: "ground", or those of the link that has the "journal" or the "bearing", that turn with
+        it (x along its line of pins, of a slider along its guide); "link" is link j. Which link has the journal
+        `linksweep.bearings` tells; where links slide on each other, j counts as it.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
 
@@ -61,7 +61,8 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     signals.require_angles(ds)
     ds = with_peaks(ds)
     angles, x, y = _locus(ds, pin, frame)
-    drawing, link = drawing_of_results(ds), _link_of(pin, frame)
+    drawing = drawing_of_results(ds)
+    link = drawing.link_of(pin, frame)
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
@@ -143,17 +144,13 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
     ax.legend(fontsize="small", frameon=False)
 
 
-def _link_of(pin: str, frame: str) -> int:
-    """The link in whose axes a force is shown."""
-    return {"ground": 1, "bearing": int(pin[1])}.get(frame, int(pin[2]))
-
-
 def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
     """Crank angles [degree] and the components of a force in the axes of a frame."""
     angles, x, y = signals.revolution(ds, *signals.components(ds, pin))
-    link = _link_of(pin, frame)
+    drawing = drawing_of_results(ds)
+    link = drawing.link_of(pin, frame)
     if link != 1:
-        x, y = _in_link_axes(ds, drawing_of_results(ds).frames[link].angle, x, y)
+        x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
     return angles, x, y
 
 

@@ -73,13 +73,14 @@ class Drawing:
     """What the plots have to know of a mechanism.
 
     `joints` are the pairs of links (i, j) whose force Fij is shown, by the joint's name: a pin, or a word where links
-    touch otherwise; `acts_at` is the pin where the arrow of such a force starts. `fixed` gives the pins on the ground
-    [m], `guide` the guide. `drives` names each drive's torque or force. `ideal` are parameters to be set aside when
-    only positions are asked for.
+    touch otherwise; `journals` are the links that have the pins' journals; `acts_at` is the pin where the arrow of such
+    a force starts. `fixed` gives the pins on the ground [m], `guide` the guide. `drives` names each drive's torque or
+    force. `ideal` are parameters to be set aside when only positions are asked for.
     """
 
     joints: Mapping[str, tuple[int, int]]
     drives: Mapping[str, str]
+    journals: Mapping[str, int] = field(default_factory=dict)
     frames: Mapping[int, Frame] = field(default_factory=dict)
     bars: Mapping[int, tuple[str, str]] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
@@ -110,6 +111,12 @@ class Drawing:
         joint = self.joint_of[force]
         return self.acts_at.get(joint, joint)
 
+    def link_of(self, force: str, frame: str) -> int:
+        """Return the link in whose axes a force Fij is shown; "link" is j, which counts as the journal's in a slide."""
+        i, j = int(force[1]), int(force[2])
+        journal = self.journals.get(self.joint_of.get(force, ""), j)
+        return {"ground": 1, "link": j, "journal": journal, "bearing": i + j - journal}[frame]
+
     def at_pin(self, force: str) -> bool:
         """Whether a force acts at a pin; pins have a letter for a name."""
         return len(self.joint_of[force]) == 1
@@ -136,6 +143,7 @@ def _slider_guide(mechanism: SliderCrank) -> Guide:
 FOUR_BAR = Drawing(
     joints=four_bar.PINS,
     drives=FourBar.drives,
+    journals=FourBar.journals,
     frames={2: Frame("crank, A→B", "theta2"), 3: Frame("coupler, B→C", "theta3"), 4: Frame("rocker, D→C", "theta4")},
     bars={2: ("A", "B"), 3: ("B", "C"), 4: ("D", "C")},
     moving=("B", "C"),
@@ -144,6 +152,7 @@ FOUR_BAR = Drawing(
 SLIDER_CRANK = Drawing(
     joints=slider_crank.PINS,
     drives=SliderCrank.drives,
+    journals=SliderCrank.journals,
     frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: Frame("guide", "slide_angle")},
     bars={2: ("A", "B"), 3: ("B", "C")},
     moving=("B", "C"),
@@ -156,6 +165,7 @@ SLIDER_CRANK = Drawing(
 INVERTED_SLIDER_CRANK = Drawing(
     joints={pin if len(pin) == 1 else "slide": pair for pin, pair in inverted_slider_crank.PINS.items()},
     drives=InvertedSliderCrank.drives,
+    journals=InvertedSliderCrank.journals,
     frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rocker", "theta4"), 4: Frame("rocker", "theta4")},
     bars={2: ("A", "B")},
     moving=("B",),
