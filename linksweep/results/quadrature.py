@@ -200,14 +200,14 @@ def _burst(rules: Rules, rest: Array, scale: Array, path: Array) -> Array:
 
 
 def _disagree(rules: Rules, scale: Array) -> Array:
-    """Where the rules differ by more than rounding, and the better one errs by too much, as QUADPACK reckons.
+    """Where the rules differ by more than rounding, and by too much of the whole.
 
-    What no more digits can better is left, or infinite beside a pole.
+    QUADPACK's smaller estimate of the error holds where the integrand is smooth, not at the kinks of friction and of
+    power that is fed. What no more digits can better is left, or infinite beside a pole.
     """
     difference = np.abs(rules.outer - rules.inner)
     above_rounding = difference > ROUNDING * rules.size  # beside a pole a piece may be larger than the rest together
-    share = difference / scale
-    rest = above_rounding & (share > TOLERANCE) & ((200.0 * share) ** 1.5 > TOLERANCE)
+    rest = above_rounding & (difference > TOLERANCE * scale)
     blurred = rest & (difference <= rules.blur)
     poles = blurred & (difference > POLE * rules.size)
     rules.outer[poles] = np.copysign(np.inf, rules.outer[poles])
