@@ -177,3 +177,39 @@ def test_what_does_not_turn_round_has_no_sums():
 )
 def test_refusals(call, said):
     assert said in refusal(call)[0]
+
+
+def test_main_bearings_live_as_their_loads_let_them():
+    """P³ is the mean of F³ over the shaft's turning, here of dense samples of the throws beside each main."""
+    capacity, step = 30e3, 0.05
+    given = {f"main{k}": ls.Bearing(diameter=0.05, length=0.02, capacity=capacity) for k in range(1, 6)}
+    found = ls.bearings(FOUR, given)
+    theta2 = np.arange(0.0, 720.0, step) + 0.5 * step
+    throws = [ls.sweep(ENGINE, np.mod(theta2 + ahead, 720.0), outputs=["F12x", "F12y"]) for ahead in FIRING]
+    loads = [(each.F12x.values, each.F12y.values) for each in throws]
+    for k, beside in enumerate([[0], [0, 1], [1, 2], [2, 3], [3]]):
+        x, y = (sum(0.5 * loads[throw][axis] for throw in beside) for axis in (0, 1))
+        load = np.hypot(x, y)
+        one = found.sel(main=f"main{k + 1}")
+        equivalent = np.mean(load**3) ** (1.0 / 3.0)
+        assert float(one.equivalent_load) == pytest.approx(equivalent, rel=1e-5)
+        hours = (capacity / equivalent) ** 3 * 1e6 / (ENGINE.omega2 / (2.0 * np.pi) * 3600.0)
+        assert float(one.L10h) == pytest.approx(hours, rel=3e-5)
+        assert float(one.rotation) == pytest.approx(720.0, rel=1e-12)
+        assert 0.0 <= float(one.F_peak) / load.max() - 1.0 < 2e-3
+        assert float(one.pressure.max()) == pytest.approx(float(one.F.max()) / (0.05 * 0.02), rel=1e-12)
+        np.testing.assert_allclose(np.hypot(one.Fx, one.Fy), one.F.broadcast_like(one.Fx), rtol=1e-12)
+    np.testing.assert_allclose(found.main_position, [-0.2, -0.1, 0.0, 0.1, 0.2], atol=1e-15)
+    assert int(abs(found.life_status).max()) == 0
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: ls.bearings(FOUR, {"A": ls.Bearing()}), "given: nothing is named 'A'; there are main1, main2"),
+        (lambda: ls.bearings(FOUR, theta2=[0.0, 90.0]), "theta2 = [0.0, 90.0]: must be a whole number"),
+        (lambda: ls.bearings(ls.MultiCylinder(ENGINE, [0])), "main_positions: nothing says where"),
+    ],
+)
+def test_refusals_of_main_bearings(call, said):
+    assert said in refusal(call)[0]

@@ -27,6 +27,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.results.between import Array
+from linksweep.results.cylinders import MultiCylinder
 from linksweep.results.paths import Part
 from linksweep.results.quadrature import Integrand, integrals
 from linksweep.scene.scene import Scene
@@ -71,7 +72,7 @@ class Rotation(NamedTuple):
 
 
 def rotation_under_load(
-    scene: Scene,
+    scene: Scene | MultiCylinder,
     forces: Mapping[str, str],
     exponents: Mapping[str, float],
     part: Part | None = None,

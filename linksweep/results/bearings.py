@@ -25,8 +25,9 @@ from linksweep.mechanisms.validate import (
     said,
 )
 from linksweep.physics import bearing as plain
-from linksweep.results.bearing_life import MEANINGS, UNBOUNDED, rotation_under_load
+from linksweep.results.bearing_life import MEANINGS, UNBOUNDED, Rotation, rotation_under_load
 from linksweep.results.compute import angles_missing, require_scene
+from linksweep.results.cylinders import MultiCylinder
 from linksweep.results.paths import Part
 from linksweep.results.record import flags
 from linksweep.results.sweep import sweep
@@ -98,14 +99,18 @@ class Bearing(ByContent):
 
 
 def bearings(
-    scene: Scene, given: Mapping[str, Bearing] | None = None, theta2: Any = 720, threads: int | None = None
+    scene: Scene | MultiCylinder,
+    given: Mapping[str, Bearing] | None = None,
+    theta2: Any = 720,
+    threads: int | None = None,
 ) -> xr.Dataset:
     """Loads, rotation, friction and life of the bearings in the pins of a mechanism.
 
     Parameters
     ----------
-    scene : Scene
-    given : a Bearing by pin, {"B": ls.Bearing(...)}; pins that are not named have one without sizes
+    scene : Scene; or a MultiCylinder, for the main bearings of its crankshaft: dim `main` in place of `pin`
+    given : a Bearing by pin, {"B": ls.Bearing(...)}, or by main bearing, {"main1": ls.Bearing(...)}; those that are not
+        named have one without sizes
     theta2 : count of crank angles over the cycle; or, of a machine that moves over part of a turn, any array of angles
         [degree], of which the least and the largest are the ends of its way
     threads : at most so many (default: all cores)
@@ -123,6 +128,7 @@ def bearings(
       friction; `linksweep.pin_friction` couples the two
     - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
       revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of samples
+    - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
 
     `status` is that of each sample; angles that are not ok are left out of integrals, of that over time too.
     `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
@@ -146,6 +152,10 @@ def bearings(
     >>> round(float(found.rotation.sel(pin="A")), 6), bool(found.L10.sel(pin="C") > 1.0)
     (360.0, True)
     """
+    if isinstance(scene, MultiCylinder):
+        from linksweep.results.main_bearings import main_bearings  # here: it takes what is below
+
+        return main_bearings(scene.in_memory, given, theta2, threads)
     pins = checked_pins(scene, given)
     scene = in_memory(scene)
     grid = crank_grid(theta2, scene.period)
@@ -159,10 +169,12 @@ def bearings(
     parts = [
         _of_pin(cycle, pins[pin], cycle[f"omega_{pin}"], bearing, reach)
         | _in_frames(cycle, *pins[pin], scene.mechanism.journals[pin])
-        | turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
+        | of_life(turned, pin, bearing)
         for pin, bearing in fitted.items()
     ]
-    found = {name: joined([part[name] for part in parts], "pin", pins).assign_attrs(_said(name)) for name in parts[0]}
+    found = {
+        name: joined([part[name] for part in parts], "pin", pins).assign_attrs(attributes_of(name)) for name in parts[0]
+    }
     angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
     attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
     return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes)
@@ -187,13 +199,18 @@ def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[s
         if pins
         else [f"scene is of a {type(scene.mechanism).__name__}, which has no pins: give a mechanism of links"]
     )
-    refuse([] if isinstance(given, Mapping | None) else [f'given = {said(given)}: must be as {{"B": ls.Bearing(...)}}'])
-    found = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
-    wrong = [
+    refuse(bearing_problems(given, pins))
+    return pins
+
+
+def bearing_problems(given: Any, pins: Iterable[str]) -> list[str]:
+    """List what is wrong with bearings by pin."""
+    if not isinstance(given, Mapping | None):
+        return [f'given = {said(given)}: must be as {{"B": ls.Bearing(...)}}']
+    wrong = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
+    return wrong + [
         f"given.{pin} = {said(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
     ]
-    refuse(found + wrong)
-    return pins
 
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
@@ -203,7 +220,7 @@ def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
 
 
-def _said(name: str) -> dict[str, Any]:
+def attributes_of(name: str) -> dict[str, Any]:
     if name == "life_status":
         return flags("which loads the life of the bearing is that of", MEANINGS)
     return dict(zip(("units", "long_name"), SAID[name], strict=True))
@@ -219,12 +236,22 @@ def _of_pin(
     """Return load, motion and friction at each sample."""
     force = cycle[_force(links)]
     found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
+    return found | on_journal(force, speed, bearing)
+
+
+def on_journal(force: xr.DataArray, speed: xr.DataArray, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return pressure, sliding and friction of a journal under a load at each sample."""
     diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
-    found |= {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
+    found = {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
     radius = plain.friction_circle(bearing.friction, diameter)
     return found | {"friction_loss": plain.friction_loss(radius, force, speed)}
+
+
+def of_life(turned: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return rotation, equivalent load and life of the bearing in a pin."""
+    return turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
 
 
 def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
