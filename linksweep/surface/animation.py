@@ -17,6 +17,7 @@ import xarray as xr
 from linksweep.engine.memory import require_memory
 from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.validate import count_problems, refuse, said
+from linksweep.results.cylinders import MultiCylinder
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.surface import loop_plot, signals
@@ -52,12 +53,14 @@ class Frame(NamedTuple):
     forces: dict[str, np.ndarray]
 
 
-def animate(ds_or_scene: xr.Dataset | Scene, frames: int = 72, point: tuple[float, float] | None = None) -> Film:
+def animate(
+    ds_or_scene: xr.Dataset | Scene | MultiCylinder, frames: int = 72, point: tuple[float, float] | None = None
+) -> Film:
     """Make a film of a mechanism over its cycle: forces as arrows at the pins, and where they are on their curves.
 
     Parameters
     ----------
-    ds_or_scene : Dataset or Scene
+    ds_or_scene : Dataset, Scene or MultiCylinder
         A scene of one design, or a Dataset from `linksweep.sweep` that holds it: of its angles, if they are not a whole
         cycle.
     frames : int
@@ -85,6 +88,12 @@ def animate(ds_or_scene: xr.Dataset | Scene, frames: int = 72, point: tuple[floa
     """
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
     require_memory(f"frames = {said(frames)}", float(frames * math.prod(SIZE) * DPI**2))
+    if isinstance(ds_or_scene, MultiCylinder):
+        from linksweep.surface.cylinder_film import film_of_cylinders  # here: it takes what is below
+
+        refuse([f"point = {said(point)}: must be left out for several cylinders"] if point is not None else [])
+        with small_type():
+            return film_of_cylinders(ds_or_scene.in_memory, frames)
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
     angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
     with small_type():
@@ -160,29 +169,29 @@ def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: A
     outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
     cycle = sweep(scene, angles, [*outputs, "omega2"])
     signals.require_one_design(cycle[name] for name in outputs)
-    shots = _frames(scene, drawing, way(cycle, cycle["omega2"], frames), point)
+    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
     figure, machine, curves = panels()
     forces(cycle, ax=curves)
     top = curves.get_ylim()[1] / HEADROOM
     draw_ground(machine, scene, drawing, shots[0].shape)
     longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
-    arrows = [_arrows(shot, drawing, top, longest) for shot in shots]
-    _fit(machine, drawing, shots, arrows)
-    _scale(machine, top, longest)
+    arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
+    fit(machine, drawing, shots, arrows)
+    scale(machine, top, longest)
     say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
     follow = follower(curves, list(drawing.forces))
     moving: list[Artist] = []
 
     def draw(k: int) -> list[Artist]:
         shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
-        renewed(machine, moving, partial(_draw, machine, drawing, shot.shape, arrows[k], longest))
+        renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
         texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
         return [*moving, *say(shot.angle, texts), *follow(shot.angle, sizes)]
 
     return Film(figure, draw, len(shots))
 
 
-def _frames(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
+def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
     """The frames at these angles, those that have a result."""
     found = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     good = np.flatnonzero(found["status"].values == 0)
@@ -205,7 +214,7 @@ def _rows(found: xr.Dataset, force: str) -> np.ndarray:
     return np.array([np.broadcast_to(part.values, count) for part in signals.components(found, force)])
 
 
-def _arrows(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
+def arrows_of(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
     """Where the arrow of each force begins and ends, (2, xy) [m]."""
     found = {}
     for name, force in shot.forces.items():
@@ -216,7 +225,7 @@ def _arrows(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[s
     return found
 
 
-def _draw(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.ndarray], longest: float) -> None:
+def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.ndarray], longest: float) -> None:
     """All that moves."""
     draw_links(ax, drawing, shape)
     for name, ends in arrows.items():
@@ -245,7 +254,7 @@ def _beside(color: str) -> dict[str, Any]:
     return {"textcoords": "offset points", "color": color, "path_effects": halo, "zorder": 3.0, "fontsize": "small"}
 
 
-def _fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]]) -> None:
+def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]]) -> None:
     """Axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
     moving: list[Artist] = []
     for shot in shots[:: max(1, len(shots) // KNOWN)]:
@@ -261,7 +270,7 @@ def _fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, 
     ax.set_ylabel("y [m]")
 
 
-def _scale(ax: Axes, top: float, longest: float) -> None:
+def scale(ax: Axes, top: float, longest: float) -> None:
     """How long a round force is, in the lower left corner."""
     from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 

@@ -17,6 +17,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.mechanisms.validate import Rule, pair_problems, refuse
+from linksweep.results.compute import require_scene
 from linksweep.scene.choose import design_labels
 from linksweep.scene.file import write_scene
 from linksweep.scene.scene import Scene
@@ -75,7 +76,8 @@ def report(
     True
     """
     ending_of(path, ENDINGS, ADVICE)
-    one = scene if isinstance(scene, Scene) else scene_at(scene)
+    one = scene_at(scene) if isinstance(scene, xr.Dataset) else scene
+    require_scene(one)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters

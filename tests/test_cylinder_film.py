@@ -1,0 +1,53 @@
+"""The film of several cylinders: each throw where its crank stands, and the torque of them all."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from refusals import refusal
+
+import linksweep as ls
+
+mpl.use("Agg")
+ENGINE = ls.example("engine")
+RADIUS, ROD = ENGINE.mechanism.crank.length, ENGINE.mechanism.rod.length
+FOUR = ls.MultiCylinder(ENGINE, [0, 540, 180, 360], positions=[-0.15, -0.05, 0.05, 0.15])
+TWIN = ls.MultiCylinder(ENGINE, [0, 360], bank_angles=[45, -45])
+
+
+def places(ax, name):
+    """Where a pin of that name is written beside, in axes of the machine."""
+    return [text.xy for text in ax.texts if text.get_text() == name]
+
+
+@pytest.mark.parametrize("k", [0, 3])
+def test_throws_stand_side_by_side_where_their_cranks_are(k):
+    film = ls.plot.animate(FOUR, 12)
+    film.show(k)
+    *throws, curve = film.figure.axes
+    assert (len(film), len(throws)) == (12, 4)
+    for ax, ahead in zip(throws, FOUR.crank_angles, strict=True):
+        angle = np.radians(60.0 * k + ahead)
+        pin = RADIUS * np.array([np.cos(angle), np.sin(angle)])
+        np.testing.assert_allclose(places(ax, "B"), [pin], atol=1e-12)
+        np.testing.assert_allclose(places(ax, "C"), [(0.0, pin[1] + np.sqrt(ROD**2 - pin[0] ** 2))], atol=1e-12)
+    torque = sum(
+        ls.sweep(ENGINE, [(60.0 * k + ahead) % 720.0], outputs=["T12"]).T12.item() for ahead in [0, 540, 180, 360]
+    )
+    (dot,) = curve.collections[-1].get_offsets()
+    np.testing.assert_allclose(dot, [60.0 * k, torque], rtol=1e-9)
+
+
+def test_banks_stand_about_one_crank():
+    film = ls.plot.animate(TWIN, 8)
+    film.show(2)
+    throw, _ = film.figure.axes
+    np.testing.assert_allclose(places(throw, "B"), [(-RADIUS, 0.0)] * 2, atol=1e-12)  # 180 degrees, and one throw
+    (left, high), (right, low) = places(throw, "C")
+    assert left == pytest.approx(-high, rel=1e-12)
+    assert right == pytest.approx(low, rel=1e-12)
+    assert left < 0.0 < right
+
+
+def test_refusals():
+    assert "must be left out for several cylinders" in refusal(ls.plot.animate, FOUR, point=(0.1, 0.0))[0]
+    assert "scene is a MultiCylinder, which this does not take" in refusal(ls.report, FOUR, "four.html")[0]
