@@ -1,8 +1,12 @@
-"""The film of several cylinders: each throw where its crank stands, and the torque of them all."""
+"""Film and report of several cylinders: each throw where its crank stands, and the torque of them all."""
+
+import subprocess
+import sys
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from html_page import Page
 from refusals import refusal
 
 import linksweep as ls
@@ -48,6 +52,30 @@ def test_banks_stand_about_one_crank():
     assert left < 0.0 < right
 
 
+def test_a_report_tells_what_the_results_do(tmp_path):
+    path, again = tmp_path / "four.html", tmp_path / "again.html"
+    for name in (path, again):
+        ls.report(FOUR, name, title="Inline four")
+    assert path.read_bytes() == again.read_bytes()
+    page = Page(path.read_text(encoding="utf-8"))
+    assert page.texts["h1"] == "Inline four"
+    text = path.read_text(encoding="utf-8")
+    worst, mains = ls.peaks(FOUR, of=["T12", "Fs", "F32"]), ls.bearings(FOUR)
+    shown = [worst.T12_min, worst.Fs_peak, worst.F32_peak[2], *mains.F_peak, *mains.equivalent_load]
+    for value in [*shown, ls.flywheel(FOUR, 0.02).flywheel_inertia, ls.duty(FOUR).work_fed]:
+        assert f'value="{float(value)!r}"' in text
+    assert text.count("<img") == 4
+
+
+def test_main_bearings_come_first_in_a_fresh_process():
+    code = (
+        "import linksweep as ls; e = ls.example('engine');"
+        "print(ls.bearings(ls.MultiCylinder(e, [0, 360], positions=[0, 0.1])).sizes['main'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "3\n"
+
+
 def test_refusals():
     assert "must be left out for several cylinders" in refusal(ls.plot.animate, FOUR, point=(0.1, 0.0))[0]
-    assert "scene is a MultiCylinder, which this does not take" in refusal(ls.report, FOUR, "four.html")[0]
+    assert "theta2 = (0, 90): must be left out for several" in refusal(ls.report, FOUR, "four.html", theta2=(0, 90))[0]

@@ -16,7 +16,7 @@ from linksweep.scene.scene import Inputs, Scene
 
 SEVERAL = (
     "scene is a MultiCylinder, which this does not take; give a Scene, such as its engine, or ask it for four.sweep(), "
-    "ls.peaks, ls.duty, ls.flywheel, ls.bearings, ls.plot.animate"
+    "ls.peaks, ls.duty, ls.flywheel, ls.bearings, ls.report, ls.plot.animate"
 )
 
 

@@ -12,6 +12,7 @@ import xarray as xr
 
 from linksweep.mechanisms.degrees import cos_sin
 from linksweep.mechanisms.validate import count_problems, refuse
+from linksweep.results import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
 from linksweep.results.bearing_life import rotation_under_load
 from linksweep.results.bearings import Bearing, attributes_of, bearing_problems, joined, of_life, on_journal
 from linksweep.results.cylinder_sums import main

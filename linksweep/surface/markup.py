@@ -49,6 +49,11 @@ def table(header: Sequence[Any], rows: Iterable[Sequence[Any]], **attributes: st
     return tag("table", *head, tag("tbody", *lines), **attributes)
 
 
+def section(title: str, *contents: Markup) -> Markup:
+    """Return a part of a page under its title; nothing where there is nothing to show."""
+    return tag("section", tag("h2", title), *contents) if any(contents) else Markup()
+
+
 def number(value: float, unit: str = "", text: str = "") -> Markup:
     """A number in four significant digits, or as the text says, with its unit.
 

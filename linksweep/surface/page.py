@@ -8,7 +8,7 @@ whatever the user's are, so that the same scene gives the same file, byte for by
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from importlib.resources import files
 from string import Template
@@ -17,13 +17,14 @@ from typing import Any
 import xarray as xr
 
 from linksweep.mechanisms.validate import Rule, pair_problems, refuse
-from linksweep.results.compute import require_scene
+from linksweep.results.cylinders import MultiCylinder
 from linksweep.scene.choose import design_labels
 from linksweep.scene.file import write_scene
 from linksweep.scene.scene import Scene
 from linksweep.surface import page_checks, page_figures, page_inputs, page_tables
 from linksweep.surface.atomic import ending_of
-from linksweep.surface.markup import Markup, joined, safe, tag
+from linksweep.surface.cylinder_page import parts_of
+from linksweep.surface.markup import Markup, joined, safe, section, tag
 from linksweep.surface.page_inputs import quantity
 from linksweep.surface.page_results import STEPS, Range, Results, results_of
 from linksweep.surface.scene_at import scene_at
@@ -35,7 +36,7 @@ SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count coun
 
 
 def report(
-    scene: Scene | xr.Dataset,
+    scene: Scene | xr.Dataset | MultiCylinder,
     path: str | os.PathLike,
     title: str | None = None,
     theta2: tuple[float, float] | None = None,
@@ -44,7 +45,7 @@ def report(
 
     Parameters
     ----------
-    scene : Scene of one design, or a Dataset of linksweep that holds one
+    scene : Scene of one design, or a Dataset of linksweep that holds one; or a MultiCylinder of one design
     path : the file, "report.html"; it needs no other file and no network. One that exists is replaced only once the
         new one is complete
     title : its heading; by default the kind of mechanism
@@ -76,8 +77,10 @@ def report(
     True
     """
     ending_of(path, ENDINGS, ADVICE)
-    one = scene_at(scene) if isinstance(scene, xr.Dataset) else scene
-    require_scene(one)
+    if isinstance(scene, MultiCylinder):
+        refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
+        return write_text(page_of_cylinders(scene.in_memory, title), path)
+    one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
@@ -93,7 +96,7 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None) -> s
         "kind": kind + between,
         "version": version("linksweep"),
         "warnings": page_checks.warnings(results),
-        "machine": _section("Machine", page_inputs.links(scene), page_inputs.loads(scene)),
+        "machine": section("Machine", page_inputs.links(scene), page_inputs.loads(scene)),
         "left": joined(*_left(results)),
         "right": joined(*_right(results)),
         "figures": page_figures.of_the_cycle(results),
@@ -101,14 +104,24 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None) -> s
         "signs": SIGNS if results.scene.mechanism.bodies else "",
         "scene": write_scene(scene),
     }
+    return _filled(parts)
+
+
+def page_of_cylinders(machine: MultiCylinder, title: str | None) -> str:
+    """Return the report of an engine of several cylinders as HTML."""
+    parts = parts_of(machine)
+    return _filled({**parts, "title": title or "Engine", "version": version("linksweep")})
+
+
+def _filled(parts: Mapping[str, Any]) -> str:
     template = Template((files(__package__) / "page.html").read_text(encoding="utf-8"))
     return template.substitute({name: safe(part) for name, part in parts.items()})
 
 
 def _left(results: Results) -> Iterator[Markup]:
-    yield _section("Machine" if results.loop else "Motion", page_inputs.settings(results.scene))
-    yield _section("Peaks", page_tables.peaks(results), tag("p", _exactness(results.part), class_="note"))
-    yield _section("Geometry", page_tables.geometry(results))
+    yield section("Machine" if results.loop else "Motion", page_inputs.settings(results.scene))
+    yield section("Peaks", page_tables.peaks(results), tag("p", _exactness(results.part), class_="note"))
+    yield section("Geometry", page_tables.geometry(results))
 
 
 def _exactness(part: Range | None) -> str:
@@ -118,14 +131,9 @@ def _exactness(part: Range | None) -> str:
 
 
 def _right(results: Results) -> Iterator[Markup]:
-    yield _section("Checks", page_checks.checks(results))
-    yield _section("Drive", page_tables.drive(results))
-    yield _section("Motion" if results.loop else "Shaking, by the inertia of the links", page_tables.shaking(results))
-
-
-def _section(title: str, *contents: Markup) -> Markup:
-    """A part of the page; nothing where there is nothing to show."""
-    return tag("section", tag("h2", title), *contents) if any(contents) else Markup()
+    yield section("Checks", page_checks.checks(results))
+    yield section("Drive", page_tables.drive(results))
+    yield section("Motion" if results.loop else "Shaking, by the inertia of the links", page_tables.shaking(results))
 
 
 def _part_problems(part: Any, period: float) -> list[str]:

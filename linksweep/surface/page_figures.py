@@ -43,14 +43,14 @@ def of_the_cycle(results: Results) -> Markup:
     """The mechanism where a pin is loaded most, pin forces, the drive, and why that pin is loaded."""
     if results.loop:
         return _wide("The track and its force on the car", plot.loop, results) if results.moves else Markup()
-    return _pictures(_of_cycle(results)) if results.moves else Markup()
+    return pictures(_of_cycle(results)) if results.moves else Markup()
 
 
 def of_bearings_and_shaking(results: Results) -> Markup:
     """Load diagrams of all pins, and the path and the orders of the shaking force."""
     if results.loop or not results.moves:
         return Markup()
-    return _pictures([*_of_bearings(results), *_of_shaking(results)])
+    return pictures([*_of_bearings(results), *_of_shaking(results)])
 
 
 def _of_cycle(results: Results) -> Iterator[Picture]:
@@ -110,11 +110,11 @@ def _legend_below(ax: Axes) -> None:
     ax.figure.legend(*entries, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
 
 
-def _pictures(pictures: Iterable[Picture]) -> Markup:
+def pictures(panels: Iterable[Picture]) -> Markup:
     from matplotlib import style
 
     with style.context(LOOK):
-        return tag("div", *(_drawn(picture) for picture in pictures), class_="figures")
+        return tag("div", *(_drawn(picture) for picture in panels), class_="figures")
 
 
 def _drawn(picture: Picture) -> Markup:
