@@ -52,7 +52,7 @@ def results(of: ls.Scene) -> list[xr.Dataset]:
 
 @pytest.mark.parametrize("count", [18, 19, 20, 30])
 def test_so_many_dims(count):
-    """The same designs in a row have the same bits."""
+    """Designs in a row have the same bits."""
     sizes = dict.fromkeys((f"d{k}" for k in range(count)), 1) | {"d0": 2, "d16": 2, f"d{count - 1}": 3}
     many = scene(np.random.default_rng(1), sizes, {"d0": 2})
     speeds, coupler = many.omega2, many.mechanism.coupler

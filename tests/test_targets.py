@@ -1,4 +1,4 @@
-"""What results are written to: only files are replaced, whatever their names, and nothing is left of killed writers."""
+"""Targets of results: only files are replaced, whatever their names, and nothing is left of killed writers."""
 
 import contextlib
 import fcntl

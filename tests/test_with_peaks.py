@@ -1,4 +1,4 @@
-"""What a figure marks is the exact peak that the table beside it has, at jumps, too."""
+"""Figures mark the exact peak that the table beside it has, at jumps, too."""
 
 from dataclasses import replace
 

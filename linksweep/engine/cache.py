@@ -92,7 +92,7 @@ def _open_ours(path: str, flags: int) -> int:
 
 
 def _only_ours(status: os.stat_result) -> bool:
-    """Whether a file or folder is the user's and nobody else may write it; Windows guards its users' folders itself."""
+    """Return whether a file or folder is the user's and nobody else may write it; Windows guards users' own folders."""
     return _owned(status) and not (hasattr(os, "geteuid") and status.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
 

@@ -77,7 +77,7 @@ def _several(name: str, value: Any) -> Any:
 
 
 def _is_row(value: Any) -> bool:
-    """Whether a value is a list of numbers, or a bare array that can only be one."""
+    """Return whether a value is a list of numbers, or a bare array that can only be one."""
     bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
     return isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
 

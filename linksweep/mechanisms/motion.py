@@ -110,7 +110,7 @@ class CrankDriven(ByContent):
         return self.dead_centre_findings("rocker")
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
-        """What can be checked in closed form of how it is driven."""
+        """List what can be checked in closed form of how it is driven."""
         return self.dead_centre_findings(motion["drive"])
 
 

@@ -183,7 +183,7 @@ class SliderCrank(CrankDriven):
 
     @property
     def _lengths(self) -> tuple[Number, Number, Number]:
-        """What decides how it moves: crank, rod, offset."""
+        """Crank, rod and offset, which decide how it moves."""
         return self.crank.length, self.rod.length, self.offset
 
     def findings(self) -> Checks:

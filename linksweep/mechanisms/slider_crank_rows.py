@@ -92,7 +92,7 @@ def _rates() -> list[Row | Total]:
 
 
 def _transmission() -> list[Row | Total]:
-    """What the slider has of the crank's velocity and force, and how the ratios change with the crank's angle."""
+    """Ratios of the slider's velocity and force to the crank's, and how they change with the crank's angle."""
     rod, guide = ("ratio3", "rod_along", "rod_across", "inverse_rod_along"), ("guide_cos", "guide_sin")
     return [
         *crank_pin_slope_rows(),

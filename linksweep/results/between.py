@@ -18,8 +18,9 @@ from linksweep.engine.plan import plan
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.inputs import Inputs
 from linksweep.scene.paths import replaced
-from linksweep.scene.scene import Inputs, Scene
+from linksweep.scene.scene import Scene
 
 Array = np.ndarray
 Places = Mapping[str, Array]

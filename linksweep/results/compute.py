@@ -12,7 +12,8 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.superpose import superposed
 from linksweep.mechanisms.validate import name_problems, refuse
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.scene import Inputs, Scene
+from linksweep.scene.inputs import Inputs
+from linksweep.scene.scene import Scene
 
 SEVERAL = (
     "scene is a MultiCylinder, which this does not take; give a Scene, such as its engine, or ask it for four.sweep(), "

@@ -95,7 +95,7 @@ def places_of_poles(group: Any, signals: tuple[str, ...]) -> Places:
 
 
 def _grows_as_a_power(size: Array) -> Array:
-    """Whether sizes (…, step), the nearest first, grow by the same factor with each half of the way."""
+    """Return whether sizes (…, step), the nearest first, grow by the same factor with each half of the way."""
     with np.errstate(all="ignore"):
         growth = size[..., :-1] / size[..., 1:]
     least, largest = growth.min(axis=-1), growth.max(axis=-1)

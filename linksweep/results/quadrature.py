@@ -79,7 +79,7 @@ class Pieces(NamedTuple):
 
 
 class Integrand(NamedTuple):
-    """What is integrated: a function of the values of some quantities, 0 where these are not known."""
+    """An integrand: a function of the values of some quantities, 0 where these are not known."""
 
     names: tuple[str, ...]
     height: Callable[..., Array]

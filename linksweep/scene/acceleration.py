@@ -42,7 +42,7 @@ def acceleration(
 ) -> xr.DataArray:
     """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
 
-    That of a function errs by 1e-9 of its largest value where the function is smooth over half a degree. At a corner
+    A function's errs by 1e-9 of its largest value where the function is smooth over half a degree. At a corner
     it is the mean of both sides, at a jump infinite.
 
     Raises

@@ -21,7 +21,7 @@ Owner = TypeVar("Owner")
 
 
 class Revolution(NamedTuple):
-    """What a sweep looks at: the machine, its angles, the speed of the crank at them, and the curves of its scene.
+    """A revolution for a sweep: the machine, its angles, the crank's speed at them, and the curves of its scene.
 
     `kinematics` gives quantities that angles and lengths alone decide, by name, over the angles.
     """

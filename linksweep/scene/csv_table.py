@@ -159,7 +159,7 @@ def _number(cell: str) -> float:
 
 
 def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
-    """Whether the angles, or positions, rise."""
+    """Return whether the angles, or positions, rise."""
     rises = np.diff([sample.angle for sample in samples])
     if len(rises) < 1:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 2"]
@@ -173,7 +173,7 @@ def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
 
 
 def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
-    """Whether angles go all the way round, in one turn or several; steps hold as long as they like."""
+    """Return whether angles go all the way round, in one turn or several; steps hold as long as they like."""
     if len(samples) < 4 and not steps:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
     angles = np.array([sample.angle for sample in samples])

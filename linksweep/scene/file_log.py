@@ -171,7 +171,7 @@ _TOKEN = re.compile(
     ''',
     re.DOTALL | re.VERBOSE,
 )
-"""What tells where a value ends: strings, comments, brackets and ends of lines."""
+"""Tokens that tell where a value ends: strings, comments, brackets and ends of lines."""
 
 
 def _opened(header: Where, start: int, lines: dict[Where, int], counts: Counter[Where]) -> Where:

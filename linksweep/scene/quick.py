@@ -25,7 +25,7 @@ Array = np.ndarray
 Function = Callable[[Array], Array]
 
 STEP = 0.5
-"""What is smooth between samples so far apart is not quick [degree]."""
+"""Distance of samples between which a smooth function is not quick [degree]."""
 LEVELS = 4
 """Halvings of this step down to that at which a function is looked at everywhere."""
 FEWEST = 16

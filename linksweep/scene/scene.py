@@ -6,17 +6,16 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.plan import InputForms, plan
+from linksweep.engine.plan import plan
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Field, Grid, evaluate
+from linksweep.engine.run import Grid, evaluate
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.content import ByContent, content
-from linksweep.mechanisms.motion import OverDesigns
 from linksweep.mechanisms.validate import (
     UNITS,
     Number,
@@ -32,9 +31,10 @@ from linksweep.mechanisms.validate import (
 from linksweep.scene.acceleration import acceleration, acceleration_problems
 from linksweep.scene.action import Action, Revolution, with_sound
 from linksweep.scene.checked_number import said_unit_problems
-from linksweep.scene.dimensions import dimension_problems, side_by_side
+from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.inputs import Inputs, as_field, form_of, over_designs
 from linksweep.scene.interpolation import CUBIC
 from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function, turning_problems
 from linksweep.scene.paths import bare, numbers
@@ -43,14 +43,6 @@ from linksweep.scene.quick import Quick, quick_angles
 ACCELERATION = Rule("acceleration")
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
 """Words of a scene of which each mechanism takes its own."""
-
-
-class Inputs(NamedTuple):
-    """A scene as the engine takes it: numbers with dims, their forms for the planner, and the size of each dim."""
-
-    fields: Mapping[str, Field]
-    forms: InputForms
-    sizes: Mapping[str, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,9 +329,9 @@ class Scene(ByContent):
     def inputs(self) -> Inputs:
         """The scene as the engine takes it; what changes over the revolution must have been brought `at` a grid."""
         named = self.bare._named_values()
-        fields = {name: _field(value) for name, value in named.items()}
+        fields = {name: as_field(value) for name, value in named.items()}
         grid_rows = tuple((name, (self.mechanism.index,)) for name in GRID_ROWS)
-        forms = (*((name, _form(field)) for name, field in fields.items()), *grid_rows)
+        forms = (*((name, form_of(field)) for name, field in fields.items()), *grid_rows)
         sizes = {dim: n for f in fields.values() for dim, n in zip(f.dims, f.values.shape, strict=True)}
         sizes.pop(self.mechanism.index, None)
         return Inputs(fields, forms, sizes)
@@ -371,35 +363,12 @@ class Scene(ByContent):
         return named
 
 
-def over_designs(functions: OverDesigns) -> dict[str, Any]:
-    """What functions of numbers return, with the dims of their numbers."""
-    found: dict[str, Any] = {}
-    for function, given in functions:
-        dims, arrays = side_by_side(given)
-        returned: Mapping[str, Any] = function(*arrays)
-        found |= {name: Field(dims, values) for name, values in returned.items()}
-    return found
-
-
 def _left_out(word: Any) -> bool:
     return word is None or (isinstance(word, str | tuple | list) and not word)
 
 
 def _rule(word: str) -> Rule:
     return next(item.metadata["rule"] for item in fields(Scene) if item.name == word)
-
-
-def _field(value: Any) -> Field:
-    if isinstance(value, Field):
-        return value
-    if hasattr(value, "dims"):
-        return Field(tuple(map(str, value.dims)), np.asarray(value.values, dtype=float))
-    return Field((), np.asarray(float(value)))
-
-
-def _form(field: Field) -> tuple[str, ...] | float:
-    """A number that is exactly 0 or 1 is worth knowing when planning: what it multiplies can be left out."""
-    return float(field.values) if not field.dims and field.values in (0.0, 1.0) else field.dims
 
 
 def _plain(variable: xr.Variable) -> xr.Variable:

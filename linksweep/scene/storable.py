@@ -68,7 +68,7 @@ def _time_problem(times: np.ndarray) -> str:
 
 
 def _is_sound(text: str) -> bool:
-    """Whether a text can be written as UTF-8, and read back to its end."""
+    """Return whether a text can be written as UTF-8, and read back to its end."""
     try:
         return b"\0" not in text.encode()
     except UnicodeEncodeError:

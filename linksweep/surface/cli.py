@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 CLOSED_PIPE = 141
-"""What a shell tells of a program that ended because nobody reads its output."""
+"""Exit status, as a shell tells it, of a program that ended because nobody reads its output."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -98,6 +98,16 @@ def _parser() -> argparse.ArgumentParser:
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
 
+    _add_study(commands)
+    sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
+    sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    sound.set_defaults(run=_check)
+    _add_report(commands)
+    add_commands(commands)
+    return parser
+
+
+def _add_study(commands: Any) -> None:
     many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
     many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
@@ -106,10 +116,8 @@ def _parser() -> argparse.ArgumentParser:
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
     many.set_defaults(run=_study)
 
-    sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
-    sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    sound.set_defaults(run=_check)
 
+def _add_report(commands: Any) -> None:
     page = commands.add_parser("report", help="a page to print: inputs, checks, peaks, drive, figures")
     page.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
@@ -117,8 +125,6 @@ def _parser() -> argparse.ArgumentParser:
     part = "crank angles of a machine that moves over part of a turn"
     page.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
     page.set_defaults(run=_report)
-    add_commands(commands)
-    return parser
 
 
 def _demo(options: argparse.Namespace) -> None:

@@ -103,7 +103,7 @@ def _friction(results: Results) -> Iterator[Check]:
 
 
 def _acceleration(results: Results) -> Check:
-    """Whether alpha2 is that of an omega2 that changes over the revolution."""
+    """Return whether alpha2 is that of an omega2 that changes over the revolution."""
     worst, at = (float(results.check[f"alpha2_difference{end}"]) for end in ("", "_at"))
     words = joined("differs from that of the speed by ", number(worst, "rad/s²"), " at ", angle(at))
     return Check("acceleration of the crank", words, worst <= EXACT * float((results.cycle["omega2"] ** 2).max()))

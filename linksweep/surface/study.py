@@ -40,7 +40,7 @@ CHUNK = 50_000
 """Designs computed at a time: some tenths of a second of work, which is all that a kill can cost."""
 
 SLOW_CHUNK = 1000
-"""The same where loads or speeds change with the angle, and exact peaks take a quarter of a millisecond a design."""
+"""Designs at a time where loads or speeds change with the angle: exact peaks take a quarter of a millisecond each."""
 
 LONGEST_NAME = 255
 """Bytes that the name of a file may have."""
