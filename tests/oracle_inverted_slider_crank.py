@@ -10,7 +10,11 @@ x + jy, from A.
     link 2:   F12 + F32 + P2 + m2 g = m2 aG2        and for each, moments about its G = I alpha
     link 3:  -F32 + F43 + P3 + m3 g = m3 aG3,       F43 at B, T43 on the block
     link 4:  -F43 + F14 + P4 + m4 g = m4 aG4,       F43 at B, -T43 on the rocker
-    no friction: F43 . r = 0, or what a cylinder between block and rocker gives, which is then the unknown of the drive
+    the line: F43 . r = C - mu |F43 . n| sign(s'),   C what a cylinder between block and rocker gives, else 0
+    lost to friction: mu |F43 . n| |s'|
+
+The last row needs the sign of F43 . n: both are tried in the full 10x10, and the one that its own solution confirms is
+kept.
 """
 
 from dataclasses import dataclass
@@ -43,6 +47,7 @@ from judges import (
     random_load,
     turn,
 )
+from oracle_slider_crank import Jammed, TwoSolutions
 
 LINKS = ("crank", "block", "rocker")
 NUMBER = {"crank": 2, "block": 3, "rocker": 4}
@@ -80,6 +85,7 @@ class InvertedSliderCrankData:
     loads: tuple[LoadData, ...] = ()
     block_cg_distance: float = 0.0
     block_cg_angle: float = 0.0
+    friction: float = 0.0
 
 
 def by_link(*values) -> dict:
@@ -137,16 +143,51 @@ def motion(data: InvertedSliderCrankData, theta2) -> Motion:
     return motion_and_slide(data, theta2)[0]
 
 
-def system(data: InvertedSliderCrankData, move: Motion) -> tuple[list, list]:
-    """The 10x10; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, and the drive's torque or force."""
+def sense(data: InvertedSliderCrankData, move: Motion) -> int:
+    """Sign of the block's velocity along the line; 0 where it stands, within rounding."""
+    B, w = move.pin["B"], move.pin["B"] - move.pin["D"]
+    v = ((1j * data.omega2 * B - 1j * move.omega["rocker"] * w) / move.line["rocker"]).real
+    return 0 if abs(v) <= FOLD * abs(data.omega2 * B) else int(mp.sign(v))
+
+
+def wedging(data: InvertedSliderCrankData, move: Motion):
+    """mu times the slope of what the moments free of the drive leave; from 1 on the moving block jams."""
+    r, w = move.line["rocker"], move.pin["B"] - move.pin["D"]
+    lever = {"crank": w / r, "rocker": move.pin["B"] / r, "cylinder": mp.mpc(1)}[data.drive]
+    return mp.mpf(data.friction) * abs(lever.imag / lever.real)
+
+
+def system(data: InvertedSliderCrankData, move: Motion, sign: int = 0) -> tuple[list, list]:
+    """The 10x10 for an assumed sign of F43 . n; unknowns F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T43, and the
+    drive's torque or force."""
     rows, sides = joined(
         link_rows(data, move, name, link, ACTING[name], MOMENT[name], name == data.drive)
         for name, link in links(data).items()
     )
-    smooth, r, column = [mp.mpf(0)] * 10, move.line["rocker"], 2 * FORCES.index("F43")
-    smooth[column : column + 2] = r.real, r.imag
-    smooth[DRIVE] = -mp.mpf(data.drive == "cylinder")
-    return [*rows, smooth], [*sides, mp.mpf(0)]
+    line, column = [mp.mpf(0)] * 10, 2 * FORCES.index("F43")
+    leaning = move.line["rocker"] * mp.mpc(1, mp.mpf(data.friction) * sense(data, move) * sign)
+    line[column : column + 2] = leaning.real, leaning.imag
+    line[DRIVE] = -mp.mpf(data.drive == "cylinder")
+    return [*rows, line], [*sides, mp.mpf(0)]
+
+
+def normal_force(data: InvertedSliderCrankData, move: Motion, solution: list):
+    """F43 . n of the ten."""
+    column = 2 * FORCES.index("F43")
+    return (mp.mpc(*solution[column : column + 2]) / move.line["rocker"]).imag
+
+
+def unknowns(data: InvertedSliderCrankData, move: Motion) -> list:
+    """The ten, with the one sign of the normal force that its own solution confirms."""
+    if not data.friction or not sense(data, move):
+        return linear_solve(*system(data, move))
+    tried = {sign: linear_solve(*system(data, move, sign)) for sign in (1, -1)}
+    confirmed = [sign for sign, x in tried.items() if sign * normal_force(data, move, x) > 0]
+    if len(confirmed) == 1:
+        return tried[confirmed[0]]
+    if all(abs(normal_force(data, move, x)) <= FOLD * max(map(abs, x[:8])) for x in tried.values()):
+        return tried[1]
+    raise (TwoSolutions if confirmed else Jammed)("both signs of F43 . n agree with themselves, or neither does")
 
 
 def hold(data: InvertedSliderCrankData, move: Motion):
@@ -163,12 +204,13 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
     theta3 = theta4, transmission_angle [degree]; omega3 = omega4 [rad/s]; alpha3 = alpha4 [rad/s^2]; slide,
     slide_velocity, slide_acceleration; Bx .. Dy, G2x .. G4y, R12x .. R14y [m]; vG2x .. vG4y [m/s]; aG2x .. aG4y
     [m/s^2]; F12x .. F14y in ground axes, F12, F32, F43, F14, F43n [N]; T43 [N m] and T12, T14 [N m] or cylinder_force
-    [N]; power [W]. Raises Unassemblable or DeadPoint.
+    [N]; power, friction_power [W]; friction_force on the block along the line [N]. Raises Unassemblable, DeadPoint,
+    Jammed or TwoSolutions.
     """
     move, values = motion_and_slide(data, theta2)
     if hold(data, move) < FOLD:
         raise DeadPoint(f"theta2 = {float(theta2)} degree: the {data.drive} stands still and cannot drive")
-    solution = linear_solve(*system(data, move))
+    solution = unknowns(data, move)
     forces = {name: mp.mpc(*solution[2 * i : 2 * i + 2]) for i, name in enumerate(FORCES)}
     vectors = {pin: move.pin[pin] for pin in "BD"} | centres(move, NUMBER) | arms(move, ACTING, NUMBER)
     for k in (3, 4):
@@ -177,6 +219,9 @@ def solve(data: InvertedSliderCrankData, theta2) -> dict:
     values["transmission_angle"] = mp.degrees(mp.atan2(abs(values["slide"]), abs(mp.mpf(data.offset))))
     values |= components(vectors | forces) | {name: abs(F) for name, F in forces.items()}
     values |= {"F43n": (forces["F43"] / move.line["rocker"]).imag, "T43": solution[T43]}
+    rubbing = mp.mpf(data.friction) * abs(values["F43n"])
+    values["friction_force"] = -rubbing * sense(data, move)
+    values["friction_power"] = -rubbing * abs(values["slide_velocity"])
     rate = move.omega.get(data.drive, values["slide_velocity"])
     return values | {UNKNOWN[data.drive]: solution[DRIVE], "power": solution[DRIVE] * rate}
 
@@ -197,7 +242,7 @@ def to_scene(data: InvertedSliderCrankData):
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rocker")}
     rest = ("ground", "block_mass", "block_inertia", "offset", "branch", "ground_angle")
-    rest += ("block_cg_distance", "block_cg_angle")
+    rest += ("block_cg_distance", "block_cg_angle", "friction")
     mechanism = ls.InvertedSliderCrank(**bars, **{name: getattr(data, name) for name in rest})
     return ls.Scene(mechanism, **happening(data))
 
@@ -232,6 +277,7 @@ def random_data(
     drive: str | None = None,
     scale: float | None = None,
     loads: int | None = None,
+    friction: float = 0.0,
 ) -> InvertedSliderCrankData:
     """A random scene; what is not given is drawn.
 
@@ -261,6 +307,7 @@ def random_data(
         loads=tuple(drawn),
         block_cg_distance=float(rng.uniform(0, 0.5)) * scale if rng.integers(2) else 0.0,
         block_cg_angle=float(rng.uniform(-180, 180)),
+        friction=friction,
     )
 
 
@@ -276,3 +323,19 @@ def toggle_margin(data: InvertedSliderCrankData, theta2: float) -> float:
 def random_theta2(rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1) -> float:
     """A crank angle [degree] with a toggle margin above the given one."""
     return crank_angle(rng, lambda theta2: toggle_margin(data, theta2) > margin)
+
+
+def random_rubbing_theta2(
+    rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1, jammed: bool = False
+) -> float:
+    """A crank angle [degree] as `random_theta2`, where the block moves and `wedging` is at least 0.05 away from 1."""
+
+    def good(theta2: float) -> bool:
+        if toggle_margin(data, theta2) <= margin:
+            return False
+        move, values = motion_and_slide(data, theta2)
+        excess = wedging(data, move) - 1
+        moves = abs(values["slide_velocity"]) > margin * abs(data.omega2) * data.crank.length
+        return bool(moves) and abs(excess) > 0.05 and jammed == (excess > 0)
+
+    return crank_angle(rng, good)

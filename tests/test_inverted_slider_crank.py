@@ -75,7 +75,8 @@ def size(name: str, data: InvertedSliderCrankData, result: dict) -> float:
     length, force, torque = longest(data), largest_force(result), largest_torque(result, data)
     by_start = {"theta": 180.0, "transmission": 180.0, "omega": omega, "alpha": alpha, "B": length, "R": length}
     by_start |= {"slide_velocity": omega * length, "slide_acceleration": alpha * length, "slide": length}
-    by_start |= {"aG": alpha * length, "F": force, "cylinder": force, "T": torque, "power": torque * omega}
+    by_start |= {"aG": alpha * length, "T": torque, "power": torque * omega}
+    by_start |= dict.fromkeys(("F", "cylinder", "friction"), force)
     return float(next(scale for start, scale in by_start.items() if name.startswith(start)))
 
 

@@ -14,18 +14,19 @@ from oracle_inverted_slider_crank import (
     motion,
     motion_and_slide,
     random_data,
-    random_theta2,
+    random_rubbing_theta2,
     solve,
 )
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3])
 @pytest.mark.parametrize("case", [*product(KINDS, BRANCHES, DRIVES)], ids="-".join)
-def test_laws_of_mechanics(case):
+def test_laws_of_mechanics(case, friction):
     """Rates are derivatives of places; the drive's power is that of energy, weights and loads; all forces add up."""
     kind, branch, drive = case
     rng = np.random.default_rng(3)
-    data = random_data(rng, kind=kind, branch=branch, drive=drive, loads=2)
-    theta2 = random_theta2(rng, data)
+    data = random_data(rng, kind=kind, branch=branch, drive=drive, loads=2, friction=friction)
+    theta2 = random_rubbing_theta2(rng, data)
     result = solve(data, theta2)
     at, w = history(motion_and_slide, data, theta2), mp.mpf(data.omega2)
 
@@ -39,7 +40,7 @@ def test_laws_of_mechanics(case):
     turned = [mp.diff(lambda t: mp.arg(at(t)[0].line["rocker"] / move.line["rocker"]), 0, n) for n in (1, 2)]
     assert close(result["omega4"], turned[0], 1e3 * abs(w)) and close(result["alpha4"], turned[1], 1e3 * w**2)
 
-    terms = [mp.diff(lambda t: kinetic_energy(links(data), at(t)[0]), 0), -result["power"]]
+    terms = [mp.diff(lambda t: kinetic_energy(links(data), at(t)[0]), 0), -result["power"], -result["friction_power"]]
     force = sum(mp.mpc(result[f"{F}x"], result[f"{F}y"]) for F in ("F12", "F14"))
     for name, link in links(data).items():
         weight = mp.mpf(link.mass) * mp.mpc(*data.gravity)
@@ -53,5 +54,5 @@ def test_laws_of_mechanics(case):
     assert close(force, 0, largest_force(result))
     r = move.line["rocker"]
     along = mp.mpc(result["F43x"], result["F43y"]) / r
-    assert close(along.real, result.get("cylinder_force", 0), largest_force(result))
+    assert close(along.real, result.get("cylinder_force", 0) + result["friction_force"], largest_force(result))
     assert (result["slide"] > 0) == (data.branch == "open")

@@ -28,6 +28,10 @@ DEAD_CENTRES = ("nearest", "farthest")
 """By the distance of B from D."""
 
 TOGGLES = ("toggle", "toggle_mirrored")
+JAMS = ("jam", "jam_mirrored")
+"""Between which, about the angle where B is nearest to D, friction wedges."""
+JAMS_BY_CRANK = tuple(f"{reversal}_{side}" for reversal in REVERSALS for side in ("before", "after"))
+"""Between which, about each angle where the rocker turns round, friction wedges."""
 
 
 def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
@@ -93,6 +97,41 @@ def rocker_dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angl
     """Where the rocker turns round, and cannot drive."""
     angle = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
     return {"dead_centre_angle": Finding(angle, "crank square to the rocker's line", along=("dead_centre", REVERSALS))}
+
+
+def wedging(
+    a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
+) -> dict[str, Finding]:
+    """Crank driven: where μ·|e/s| ≥ 1, B no farther than |e|·√(1 + μ²) from D; the least friction that does."""
+    reach = np.abs(e) * np.hypot(1.0, friction)
+    half = np.where(reach < a + d, _toggle(a, d, reach), 180.0)
+    nearest = np.maximum(np.abs(d - a), np.abs(e))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        least = np.sqrt((nearest - np.abs(e)) * (nearest + np.abs(e))) / np.abs(e)
+    least = np.where(np.abs(e) < a + d, np.where(e == 0.0, np.nan, least), np.nan)
+    return _jams(np.stack([-half, half], axis=-1), ground_angle, friction, least, JAMS)
+
+
+def wedging_by_crank(
+    a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
+) -> dict[str, Finding]:
+    """Rocker driven: where μ·|tan ψ| ≥ 1, ψ the crank's angle to the line; with any μ where the rocker turns round."""
+    lean = np.degrees(np.arctan(friction))[..., None]
+    beside = _reversals(a / np.hypot(1.0, friction), d, e)
+    angle = np.stack([beside - lean, beside + lean], axis=-1).reshape(*friction.shape, len(JAMS_BY_CRANK))
+    steepest = np.minimum(a, d + np.abs(e))
+    least = np.where(np.abs(e) < a + d, np.sqrt((a - steepest) * (a + steepest)) / steepest, np.nan)
+    return _jams(angle, ground_angle, friction, least, JAMS_BY_CRANK)
+
+
+def _jams(
+    angle: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray, least: np.ndarray, sides: tuple[str, ...]
+) -> dict[str, Finding]:
+    turned = np.where(friction[..., None] > 0.0, np.mod(angle + ground_angle[..., None], 360.0), np.nan)
+    return {
+        "jam_angle": Finding(turned, "crank angle at which friction begins to wedge the block", along=("side", sides)),
+        "friction_to_jam": Finding(least, "least coefficient of friction that wedges the block", "1"),
+    }
 
 
 def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:

@@ -18,6 +18,11 @@ from linksweep.mechanisms.validate import Number, choice_problems
 from linksweep.physics import crank_angle, planar
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
+STATUS_OF_SLIDER = (
+    *("ok", "cannot_assemble", "toggle", "dead_centre"),
+    *("jammed", "no_cycle", "jammed_two_solutions"),
+)
+"""Status by number, the same for all machines in which friction may wedge a part that slides."""
 
 OverDesigns = tuple[tuple[Callable[..., Mapping[str, Any]], tuple[Number, ...]], ...]
 """Functions of arrays of numbers, broadcast over the designs, that return arrays by name; and what each takes."""

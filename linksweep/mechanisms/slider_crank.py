@@ -15,7 +15,7 @@ from linksweep.mechanisms.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.degrees import cos_sin_rests
 from linksweep.mechanisms.finding import Checks
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
-from linksweep.mechanisms.motion import BRANCH_SIGN, CrankDriven, in_range, turned
+from linksweep.mechanisms.motion import BRANCH_SIGN, STATUS_OF_SLIDER, CrankDriven, in_range, turned
 from linksweep.mechanisms.pins import Journals, Pins, rotating
 from linksweep.mechanisms.slider_crank_limits import (
     angles,
@@ -96,15 +96,7 @@ class SliderCrank(CrankDriven):
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
-    status_meanings: ClassVar[tuple[str, ...]] = (
-        "ok",
-        "cannot_assemble",
-        "toggle",
-        "dead_centre",
-        "jammed",
-        "no_cycle",
-        "jammed_two_solutions",
-    )
+    status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -18,7 +18,7 @@ from linksweep.mechanisms.bodies import (
 )
 from linksweep.mechanisms.motion import between_rows, pinch_rows, straight_rows
 from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
-from linksweep.physics import advantage, crank_driven, dyad_rrp, planar, slider_crank
+from linksweep.physics import advantage, coulomb, crank_driven, dyad_rrp, planar, slider_crank
 
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 DRIVES = {"crank": "T12", "coupler": "T13"}
@@ -148,7 +148,7 @@ def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
     cycle: list[Row | Total] = [Row(planar.same, ("status",), ("jam_status",))]
     if any(form.full_turns for form in loads):
         cycle = [Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))]
-    jam = Row(slider_crank.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
+    jam = Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
     return [*closure, *leverage, jam, *cycle]
 
 

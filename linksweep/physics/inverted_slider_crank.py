@@ -10,7 +10,8 @@ close to D. The block stands still on the line where the crank lies along the fr
 whatever the offset.
 """
 
-from linksweep.physics.arithmetic import Number, sqrt, where
+from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.coulomb import opposing, sliding_contact
 from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
 from linksweep.physics.crank_driven import away_from_dead_centre
 from linksweep.physics.double_double import Pair, add, difference, divide, multiply, two_product, two_sum
@@ -58,9 +59,12 @@ def slide_leverage(crank_length: Number, ground_length: Number, pinch_sin: Numbe
     return crank_length * ground_length * pinch_sin
 
 
-def pinch_width(crank_length: Number, ground_length: Number, offset: Number) -> Number:
-    """How narrow forces may peak about ψ = 0: s² is x + y·tan²(ψ/2) there, zero at tan = ±i·√(x/y)."""
-    a, d, e = crank_length, ground_length, offset
+def pinch_width(crank_length: Number, ground_length: Number, offset: Number, friction: Number) -> Number:
+    """How narrow forces may peak about ψ = 0: s² is x + y·tan²(ψ/2) there, zero at tan = ±i·√(x/y).
+
+    Friction wedges where s² = μ²e², that is where B is |e|·√(1 + μ²) from D.
+    """
+    a, d, e = crank_length, ground_length, offset * sqrt(1.0 + friction * friction)
     return sqrt((((d - a) - e) * ((d - a) + e)) / (((d + a) - e) * ((d + a) + e)))
 
 
@@ -86,17 +90,55 @@ def assembly(crank_length: Number, ground_length: Number, offset: Number) -> Num
     return where(e < abs(d - a), 0.0, where(e < d + a, 1.0, 2.0))
 
 
-def normal_force_on_block(
-    N3: Number, N4: Number, inverse_slide: Number, offset: Number, cylinder_force: Number
+def slide_direction(
+    friction: Number, slide_velocity: Number, slide_leverage: Number, crank_length: Number, ground_length: Number
 ) -> Number:
-    """F43n from the moments of block and rocker about B and D: the contact's moment T43 drops out, and a cylinder has
-    the arm e, s·F43n − e·F = N3 + N4."""
-    return (N3 + N4 + offset * cylinder_force) * inverse_slide
+    """Return μ·sign(s'), 0 where the block stands still, as far as the angle can tell."""
+    moves = abs(slide_leverage) > NOISE * crank_length * ground_length
+    direction = where(slide_velocity > 0.0, friction, where(slide_velocity < 0.0, -friction, 0.0))
+    return where(moves, direction, 0.0)
 
 
-def normal_force_from_crank(moment_r2: Number, crank_along: Number, crank_length: Number) -> Number:
-    """F43n where the crank's torques are all known and no cylinder drives: r2 × F43 = (r2·u)·F43n."""
-    return moment_r2 / away_from_dead_centre(crank_along, crank_along, crank_length, 1.0)
+def normal_force_on_block(N3: Number, N4: Number, inverse_slide: Number, offset: Number, line_force: Number) -> Number:
+    """F43n from the moments of block and rocker about B and D: the contact's moment T43 drops out, and the force along
+    the line has the arm e, s·F43n − e·F = N3 + N4."""
+    return (N3 + N4 + offset * line_force) * inverse_slide
+
+
+def contact_force(
+    N3: Number, N4: Number, inverse_slide: Number, offset: Number, direction: Number
+) -> tuple[Number, Number, Number]:
+    """F43n, friction and wedging where F is friction alone: s·F43n − e·F = N3 + N4."""
+    return sliding_contact((N3 + N4) * inverse_slide, offset * inverse_slide, direction)
+
+
+def contact_force_from_crank(
+    moment_r2: Number, crank_along: Number, crank_across: Number, crank_length: Number, direction: Number
+) -> tuple[Number, Number, Number]:
+    """F43n, friction and wedging where the crank's torques are all known: r2 × F43 = (r2·u)·F43n + (r2 × u)·F."""
+    lever = away_from_dead_centre(crank_along, crank_along, crank_length, 1.0)
+    return sliding_contact(moment_r2 / lever, -(crank_across / lever), direction)
+
+
+def cylinder_force(line_force: Number, friction_force: Number) -> Number:
+    """Return the cylinder's own force of all that acts on the block along the line."""
+    return line_force - friction_force
+
+
+def work_with_friction(work_of_loads: Number, ratio_slide: Number, friction_force: Number) -> Number:
+    """Virtual work per turn of the crank of loads, weights, inertia forces, and of friction on the block's slide."""
+    return work_of_loads + ratio_slide * friction_force
+
+
+def contact_direction(F43n: Number, direction: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:
+    """Return the force on the block per normal force, with the friction that it brings: n − μ·sign(s')·sign(F43n)·u."""
+    k = opposing(F43n, direction)
+    return -r3y - k * r3x, r3x - k * r3y
+
+
+def contact_arm(F43n: Number, direction: Number, normal_arm: Number, line_arm: Number) -> Number:
+    """Return the moment per normal force, with the friction that it brings."""
+    return normal_arm - opposing(F43n, direction) * line_arm
 
 
 def slide_arms(Bx: Number, By: Number, rGx: Number, rGy: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:

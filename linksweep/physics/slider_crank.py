@@ -9,10 +9,9 @@ It closes while both are positive: at every angle if a + |e| < b. The difference
 are therefore sums of two numbers each.
 """
 
-import math
-
 from linksweep.physics import crank_driven
 from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.coulomb import opposing, sliding_contact
 from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
 from linksweep.physics.double_double import difference, divide, two_sum
 from linksweep.physics.planar import cross, dot
@@ -114,31 +113,19 @@ def guide_force(
     rod's force F43 across and along.
 
     F43 = F14 + Q4 and r × F43 = moment for the lever r (the rod, or the crank where its torque is known) give,
-    without friction, a normal force N0. Friction −μ|N|·sign(v) changes it to N = N0/(1 + sign(N)·k) with k =
-    μ·sign(v)·tan ψ, μ·sign(v) the `direction` and tan ψ the lever's slope to the guide. With w = sign(N0)·k, exactly
-    one sign of N is consistent for |w| < 1, that of N0; none for w ≤ −1, where no force moves the slider on; both for
-    w ≥ 1, where rigid bodies do not tell which. F43 comes from the lever, not from the guide's force, which may be far
-    larger.
+    without friction, a normal force N0; with it see `linksweep.physics.coulomb`, the slope that of the lever to the
+    guide. F43 comes from the lever, not from the guide's force, which may be far larger.
     """
     Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
     slope = lever_across * inverse_lever_along
     lever_force = (lever_moment + lever_across * Q4_along) * inverse_lever_along
-    frictionless = lever_force - Q4_across
-    opposing = where(frictionless < 0.0, -direction, direction)
-    wedging = opposing * slope
-    normal = frictionless / where(abs(wedging) < 1.0, 1.0 + wedging, math.nan)
-    friction = -(opposing * normal)
+    normal, friction, wedging = sliding_contact(lever_force - Q4_across, slope, direction)
     return normal, friction, wedging, lever_force + slope * friction, Q4_along + friction
 
 
 def from_guide_axes(across: Number, along: Number, guide_cos: Number, guide_sin: Number) -> tuple[Number, Number]:
     """A force in ground axes."""
     return along * guide_cos - across * guide_sin, along * guide_sin + across * guide_cos
-
-
-def jammed_status(status: Number, wedging: Number) -> Number:
-    """Return the status so far, or where friction wedges the slider 4 (jammed: no solution) or 6 (two solutions)."""
-    return where(abs(wedging) < 1.0, status, where(status > 0.0, status, where(wedging > 0.0, 6.0, 4.0)))
 
 
 def no_cycle_status(status: Number, assembly: Number) -> Number:
@@ -196,5 +183,5 @@ def friction_row(
     normal_force: Number, direction: Number, guide_cos: Number, guide_sin: Number
 ) -> tuple[Number, Number]:
     """Coefficients of F14x and F14y in the friction row: share along + μ·sign(v)·sign(N)·share across = 0."""
-    k = where(normal_force < 0.0, -direction, direction)
+    k = opposing(normal_force, direction)
     return guide_cos - k * guide_sin, guide_sin + k * guide_cos

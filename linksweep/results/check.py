@@ -39,7 +39,7 @@ def check(scene: Scene) -> xr.Dataset:
 
     Of an InvertedSliderCrank also `rocker_motion` (swings, turns_fully, limited), `swing` and `reversal_angle` [degree]
     and `time_ratio` of a rocker that swings; with drive="cylinder" `slide_at_dead_centre` [m], its least and greatest
-    size where the block stands still.
+    size where the block stands still; else, as of a SliderCrank, `jam_angle` (side) and `friction_to_jam`.
 
     With another drive than the crank, `dead_centre_angle` (dead_centre) [degree], where it stands still and cannot
     drive, labelled by branch where that decides.

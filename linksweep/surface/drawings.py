@@ -173,6 +173,7 @@ INVERTED_SLIDER_CRANK = Drawing(
     carrier=Carrier("rocker", 4, "D"),
     block=Block(3, "B", on=(4, "D")),
     acts_at={"slide": "B"},
+    ideal={"friction": 0.0},
 )
 DRAWINGS: dict[type, Drawing] = {
     FourBar: FOUR_BAR,
