@@ -159,6 +159,16 @@ def test_lengths_at_the_ends_of_what_a_number_can_hold():
         assert (ls.sweep(scene, 6).status != 0).any() or scene is loop
 
 
+def test_a_value_too_large_in_its_unit_is_told_with_file_and_line(here):
+    rows = "theta2,P\n0,1\n90,2\n180,1e307\n270,2\n"
+    message = refusal(PRESS + LOAD.replace("}", ', unit = "kN m"}'), rows)
+    assert "torque.csv: a.csv:4: 1e+307: must be a finite number" in message
+
+
+def test_a_long_key_is_cut(here):
+    assert "xxx...: unknown key" in refusal(f"{'x' * 100_000} = 1\n{PRESS}")
+
+
 # ----------------------------------------------------------------------------------------------- files of others
 
 
@@ -208,6 +218,12 @@ def test_a_closed_pipe_is_left_quietly(here, buffered):
     )  # fmt: skip
     os.close(writing)
     assert (ran.returncode, ran.stderr) == (141, b"")
+
+
+def test_output_that_was_closed_before_the_start(here, monkeypatch):
+    Path("press.toml").write_text(PRESS)
+    monkeypatch.setattr(sys, "stdout", None)  # as Python starts after ">&-"
+    assert main(["check", "press.toml"]) == 0
 
 
 def test_a_name_with_a_bad_byte(here, capsys):

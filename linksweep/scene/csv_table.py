@@ -82,7 +82,7 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     if over == "theta2":
         refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
     angles = np.array([sample.angle for sample in samples])
-    values = [quantity(sample.value, kind, unit) for sample in samples]
+    values = [_in_si(name, sample, kind, unit) for sample in samples]
     return xr.DataArray(values, {over: angles}, over, attrs=attributes)
 
 
@@ -156,6 +156,13 @@ def _number(cell: str) -> float:
         return float(cell)
     except ValueError:
         return math.nan
+
+
+def _in_si(name: str, sample: Sample, kind: str, unit: str | None) -> float:
+    try:
+        return quantity(sample.value, kind, unit)
+    except ValueError as error:
+        raise ValueError(f"csv: {name}:{sample.line}: {error}") from None
 
 
 def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:

@@ -160,8 +160,8 @@ def shown(value: object) -> str:
 
 
 def shown_key(key: str) -> str:
-    """Return a key as it stands in a file: bare, or in quotes."""
-    return key if re.fullmatch(r"[\w-]+", key) else shown(key)
+    """Return a key as it stands in a file: bare, or in quotes where it needs them, cut where it is long."""
+    return key if re.fullmatch(r"[\w-]{1,60}", key) else shown(key)
 
 
 def _parted(text: str, kind: str) -> tuple[str, str]:

@@ -1,7 +1,8 @@
 """Attacks: what was tried to break linksweep, each a module that can be run for a second or for an hour.
 
 A module has ``TITLE`` (what is tried), ``ROUNDS`` (of a long run), ``SMALL`` (of the test that runs with every
-change) and ``attack(random, rounds) -> Outcome``. Every module of this folder is found by itself.
+change; 0 where even one takes long) and ``attack(random, rounds) -> Outcome``. Every module of this folder is found
+by itself.
 """
 
 from __future__ import annotations

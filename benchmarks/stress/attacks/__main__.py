@@ -17,7 +17,7 @@ RESULTS = Path(__file__).parents[2] / "ATTACKS.md"
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the attacks and print what they tried and what went wrong; return 1 where anything did."""
     options = _parser().parse_args(arguments)
-    chosen = [attack for attack in attacks() if options.only in attack.name]
+    chosen = [attack for attack in attacks() if options.only in attack.name and _rounds(attack, options)]
     outcomes = []
     for attack in chosen:
         outcomes.append(attack.run(np.random.default_rng(options.seed), _rounds(attack, options)))
@@ -38,7 +38,11 @@ def _row(attack: Attack, outcome: Outcome) -> str:
 
 
 def _head(options: argparse.Namespace) -> str:
-    words = f" --rounds {options.rounds}" * bool(options.rounds) + " --small" * options.small
+    words = (
+        f" --only {options.only}" * bool(options.only)
+        + f" --rounds {options.rounds}" * bool(options.rounds)
+        + " --small" * options.small
+    )
     return f"# Attacks\n\nWritten by `python -m benchmarks.stress.attacks --seed {options.seed}{words} --write`."
 
 

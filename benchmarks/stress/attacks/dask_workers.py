@@ -21,7 +21,7 @@ import linksweep as ls
 from . import Outcome
 
 TITLE = "workers of a cluster killed during a study: byte-equal in the end, nothing left behind"
-ROUNDS, SMALL = 60, 1
+ROUNDS, SMALL = 60, 0
 
 CHUNK, DESIGNS = 4, 40
 KILLS = 2
