@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import INDICES
-from linksweep.surface.atomic import whole
+from linksweep.surface.atomic import ending_of, whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,9 +54,12 @@ def to_csv(ds: xr.Dataset, path: str | os.PathLike) -> None:
 
     Raises
     ------
+    ValueError
+        When the name of the file does not end in .csv.
     OSError
         When the folder is missing, cannot be written or is full; what was there before stays.
     """
+    ending_of(path, (".csv",))
     table = to_pandas(ds)
     with whole(path) as temporary:
         table.map(_no_formula).rename(columns=_no_formula).to_csv(temporary, index=False, encoding="utf-8")

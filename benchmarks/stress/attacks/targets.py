@@ -41,7 +41,12 @@ def device(path: Path) -> None:
     os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
 
 
-WRITERS: tuple[Callable[[Path], object], ...] = (text, lambda path: ls.save(PEAKS, path), PEAKS.linksweep.to_csv)
+WRITERS: tuple[tuple[str, Callable[[Path], object]], ...] = (
+    ("", text),
+    (".nc", lambda path: ls.save(PEAKS, path)),
+    (".csv", PEAKS.linksweep.to_csv),
+)
+"""Each with the ending of the names that it takes."""
 FILES: tuple[Callable[[Path], None], ...] = (Path.touch, lambda path: None)
 OTHERS: tuple[Callable[[Path], None], ...] = (Path.mkdir, pipe, bound, *((device,) if os.geteuid() == 0 else ()))
 
@@ -56,12 +61,12 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 
 def _problems(folder: Path, random: np.random.Generator) -> list[str]:
     made = (*FILES, *OTHERS)[random.integers(len(FILES + OTHERS))]
-    writer = WRITERS[random.integers(len(WRITERS))]
-    length = int(random.integers(1, 60 if made is bound else LONGEST + 1))  # a socket's path is short
-    target = folder / ("n" * length)
+    ending, writer = WRITERS[random.integers(len(WRITERS))]
+    length = int(random.integers(1 + len(ending), 60 if made is bound else LONGEST + 1))  # a socket's path is short
+    target = folder / ("n" * (length - len(ending)) + ending)
     made(target)
     links = int(random.integers(3))
-    path = _linked(folder, target, links)
+    path = _linked(folder, target, links, ending)
     before = _kinds(folder)
     try:
         writer(path)
@@ -75,10 +80,10 @@ def _problems(folder: Path, random: np.random.Generator) -> list[str]:
     return problems + [f"{name}: refused is {refused}"] * (refused != (made in OTHERS))
 
 
-def _linked(folder: Path, target: Path, links: int) -> Path:
+def _linked(folder: Path, target: Path, links: int, ending: str) -> Path:
     """Return a link to a link … to the target."""
     for number in range(links):
-        link = folder / f"link{number}"
+        link = folder / f"link{number}{ending}"
         link.symlink_to(target)
         target = link
     return target
