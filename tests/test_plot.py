@@ -71,7 +71,8 @@ def test_forces_are_closed_at_360_degrees_and_read_from_magnitudes_as_well(cycle
 
 def test_angles_in_any_order_are_drawn_in_order_and_a_part_of_a_turn_is_not_closed():
     ax = plot.forces(ls.sweep(SCENES["press"], theta2=[50.0, 10.0, 30.0]), ["F12"])
-    assert ax.lines[0].get_xdata().tolist() == [10.0, 30.0, 50.0]
+    drawn = ax.lines[0].get_xdata()
+    assert (np.diff(drawn) > 0.0).all() and {10.0, 30.0, 50.0} <= {*drawn}
     assert ax.get_xlim() == (10.0, 50.0)
 
 
@@ -81,9 +82,11 @@ def test_gaps_stay_gaps_and_say_why(cycles):
     assert 0 < bad.sum() < bad.size
     last, first = ds.theta2.values[np.flatnonzero(np.diff(bad.astype(int)))] + (0.0, 0.5)
     for ax in (plot.forces(ds), plot.torque(ds)):
-        curve = next(curve for curve in ax.lines if len(curve.get_xdata()) == bad.size + 1)
-        np.testing.assert_array_equal(np.isnan(curve.get_ydata()[:-1]), bad)
-        assert [(p.get_x(), p.get_x() + p.get_width()) for p in ax.patches] == [(last, first)]
+        curve = next(curve for curve in ax.lines if len(curve.get_xdata()) > bad.size)
+        sampled = np.isin(curve.get_xdata(), ds.theta2)
+        np.testing.assert_array_equal(np.isnan(curve.get_ydata()[sampled]), bad)
+        ((start, stop),) = [(p.get_x(), p.get_x() + p.get_width()) for p in ax.patches]
+        assert last <= start < last + 0.5 and first - 0.5 < stop <= first  # a peak without bound is at the toggle
         assert [text.get_text() for text in ax.texts] == ["cannot assemble"]
 
 
@@ -95,9 +98,9 @@ def test_what_grows_without_bound_is_marked_as_off_the_scale(cycles):
     assert np.nanmedian(size_of(ds, "F12")) > 0.2 * ax.get_ylim()[1]  # what is usual fills the axis
     (text,) = texts(ax)
     assert text.startswith("off scale:")
-    for pin, value in largest.items():
+    for pin in PINS:
         assert line(ax, f"_peak {pin}").get_ydata()[0] == ax.get_ylim()[1]
-        assert f"{np.format_float_positional(value, 4, unique=False, fractional=False).rstrip('.')} N" in text
+    assert text.count("∞ N") == len(PINS)
 
 
 def test_a_short_pulse_far_from_a_gap_is_shown_whole():
@@ -121,10 +124,9 @@ def test_torque_marks_both_extremes(drive):
     for mark, extreme in zip(marks, (np.nanargmax, np.nanargmin), strict=True):
         word = extreme.__name__[6:]
         value, at = float(worst[f"{name}_{word}"]), float(worst[f"{name}_{word}_at"])
-        if np.isinf(value):  # at the dead centres of this drive: there are only the samples to mark
-            value, at = float(ds[name][extreme(ds[name].values)]), float(ds.theta2[extreme(ds[name].values)])
         assert mark.get_xdata()[0] == pytest.approx(at, abs=2e-7)
-        assert f"{word} {value:#.4g}".rstrip(".") in said
+        shown = f"{value:#.4g}".rstrip(".").replace("inf", "∞")  # at the dead centres of this drive
+        assert f"{word} {shown}" in said
 
 
 def test_bearing_diagram_has_equal_scales_and_its_ticks_at_their_angles(cycles):
@@ -176,9 +178,11 @@ def test_the_force_on_a_massless_link_without_loads_lies_along_it(pin, massless)
 def test_crank_axes_at_90_degrees_and_the_reaction(cycles):
     ds = cycles["press"].sel(theta2=[60.0, 90.0, 120.0])
     x, y = line(plot.bearing(ds, "F32", "link"), "_locus F32").get_data()
+    at = np.flatnonzero(np.isin(with_peaks(ds).theta2, ds.theta2))
+    x, y = x[at], y[at]
     np.testing.assert_allclose((x[1], y[1]), (ds.F32y[1], -ds.F32x[1]), rtol=1e-12)
     x, y = line(plot.bearing(ds, "F23"), "_locus F23").get_data()
-    np.testing.assert_array_equal((x, y), (-ds.F32x, -ds.F32y))
+    np.testing.assert_array_equal((x[at], y[at]), (-ds.F32x, -ds.F32y))
 
 
 @pytest.mark.parametrize("name", SCENES)

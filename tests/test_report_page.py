@@ -13,6 +13,7 @@ import xarray as xr
 from html_page import Page
 
 import linksweep as ls
+from linksweep.results.peaks import peaks_of_part
 from linksweep.scene.examples import names
 from linksweep.scene.file import parse_scene
 from linksweep.surface import page_figures, page_inputs
@@ -294,7 +295,10 @@ def test_part_of_a_turn(undrawn):
     found = Page(page(scene, part=(-50.0, 50.0)))
     assert not found.warning
     assert found.rows("Checks")["assembly"][1][0] == found.rows("Checks")["toggles"][1][0] == "ok"
-    expected = ls.peaks(scene, theta2=np.linspace(-50.0, 50.0, 1001))
+    expected = peaks_of_part(scene, scene.mechanism.peak_quantities("crank"), (-50.0, 50.0))
+    sampled = ls.peaks(scene, theta2=np.linspace(-50.0, 50.0, 1001))
+    assert float(expected.F32_peak) == pytest.approx(float(sampled.F32_peak), rel=1e-4)
+    assert float(expected.F32_peak) >= float(sampled.F32_peak)
     assert_peaks_are(found, expected, {"F12": "F₁₂", "F32": "F₃₂", "F43": "F₄₃", "F14": "F₁₄", "T12": "T₁₂"})
     assert len(found.images) == 9
     assert Page(page(scene, part=(-70.0, 50.0))).rows("Checks")["toggles"][1][0] == "caution"
@@ -359,7 +363,7 @@ def test_command_line(undrawn, capsys):
     assert "<h1>car &lt;1&gt;</h1>" in Path("report.html").read_text(encoding="utf-8")
     assert main(["report", "car <1>.toml", "-o", "half.html", "--title", "Half", "--theta2", "0", "90"]) == 0
     half = Page(Path("half.html").read_text(encoding="utf-8"))
-    assert half.texts["h1"] == "Half" and "samples 0.1° apart" in half.texts["p"]
+    assert half.texts["h1"] == "Half" and "Peaks are exact" in half.texts["p"]
     assert main(["report", "car <1>.toml", "-o", "report.pdf"]) == 2
     assert capsys.readouterr().err.startswith("linksweep: report.pdf: its ending must be .html or .htm")
     assert sorted(path.name for path in Path().iterdir()) == ["car <1>.toml", "half.html", "report.html"]

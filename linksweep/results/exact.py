@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,11 +23,13 @@ from linksweep.results.between import Array, Group, Places, empty, groups, in_pe
 from linksweep.results.compute import compute, only_where
 from linksweep.results.paths import (
     QUARTER,
+    Part,
     Paths,
     about_approaches,
     about_approaches_on_arcs,
     about_breaks,
     arcs,
+    arcs_within,
     limits,
     turns,
 )
@@ -71,14 +74,29 @@ def exact_peaks(
     return found
 
 
-def _along_paths(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, Found]:
-    """Peaks of a scene whose loads change with the angle in ways that only the scene knows."""
+def peaks_within(scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None) -> dict[str, Found]:
+    """Return peaks of each signal between two angles [degree] alone, their ends included; angles are between them."""
+    found = _along_paths(scene, signals, threads, (partial(arcs_within, part),))
+    if may_have_poles(scene, signals):
+        for group in groups(scene, (*signals, "assembly")):
+            raise_to_poles(group, found, threads, part)
+    middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
+    for *_, angle, _beyond, _samples in found.values():
+        away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
+        angle.values[...] = middle + np.clip(away, -half, half)
+    return found
+
+
+def _along_paths(
+    scene: Scene, signals: tuple[str, ...], threads: int | None, paths: tuple[PathsOf, ...] = ()
+) -> dict[str, Found]:
+    """Peaks of a scene whose loads change with the angle in ways that only the scene knows; or along given paths."""
     found = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     for group in groups(scene, (*signals, "assembly")):
         (kinds,) = group.constants("assembly")
         for kind in (WHOLLY, PARTLY):
             if np.any(kinds == kind):
-                follow(group.some(kinds == kind), found, _paths(scene, kind), threads)
+                follow(group.some(kinds == kind), found, paths or _paths(scene, kind), threads)
     return found if scene.quick.all else {signal: _doubted(scene, signal, peak) for signal, peak in found.items()}
 
 
@@ -216,9 +234,12 @@ def _follow(group: Group, found: dict[str, Found], paths_of: PathsOf, threads: i
         _raise(peak, place, Best(*(numbers[:, k] for numbers in best)))
 
 
-def raise_to_poles(group: Group, found: dict[str, Found], threads: int | None) -> None:
-    """Make infinite what has a pole."""
+def raise_to_poles(group: Group, found: dict[str, Found], threads: int | None, part: Part | None = None) -> None:
+    """Make infinite what has a pole, in a part of the period if there is one."""
     row, angle, infinite = poles(group, tuple(found), threads)
+    if part is not None:
+        there = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
+        row, angle, infinite = row[there], angle[there], infinite[there]
     places, angle = group.some(row).places, _place(angle, group.scene.period)
     for k, peak in enumerate(found.values()):
         at, there = _flat(peak.value, places, len(row))[infinite[:, k]], angle[infinite[:, k]]

@@ -7,6 +7,7 @@ there is smooth in x.
 
 from __future__ import annotations
 
+import math
 from functools import singledispatch
 from typing import Any, NamedTuple
 
@@ -37,6 +38,10 @@ KINK_STEPS = 3
 """Steps of the false position towards a kink between two samples: a search finds it from there."""
 NEAREST = 1e-5
 """Nearer to the end of an arc, in x, rounding outweighs what is left to gain."""
+NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
+"""Turns away from the nearest in which an arc may still reach into a piece."""
+LONGEST_PIECE = 180.0
+"""Degrees of a part that are followed by one path."""
 MOST_CUTS = 200
 """Cuts where something over the revolution is quick: more do not help a mean."""
 QUARTER = 0.5 * np.pi
@@ -90,7 +95,7 @@ def turns(group: Any) -> Paths:
     even = np.broadcast_to(even, (len(group.designs), len(even)))
     pinched = _samples_of_period(group)
     sides, jumps = _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
-    quick, close = _quick(group), _cuts_at_approaches(group)
+    quick, close = _quick(group), _at_approaches(group)[:, ::7]
     samples, edges = (even, pinched, sides, quick), (even[:, ::30], pinched[:, ::2], jumps, close, _thinned(quick))
     x, cuts = (_in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
     before, after = _neighbours(x, period)
@@ -224,13 +229,13 @@ def _approaches(group: Group) -> Approaches:
     return joined([approaches_of_turns(group), graded._replace(row=pinched[graded.row])])
 
 
-def _cuts_at_approaches(group: Group, angles: Array | None = None) -> Array:
-    """Return cuts (design, cut) about closest approaches [degree], in the whole period or between some angles; NaN
-    where other designs have more."""
+def _at_approaches(group: Group, angles: Array | None = None) -> Array:
+    """Return samples (design, sample) about closest approaches [degree], in the whole period or between some angles;
+    NaN where other designs have more."""
     if not group.scene.approaches():
         return np.empty((len(group.designs), 0))
     close = _approaches(group) if angles is None else approaches(group, angles)
-    return close.by_design(len(group.designs))[:, ::7]
+    return close.by_design(len(group.designs))
 
 
 # -------------------------------------------------------------------------------------------------- arcs
@@ -238,15 +243,39 @@ def _cuts_at_approaches(group: Group, angles: Array | None = None) -> Array:
 
 def arcs(group: Group) -> Paths:
     """The one or two arcs on which each of these designs can be assembled; not those on which nothing is ok."""
-    first, last = limits(group)
+    return _along(group, limits(group), limits(group))
+
+
+def arcs_within(part: Part, group: Group) -> Paths:
+    """Return what lies between two angles [degree] of the arcs of these designs, or of their turns, in pieces."""
+    toggles = limits(group)
+    none = (np.full((len(group.designs), 1), np.nan),) * 2
+    return _along(group, _pieces(group, part, toggles), toggles or none, closely=True)
+
+
+def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], closely: bool = False) -> Paths:
+    first, last = ends
     row, which = np.nonzero(np.isfinite(first))
     middle, half = 0.5 * (first + last)[row, which], 0.5 * (last - first)[row, which]
-    x, cuts = _arc_samples(group.some(row), middle, half)
+    x, cuts = _arc_samples(group.some(row), middle, half, closely)
     before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
     before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
-    steps = _steps(first[row], last[row], middle, half)
+    steps = _steps(toggles[0][row], toggles[1][row], middle, half)
     paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
     return paths.some(_ok_somewhere(group, paths))
+
+
+def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Starts and ends (design, piece) of a part, where these designs can be assembled [degree]; NaN of other pieces."""
+    edges = np.linspace(*part, 1 + math.ceil((part[1] - part[0]) / LONGEST_PIECE))[:, None]
+    (kind,) = group.constants("assembly")
+    whole = (kind[:, None] == 0.0) | (not toggles)
+    turn = [np.where(whole, ends, np.nan) for ends in (0.0, 360.0)]
+    arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
+    start, end = (np.concatenate(ends, axis=1)[..., None, None] for ends in zip(turn, arcs, strict=True))
+    away = 360.0 * (np.round((edges[:-1] - start) / 360.0) + NEIGHBOURS)
+    first, last = np.maximum(start + away, edges[:-1]), np.minimum(end + away, edges[1:])
+    return tuple(np.where(first < last, ends, np.nan).reshape(len(kind), -1) for ends in (first, last))
 
 
 def _ok_somewhere(group: Group, paths: Paths) -> Array:
@@ -261,20 +290,20 @@ def _ok_somewhere(group: Group, paths: Paths) -> Array:
     return ok
 
 
-def _arc_samples(group: Group, middle: Array, half: Array) -> tuple[Array, Array]:
+def _arc_samples(group: Group, middle: Array, half: Array, closely: bool) -> tuple[Array, Array]:
     """Samples and cuts in x of arcs, one for each of the group's designs: even ones, and more towards both ends, about
-    the pinches that the arc passes, and beside breaks."""
+    the pinches that the arc passes, and beside breaks; `closely` also about closest approaches."""
     even = _even_on_arc()
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
     given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
     pinched, sides, jumps = (_anywhere_beyond(_on_arc(angles, middle, half)) for angles in given)
     quick = _on_arc(_quick_and_even(group), middle, half)
-    x = _in_order(np.concatenate([shared, pinched, sides, quick], axis=1))
-    close = _on_arc(_cuts_at_approaches(group, middle[:, None] + half[:, None] * np.sin(even)), middle, half)
+    close = _on_arc(_at_approaches(group, middle[:, None] + half[:, None] * np.sin(even)), middle, half)
+    x = _in_order(np.concatenate([shared, pinched, sides, quick, *[close] * closely], axis=1))
     # none near the ends: what has a mean is smooth there, and rounding spoils what lies nearer
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
-    return x, _in_order(np.concatenate([shared, pinched[:, ::2], jumps, close, _thinned(quick)], axis=1))
+    return x, _in_order(np.concatenate([shared, pinched[:, ::2], jumps, close[:, ::7], _thinned(quick)], axis=1))
 
 
 def _quick_and_even(group: Group) -> Array:
@@ -303,12 +332,14 @@ def _anywhere_beyond(x: Array) -> Array:
 
 
 def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
-    """Steps (path, end) small against the way, in x, to the nearest other toggle beyond each end."""
+    """Steps (path, end) small against the way, in x, to the nearest other toggle beyond each end; none at an end
+    that is no toggle: a quantity has a value there."""
     own = np.stack([middle - half, middle + half], axis=1)
     others = np.concatenate([first, last], axis=1)
     away = np.abs(np.mod(own[:, :, None] - others[:, None, :] + 180.0, 360.0) - 180.0)
-    away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)[:, :, 1]  # the least is the end itself
-    return np.clip(0.01 * np.sqrt(2.0 * away / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
+    away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)  # the least is the end itself
+    steps = np.clip(0.01 * np.sqrt(2.0 * away[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
+    return np.where(away[:, :, 0] < ASIDE, steps, 0.0)
 
 
 @singledispatch

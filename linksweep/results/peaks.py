@@ -26,8 +26,9 @@ from linksweep.results.compute import (
     surely_ok,
 )
 from linksweep.results.cylinders import MultiCylinder
-from linksweep.results.exact import Found, exact_peaks, peaks_where
+from linksweep.results.exact import Found, exact_peaks, peaks_where, peaks_within
 from linksweep.results.lazy import by_blocks
+from linksweep.results.paths import Part
 from linksweep.results.poles import with_dead_centres
 from linksweep.results.quadrature import Power, means
 from linksweep.results.record import design_coordinates, flags, plain, provenance, variable
@@ -117,26 +118,39 @@ def peaks(
     return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads, solver=solver)
 
 
+def peaks_of_part(scene: Scene, of: Iterable[str], part: Part) -> xr.Dataset:
+    """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
+    return by_blocks(_peaks, scene, of_samples=False, names=requested("of", of), part=part)
+
+
 def _solver_problems(solver: Any, theta2: Any) -> list[str]:
     problems = choice_problems("solver", solver, SOLVERS)
     said = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
     return problems or ([said] if solver == "superposed" and theta2 is None else [])
 
 
-def _peaks(scene: Scene, names: list[str] | None, theta2: Any, threads: int | None, solver: str) -> xr.Dataset:
+def _peaks(
+    scene: Scene,
+    names: list[str] | None,
+    theta2: Any = None,
+    threads: int | None = None,
+    solver: str = "fast",
+    part: Part | None = None,
+) -> xr.Dataset:
     """The same of a scene whose numbers are in memory."""
     asked = _wanted(scene, names)
     index = scene.mechanism.index
     if theta2 is None:
         refuse(angles_missing(scene))
         turns = round(scene.period / scene.mechanism.period)
-        grid, sampled = crank_grid(STATUS_ANGLES * turns, scene.period, index), scene.at_one_angle
+        looked = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
+        grid, sampled = crank_grid(looked, scene.period, index), scene.at_one_angle
     else:
         grid = in_order(crank_grid(theta2, scene.period, index))
         sampled = scene.at(grid)
     assembly = assembly_of(scene, threads)
     if theta2 is None:
-        found, averages = _exact(scene, asked, assembly, threads)
+        found, averages = _exact(scene, asked, assembly, threads, part)
         assembly = with_dead_centres(scene, assembly)
     else:
         found, averages = _of_samples(sampled, grid, asked, threads, solver)
@@ -191,10 +205,12 @@ Averages = dict[Power, Field]
 
 
 def _exact(
-    scene: Scene, wanted: list[Wanted], assembly: Field, threads: int | None
+    scene: Scene, wanted: list[Wanted], assembly: Field, threads: int | None, part: Part | None
 ) -> tuple[dict[str, Found], Averages]:
     signals = tuple(dict.fromkeys(signal for item in wanted for signal in item.signals))
     powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
+    if part is not None:
+        return peaks_within(scene, signals, part, threads), {}
     found = exact_peaks(scene, signals, assembly, threads) if signals else {}
     return found, means(scene, powers, threads) if powers else {}
 

@@ -72,8 +72,7 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     units = signals.unit(signals.components(ds, pin)[0], "N")
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
-        at = int(np.nanargmax(size))
-        tip = _peak(ax, pin, largest, np.array([x[at], y[at]]), units, shown)
+        tip = _peak(ax, pin, largest, signals.tip(x, y), units, shown)
     _ticks(ax, angles, x, y, shown)
     near = size <= BEYOND * shown
     _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
@@ -217,12 +216,11 @@ def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: s
     from linksweep.surface.labels import arrow, label
 
     beyond = largest.value > BEYOND * shown
-    tip = force * (BEYOND * shown / largest.value) if beyond else force
+    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
     direction = np.degrees(np.arctan2(force[1], force[0]))
     lines = (
         f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}",
-        *["off scale"] * beyond,
-        f"at $\\theta_2$ = {signals.angle_text(largest.angle)}",
+        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
         f"direction {direction:.1f}°".replace("-", "−"),
     )
     arrow(ax, np.zeros(2), tip, VERMILION)

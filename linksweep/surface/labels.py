@@ -151,6 +151,7 @@ class Ink:
 
 def _dense(points: np.ndarray) -> np.ndarray:
     """The points of a line with 2000 or more in all, evenly between each two; NaN where the line has a gap."""
+    points = np.where(np.isfinite(points), points, np.nan)
     steps = max(1, 2000 // max(len(points), 1))
     between = np.linspace(0.0, 1.0, steps, endpoint=False)[:, None, None]
     filled = points[:-1] + (points[1:] - points[:-1]) * between

@@ -26,12 +26,13 @@ from linksweep.surface.atomic import ending_of
 from linksweep.surface.cylinder_page import parts_of
 from linksweep.surface.markup import Markup, joined, safe, section, tag
 from linksweep.surface.page_inputs import quantity
-from linksweep.surface.page_results import STEPS, Range, Results, results_of
+from linksweep.surface.page_results import Range, Results, results_of
 from linksweep.surface.scene_at import scene_at
 from linksweep.surface.storage import write_text
 
 ENDINGS = (".html", ".htm")
 ADVICE = ": a report is a page, which a browser prints, to PDF as well"
+EXACTNESS = "Peaks are exact; the bound says how much higher one could be."
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
 
 
@@ -50,7 +51,7 @@ def report(
         new one is complete
     title : its heading; by default the kind of mechanism
     theta2 : (first, last) crank angle [degree] of a machine that moves over part of a turn, as a tipper does: checks,
-        figures and peaks are then of this part, peaks the largest of samples a tenth of a degree apart
+        figures and peaks are then of this part
 
     Raises
     ------
@@ -120,14 +121,8 @@ def _filled(parts: Mapping[str, Any]) -> str:
 
 def _left(results: Results) -> Iterator[Markup]:
     yield section("Machine" if results.loop else "Motion", page_inputs.settings(results.scene))
-    yield section("Peaks", page_tables.peaks(results), tag("p", _exactness(results.part), class_="note"))
+    yield section("Peaks", page_tables.peaks(results), tag("p", EXACTNESS, class_="note"))
     yield section("Geometry", page_tables.geometry(results))
-
-
-def _exactness(part: Range | None) -> str:
-    if part is None:
-        return "Peaks are exact; the bound says how much higher one could be."
-    return f"Peaks are the largest of samples {1.0 / STEPS:g}° apart."
 
 
 def _right(results: Results) -> Iterator[Markup]:

@@ -12,11 +12,11 @@ from linksweep.results.check import check
 from linksweep.results.duty import duty, steady_problems, turning_problems
 from linksweep.results.flywheel import flywheel
 from linksweep.results.geometry import geometry
-from linksweep.results.peaks import peaks
+from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
-STEPS = 10  # samples in a degree: the peaks that the figures mark agree with the exact ones in the digits shown
+STEPS = 10  # samples in a degree
 SHAKING = ("Fs", "Ms")
 OF_LINKAGE = (*SHAKING, "power", "transmission_angle")
 OF_CAR = ("a_total", "speed")
@@ -79,7 +79,7 @@ def results_of(scene: Scene, part: Range | None = None) -> Results:
     theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
     loop = isinstance(scene.mechanism, LoopTrack)
     cycle = sweep(scene, theta2, None if loop else _outputs(scene))
-    worst = _exact(scene) if part is None else peaks(scene, [*_sought(scene), *_others(scene)], theta2)
+    worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
     found = Results(scene, part, cycle, worst, check(scene))
     if loop or part is not None:
         return found
@@ -104,18 +104,21 @@ def _sought(scene: Scene) -> tuple[str, ...]:
     return scene.mechanism.peak_quantities(scene.drive)
 
 
+def _peaks_of(scene: Scene) -> list[str]:
+    return [*_sought(scene), *(f"{name}_bound" for name in _sought(scene)), *_others(scene)]
+
+
 def _others(scene: Scene) -> tuple[str, ...]:
     return OF_CAR if isinstance(scene.mechanism, LoopTrack) else OF_LINKAGE
 
 
 def _exact(scene: Scene) -> xr.Dataset:
     """Exact peaks, with the bounds of what is sought; of a whole revolution means as well."""
-    sought = _sought(scene)
-    found = peaks(scene, [*sought, *(f"{name}_bound" for name in sought), *_others(scene)])
+    found = peaks(scene, _peaks_of(scene))
     if int(found["status"]):
         return found
     shaking = [name for name in SHAKING if name in _others(scene)]
-    averages = [f"{name}_{kind}" for name in (*sought, *shaking) for kind in ("mean", "rms")]
+    averages = [f"{name}_{kind}" for name in (*_sought(scene), *shaking) for kind in ("mean", "rms")]
     return found.assign(peaks(scene, averages).data_vars)
 
 

@@ -1,8 +1,8 @@
 """All plots by name, and the page that shows a cycle: mechanism, forces, torque and the bearing of the worst pin.
 
 Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
-settings. Peaks marked are those of `linksweep.peaks` where the Dataset is a whole cycle of one design, which holds its
-scene; else those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in
+settings. Peaks marked are the exact ones of a Dataset of one design that holds its scene, over
+the angles from its first to its last; else those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in
 dashes, so that one force on top of another is seen, in grey too.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms import LoopTrack
@@ -90,8 +91,10 @@ def cycle(ds: xr.Dataset) -> Figure:
     if LoopTrack.index in ds.dims:
         return loop(ds)
     signals.require_angles(ds)
-    ds = with_peaks(ds)
+    samples, ds = ds, with_peaks(ds)
     pin, angle = _most_loaded(ds)
+    bounded = not np.isinf(signals.magnitude(ds, pin)).any()
+    angle = angle if bounded else _most_loaded(samples)[1]
     drawing = drawing_of_results(ds)
     with small_type():
         layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
@@ -100,7 +103,8 @@ def cycle(ds: xr.Dataset) -> Figure:
         forces(ds, ax=panels[0, 1])
         bearing(ds, pin, ax=panels[1, 0])
         torque(ds, ax=panels[1, 1])
-        where = f"Largest pin force, at $\\theta_2$ = {signals.angle_text(angle)}"
+        where = "Largest pin force, at" if bounded else "Beside infinite pin forces, at"
+        where += f" $\\theta_2$ = {signals.angle_text(angle)}"
         kind = kind_of(drawing, force_names(ds, None)).capitalize()
         drive = signals.drive_kind(signals.drive_name(ds)).capitalize()
         titles = (where, f"{kind} forces", f"Load of {drawing.said(pin)}: {signals.symbol(pin)}", drive)

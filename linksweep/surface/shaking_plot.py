@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 ENDING = "_amplitude"
 TICK = 30.0  # degrees of the crank between dots
+BEYOND = 1.1  # of the largest force shown: forces larger than that are off the scale
 LABELLED = 90.0  # degrees between dots with a number
 
 
@@ -60,9 +61,14 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     grid(ax)
     for line in (ax.axhline, ax.axvline):
         line(0.0, color=GREY, linewidth=0.8, zorder=2.0)
-    ax.plot(x, y, color=BLUE, label=f"_path {name}")
-    _dots(ax, angles, x, y)
-    _largest(ax, name, angles, x, y, signals.unit(ds[f"{name}x"], "N"))
+    size = np.hypot(x, y)
+    largest = signals.peak(angles, size)
+    shown = signals.scale([size], [largest])
+    near = [np.where(size <= BEYOND * shown, part, np.nan) for part in (x, y)]
+    ax.plot(*near, color=BLUE, label=f"_path {name}")
+    _dots(ax, angles, *near)
+    if largest and largest.value > 0.0:
+        _largest(ax, name, largest, signals.tip(x, y), shown, signals.unit(ds[f"{name}x"], "N"))
     ax.margins(0.14)
     for axis, said in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
         words = "shaking force " if name == "Fs" else "force "
@@ -82,18 +88,18 @@ def _dots(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
             label(ax, *point, (said + signals.angle_text(angle), BLUE))
 
 
-def _largest(ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.ndarray, units: str) -> None:
+def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, shown: float, units: str) -> None:
     from linksweep.surface.labels import arrow, label
 
-    peak = signals.peak(angles, np.hypot(x, y))
-    if not peak or peak.value == 0.0:
-        return
-    k = int(np.nanargmax(np.hypot(x, y)))
-    tip = np.array([x[k], y[k]])
+    beyond = peak.value > BEYOND * shown
+    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
     arrow(ax, np.zeros(2), tip, VERMILION)
     ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")
-    value = f"$F_{{{name[1:]}}}$ = {signals.number(peak.value)} {units}"
-    label(ax, *tip, (value, VERMILION), (f"at $\\theta_2$ = {signals.angle_text(peak.angle)}", VERMILION))
+    lines = (
+        f"$F_{{{name[1:]}}}$ = {signals.number(peak.value)} {units}",
+        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(peak.angle)}",
+    )
+    label(ax, *tip, *((line, VERMILION) for line in lines))
 
 
 def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:

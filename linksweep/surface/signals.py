@@ -30,7 +30,7 @@ class Gap(NamedTuple):
 
 
 class Peak(NamedTuple):
-    """Where a signal is largest: crank angle [degree], value, and whether the cycle has a gap right beside it."""
+    """Where a signal is largest: crank angle [degree], value, and whether the cycle has a gap or a pole beside it."""
 
     angle: float
     value: float
@@ -157,7 +157,17 @@ def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
         return None
     k = int(np.nanargmax(values))
     beside = values[max(k - 1, 0) : k + 2]
-    return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any()))
+    return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any() or np.isinf(values[k])))
+
+
+def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Components (x, y) of the largest force; of an infinite one, those beside it, which have its direction."""
+    sizes = np.hypot(x, y)
+    k = int(np.nanargmax(sizes))
+    if np.isinf(sizes[k]):
+        beside = [j for j in (k - 1, k + 1) if 0 <= j < len(sizes) and np.isfinite(sizes[j])]
+        k = max(beside, key=lambda j: float(sizes[j]))
+    return np.array([x[k], y[k]])
 
 
 def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
@@ -188,6 +198,8 @@ def number(value: float) -> str:
     """Four significant digits, as one writes them."""
     if value == 0.0:
         return "0"
+    if np.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
     if not 1e-3 <= abs(value) < 1e7:
         return f"{value:.3e}".replace("-", "−")
     return (
