@@ -1,9 +1,9 @@
 """All plots by name, and the page that shows a cycle: mechanism, forces, torque and the bearing of the worst pin.
 
 Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
-settings. Peaks marked are the exact ones of a Dataset of one design that holds its scene, over
-the angles from its first to its last; else those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in
-dashes, so that one force on top of another is seen, in grey too.
+settings. Peaks marked are the exact ones, over the angles of a Dataset of one design that holds its scene; else
+those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in dashes, so
+that one force on top of another is seen, in grey too.
 """
 
 from __future__ import annotations
