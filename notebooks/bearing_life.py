@@ -83,7 +83,8 @@ for ax in (left, right):
 #
 # $$P = \left(\frac{\sum F^p\,|\Delta\psi|}{\sum |\Delta\psi|}\right)^{1/p}, \qquad L_{10} = \left(\frac{C}{P}\right)^p \text{ million revolutions},$$
 #
-# with the bearing's capacity C from the catalogue. For pin C, step by step:
+# with the bearing's capacity C from the catalogue. For pin C, step by step, as a sum over half degrees (`ls.bearings` integrates,
+# so that its answer does not depend on steps):
 
 # %%
 pin_c = ls.sweep(conveyor, outputs=["F43", "omega3", "omega4"])
@@ -188,6 +189,6 @@ ax.grid(alpha=0.3)
 # is so small that the rollers do not reach each other's tracks, lubrication decides and not fatigue.
 
 # %%
-assert abs(hours / float(found.L10h.sel(pin="C")) - 1) < 1e-12
+assert abs(hours / float(found.L10h.sel(pin="C")) - 1) < 1e-4  # half degrees miss where the pin turns round
 assert abs(pump.equivalent_load / 1000 - printed).max() < 0.005
 assert abs(float(roller.L10h) / 50_000 - 1) < 0.002

@@ -112,7 +112,8 @@ def test_one_impossible_design_spoils_only_itself():
                 np.testing.assert_array_equal(mine.isel(design=[0, 2, 4]).values, value.values, err_msg=str(name))
                 bad = mine.isel(design=[1, 3, 5]).values
                 assert np.isnan(bad).all() if bad.dtype.kind == "f" else (bad != 0).all(), name
-    assert ls.sweep(batch, 24).status.isel(design=[1, 3, 5]).values.tolist() == [[1] * 24] * 3
+    status = ls.sweep(batch, 24).status.isel(design=[1, 3, 5]).values
+    assert status.tolist() == [[1] * 24, [1] * 24, [2] * 24]  # squares of such ratios say nothing: toggle
     assert ls.peaks(batch, theta2=24).status.values.tolist() == [0, 2, 0, 2, 0, 2]
 
 

@@ -195,9 +195,11 @@ def test_load_diagrams_show_these_forces(frame):
     found = ls.bearings(PRESS, theta2=90).sel(frame=frame)
     for ax, (pin, force) in zip(figure.axes, zip("ABCD", ("F12", "F32", "F43", "F14"), strict=True), strict=True):
         (locus,) = (line for line in ax.get_lines() if line.get_label() == f"_locus {force}")
-        drawn = np.array(locus.get_xydata())[:-1]
-        at = found.sel(pin=pin)
-        np.testing.assert_allclose(drawn, np.stack([at.Fx, at.Fy], axis=-1), rtol=1e-9, atol=1e-9)
+        drawn, at = np.array(locus.get_xydata()), found.sel(pin=pin)
+        samples = np.stack([at.Fx, at.Fy], axis=-1)  # the locus has the places of exact peaks besides
+        off = np.abs(drawn[:, np.newaxis] - samples).max(axis=-1)
+        assert off.min(axis=0).max() < 1e-9 * np.abs(samples).max()
+        assert np.all(np.diff(off.argmin(axis=0)) > 0)
         assert pin in ax.get_title(loc="left")
     mpl.pyplot.close(figure)
 

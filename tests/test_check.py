@@ -240,7 +240,7 @@ def test_a_batch_has_the_dims_and_labels_of_its_lengths_only():
     turned = xr.DataArray([0.0, 90.0], {"angle": [0, 90]}, "angle")
     links = {"coupler": ls.Link(0.22, xr.DataArray([1.0, 2.0], dims="mass"), 0.0), "rocker": ls.Link(0.18, 0.5, 0.0)}
     mechanism = ls.FourBar(ls.Link(crank, 0.1, 0.0), **links, ground=0.2, ground_angle=turned, branch="both")
-    found = ls.check(ls.Scene(mechanism, omega2=np.cos))
+    found = ls.check(ls.Scene(mechanism, omega2=lambda theta2: 2.0 + np.cos(np.radians(theta2))))
     assert dict(found.sizes) == {"crank": 3, "angle": 2, "arc": 2, "toggle": 4}
     assert found.arc_start.dims == ("crank", "angle", "arc")
     assert found.grashof.dims == found.assembly.dims == found.transmission_angle_min.dims == ("crank",)
