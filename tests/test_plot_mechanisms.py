@@ -223,7 +223,8 @@ def test_a_jammed_arc_is_shaded_and_called_so():
     assert not (ds.status.values[~jammed] != 0).any()
     ax = plot.forces(ds)
     last, first = ds.theta2.values[np.flatnonzero(np.diff(jammed.astype(int)))] + (0.0, 0.5)
-    assert [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches] == [(last, first)]
+    ((start, stop),) = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]
+    assert last <= start < last + 0.5 and first - 0.5 < stop <= first  # forces without bound are marked where it jams
     assert [text.get_text() for text in ax.texts] == ["jammed"]
 
 
