@@ -11,10 +11,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from . import exact, grids, growth, latency, mechanisms, missed, peaks, plots, skipping, solves, threads, unknowns
-from .cases import FULL, QUICK, Size
-from .report import Groups, as_json, machine, markdown
-from .timing import Row, can_pin, one_core
+from benchmarks import plots
+from benchmarks.accuracy import grids, missed, solves
+from benchmarks.cases import FULL, QUICK, Size
+from benchmarks.report import Groups, as_json, machine, markdown
+from benchmarks.speed import exact, growth, latency, mechanisms, peaks, skipping, threads, unknowns
+from benchmarks.timing import Row, can_pin, one_core
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
 

@@ -12,8 +12,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from .peers import Array, Design, Number
+from benchmarks.rivals.peers import Array, Design, Number
 
 NINE = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
 

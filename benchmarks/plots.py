@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .exact import EXACT
-from .grids import MEDIAN, MOST, POPULATIONS
-from .report import machine
-from .solves import LINKSWEEP, NEAR, OURS, RATES
-from .timing import Row
+from benchmarks.accuracy.grids import MEDIAN, MOST, POPULATIONS
+from benchmarks.accuracy.solves import LINKSWEEP, NEAR, OURS, RATES
+from benchmarks.report import machine
+from benchmarks.speed.exact import EXACT
+from benchmarks.timing import Row
 
 Axes = Any
 HERE = Path(__file__).parent

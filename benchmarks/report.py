@@ -11,8 +11,8 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from . import limit
-from .timing import FASTER, WALL, Row
+from benchmarks.rivals import limit
+from benchmarks.timing import FASTER, WALL, Row
 
 HEADER = ("ours", "against", "figure", "goal", "met", "ours takes", "the other takes", "error", "note")
 UNITS = {"s": 1.0, "ms": 1e3, "µs": 1e6, "ns": 1e9}

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from statistics import median
 from time import get_clock_info, perf_counter, thread_time
 
-from .cases import Size
+from benchmarks.cases import Size
 
 Call = Callable[[], object]
 Clock = Callable[[], float]

@@ -1,5 +1,5 @@
 import sys
 
-from linksweep.surface.cli import main
+from linksweep.cli.main import main
 
 sys.exit(main())

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..peers import Array
+from benchmarks.rivals.peers import Array
 
 
 class Bound(NamedTuple):

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import peers
-from ..peers import Array, Design
-from . import Bound
+from benchmarks.rivals import Bound, peers
+from benchmarks.rivals.peers import Array, Design
 
 SETTLING = 8
 """Steps before the turn: so much of those in it."""

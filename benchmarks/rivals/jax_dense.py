@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..peers import FORCE_BALANCE, Array, Design
-from . import Bound
+from benchmarks.rivals import Bound
+from benchmarks.rivals.peers import FORCE_BALANCE, Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:

@@ -11,8 +11,8 @@ from functools import partial
 
 import numpy as np
 
-from ..peers import Array, Design
-from . import Bound
+from benchmarks.rivals import Bound
+from benchmarks.rivals.peers import Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import peers
-from ..peers import Array, Design
-from . import Bound
+from benchmarks.rivals import Bound, peers
+from benchmarks.rivals.peers import Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:

@@ -6,8 +6,8 @@ from functools import cache, partial
 
 import numpy as np
 
-from ..peers import FORCE_BALANCE, Array, Design
-from . import Bound
+from benchmarks.rivals import Bound
+from benchmarks.rivals.peers import FORCE_BALANCE, Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:

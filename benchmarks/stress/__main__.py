@@ -11,10 +11,10 @@ from time import perf_counter
 
 import numpy as np
 
-from . import bits, conservative
-from .families import FAMILIES, Family, chunks
-from .judge import verdict
-from .tally import Tally, table
+from benchmarks.stress import bits, conservative
+from benchmarks.stress.families import FAMILIES, Family, chunks
+from benchmarks.stress.judge import verdict
+from benchmarks.stress.tally import Tally, table
 
 RESULTS = Path(__file__).parents[1] / "STRESS.md"
 AT_ONE_ANGLE = 500

@@ -16,12 +16,11 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
+from benchmarks.stress.decimals import Array
+from benchmarks.stress.designs import FORCES, LINKS, Designs
 from linksweep.results.compute import compute
 from linksweep.results.system import equilibrated
 from linksweep.scene.grid import crank_grid
-
-from .decimals import Array
-from .designs import FORCES, LINKS, Designs
 
 LEAST = 2.0**-1022
 NUMBER = {"crank": 2, "coupler": 3, "rod": 3, "rocker": 4}

@@ -9,13 +9,12 @@ from unittest import mock
 import numpy as np
 import xarray as xr
 
+from benchmarks.stress.backward import values
+from benchmarks.stress.decimals import Array
+from benchmarks.stress.designs import FORCES, Designs
+from benchmarks.stress.families import scaled
+from benchmarks.stress.judge import answers
 from linksweep.engine import run
-
-from .backward import values
-from .decimals import Array
-from .designs import FORCES, Designs
-from .families import scaled
-from .judge import answers
 
 TURNED = ("_angle", "_y", "_torque", "omega2", "alpha2", "offset")
 """Numbers that change their sign in a mirror along x."""

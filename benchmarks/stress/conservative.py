@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import linksweep as ls
-
-from .decimals import Array
-from .designs import Designs
-from .families import Random, decades, four_bar_of, slider_crank_of
-from .judge import EPS
+from benchmarks.stress.decimals import Array
+from benchmarks.stress.designs import Designs
+from benchmarks.stress.families import Random, decades, four_bar_of, slider_crank_of
+from benchmarks.stress.judge import EPS
 
 ANGLES = 1440
 """Samples a turn: the mean over them is that over the turn, to less than rounding, for machines far from toggles."""

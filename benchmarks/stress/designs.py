@@ -10,10 +10,9 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from .decimals import Array, Number, Vector, directions, exactly, fifty_digits, root
-from .machines import MACHINES
-from .spread import FirstOrder
+from benchmarks.stress.decimals import Array, Number, Vector, directions, exactly, fifty_digits, root
+from benchmarks.stress.machines import MACHINES
+from benchmarks.stress.spread import FirstOrder
 
 LINKS = {
     "four-bar": ("crank", "coupler", "rocker"),

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .decimals import Array
-from .designs import Designs
+from benchmarks.stress.decimals import Array
+from benchmarks.stress.designs import Designs
 
 Random = np.random.Generator
 Family = Callable[[Random, int], Designs]

@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from .backward import LEAST, backward_errors, values
-from .decimals import Array, exactly, fifty_digits
-from .designs import FORCES, LINKS, Designs
+from benchmarks.stress.backward import LEAST, backward_errors, values
+from benchmarks.stress.decimals import Array, exactly, fifty_digits
+from benchmarks.stress.designs import FORCES, LINKS, Designs
 
 EPS = 2.0**-52
 SURELY = 1e-5

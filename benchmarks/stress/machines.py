@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .decimals import Number, Vector, root, sign
+from benchmarks.stress.decimals import Number, Vector, root, sign
 
 Numbers = Mapping[str, Any]
 Results = dict[str, Number]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .decimals import Array
+from benchmarks.stress.decimals import Array
 
 
 class FirstOrder:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .decimals import Array
-from .judge import Verdict
+from benchmarks.stress.decimals import Array
+from benchmarks.stress.judge import Verdict
 
 
 class Goal(NamedTuple):

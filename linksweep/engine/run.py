@@ -17,13 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine import reduce
-from linksweep.engine.compile import compiled
-from linksweep.engine.fuse import Fused, fuse, reductions_source
-from linksweep.engine.memory import require_memory
-from linksweep.engine.plan import Plan
-from linksweep.engine.trace import Node
-from linksweep.engine.writer import TILE, Reduction
+from linksweep.base.memory import require_memory
+from linksweep.engine.kernel import reduce
+from linksweep.engine.kernel.compile import compiled
+from linksweep.engine.kernel.fuse import Fused, fuse, reductions_source
+from linksweep.engine.kernel.writer import TILE, Reduction
+from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.plan import Plan
 
 COMPILE_AFTER = 100_000
 """Samples (angles × designs) that a plan may cost interpreted before its kernel is compiled."""

@@ -8,10 +8,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from linksweep.base.validate import Number, is_lazy, parameter, problems, refuse
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms import rounding_error
-from linksweep.mechanisms.actions import Form
-from linksweep.mechanisms.bodies import (
+from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.limits.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.rows import rounding_error
+from linksweep.mechanisms.rows.bodies import (
     Body,
     Equation,
     arm_rows,
@@ -22,10 +25,7 @@ from linksweep.mechanisms.bodies import (
     on_crank_pin,
     position_quantities,
 )
-from linksweep.mechanisms.finding import Checks
-from linksweep.mechanisms.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
-from linksweep.mechanisms.motion import (
+from linksweep.mechanisms.rows.crank import (
     BRANCH_SIGN,
     CrankDriven,
     between_rows,
@@ -35,10 +35,10 @@ from linksweep.mechanisms.motion import (
     straight_rows,
     turned,
 )
-from linksweep.mechanisms.pins import Journals, Pins, rotating
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
+from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
-from linksweep.mechanisms.validate import Number, is_lazy, parameter, problems, refuse
-from linksweep.mechanisms.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, freudenstein, planar
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}

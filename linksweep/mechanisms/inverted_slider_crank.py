@@ -9,11 +9,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from linksweep.base.validate import Number, parameter, problems, refuse
 from linksweep.engine.quantity import Table
-from linksweep.mechanisms.actions import Form
-from linksweep.mechanisms.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.finding import Checks
-from linksweep.mechanisms.inverted_slider_crank_limits import (
+from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     angles,
     classes,
     dead_centres,
@@ -21,12 +20,20 @@ from linksweep.mechanisms.inverted_slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.inverted_slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
 from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
-from linksweep.mechanisms.motion import BRANCH_SIGN, STATUS_OF_SLIDER, CrankDriven, frame_parameters, in_range, turned
-from linksweep.mechanisms.pins import Journals, Pins, rotating
+from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
+from linksweep.mechanisms.rows.crank import (
+    BRANCH_SIGN,
+    STATUS_OF_SLIDER,
+    CrankDriven,
+    frame_parameters,
+    in_range,
+    turned,
+)
+from linksweep.mechanisms.rows.inverted_slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, block_stroke
-from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 
 BLOCK_LENGTH = 1.0
 """Unit of the block's axes, which lie along and across the rocker's line."""

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.mechanisms.content import ByContent
-from linksweep.mechanisms.degrees import cos_sin
-from linksweep.mechanisms.validate import Number, overflow_problems, parameter, problems, said
+from linksweep.base.degrees import cos_sin
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import Number, overflow_problems, parameter, problems, said
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
 
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import Number, parameter, problems, refuse
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.actions import Form
-from linksweep.mechanisms.bodies import Equation
-from linksweep.mechanisms.content import ByContent
-from linksweep.mechanisms.finding import Checks
-from linksweep.mechanisms.loop_track_limits import events, lap
-from linksweep.mechanisms.motion import OverDesigns, between_rows, straight_rows
-from linksweep.mechanisms.pins import Journals, Pins
-from linksweep.mechanisms.validate import Number, parameter, problems, refuse
+from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.limits.loop_track_limits import events, lap
+from linksweep.mechanisms.rows.bodies import Equation
+from linksweep.mechanisms.rows.crank import OverDesigns, between_rows, straight_rows
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.pins import Journals, Pins
 from linksweep.physics import loop_track, planar
 
 UNKNOWNS = ("normal_force", "a_tangential")

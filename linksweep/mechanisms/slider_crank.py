@@ -9,15 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.validate import Number, parameter, problems, refuse
 from linksweep.engine.quantity import Table
-from linksweep.mechanisms.actions import Form
-from linksweep.mechanisms.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.degrees import cos_sin_rests
-from linksweep.mechanisms.finding import Checks
-from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
-from linksweep.mechanisms.motion import BRANCH_SIGN, STATUS_OF_SLIDER, CrankDriven, in_range, turned
-from linksweep.mechanisms.pins import Journals, Pins, rotating
-from linksweep.mechanisms.slider_crank_limits import (
+from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.limits.slider_crank_limits import (
     angles,
     classes,
     rod_dead_centres,
@@ -25,9 +21,13 @@ from linksweep.mechanisms.slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
+from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
+from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, CrankDriven, in_range, turned
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
+from linksweep.mechanisms.rows.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
-from linksweep.mechanisms.validate import Number, parameter, problems, refuse
 
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linksweep.mechanisms.validate import Number
+from linksweep.base.validate import Number
 
 Angles = tuple[Number, ...]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from linksweep.engine.plan import plan
 from linksweep.engine.run import Grid, evaluate
+from linksweep.engine.trace.plan import plan
 from linksweep.scene.scene import Scene
 
 

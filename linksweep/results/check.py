@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.finding import Finding
+from linksweep.mechanisms.limits.finding import Finding
 from linksweep.results.compute import require_scene
-from linksweep.results.record import design_coordinates, flags, origin_attributes
+from linksweep.results.dataset import design_coordinates, flags, origin_attributes
+from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 
@@ -60,7 +60,7 @@ def check(scene: Scene) -> xr.Dataset:
     - `overshoot` (spline) [1]: how far each spline leaves the range of its values, relative to that range; where it is
       more than 0.01 it rings, as it does beside steps
 
-    Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.four_bar_limits`.
+    Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.limits.four_bar_limits`.
 
     Raises
     ------

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.engine.plan import InputForms, Plan, plan
+from linksweep.base.validate import name_problems, refuse
 from linksweep.engine.run import Field, Grid, evaluate
-from linksweep.engine.superpose import superposed
-from linksweep.mechanisms.validate import name_problems, refuse
+from linksweep.engine.trace.plan import InputForms, Plan, plan
+from linksweep.engine.trace.superpose import superposed
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.plan import plan
+from linksweep.base.validate import choice_problems, count_problems, refuse, said
+from linksweep.engine.kernel.writer import Reduction
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, Grid, reduce_rows
-from linksweep.engine.writer import Reduction
-from linksweep.mechanisms.validate import choice_problems, count_problems, refuse, said
+from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import (
     angles_missing,
     assembly_of,
@@ -25,13 +25,13 @@ from linksweep.results.compute import (
     require_scene,
     surely_ok,
 )
-from linksweep.results.cylinders import MultiCylinder
-from linksweep.results.exact import Found, exact_peaks, peaks_where, peaks_within
-from linksweep.results.lazy import by_blocks
-from linksweep.results.paths import Part
-from linksweep.results.poles import with_dead_centres
-from linksweep.results.quadrature import Power, means
-from linksweep.results.record import design_coordinates, flags, plain, provenance, variable
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.dask_blocks import by_blocks
+from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
+from linksweep.results.peak_search.exact import Found, exact_peaks, peaks_where, peaks_within
+from linksweep.results.peak_search.paths import Part
+from linksweep.results.peak_search.poles import with_dead_centres
+from linksweep.results.peak_search.quadrature import Power, means
 from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
@@ -105,7 +105,9 @@ def peaks(
     """
     refuse([*count_problems("threads", threads), *_solver_problems(solver, theta2)])
     if isinstance(scene, MultiCylinder):
-        from linksweep.results.cylinder_peaks import peaks_of_cylinders  # here: it takes the peaks of one cylinder
+        from linksweep.results.cylinders.cylinder_peaks import (
+            peaks_of_cylinders,  # here: it takes the peaks of one cylinder
+        )
 
         refuse(
             []

@@ -7,14 +7,14 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.validate import refuse
 from linksweep.mechanisms import FourBar
-from linksweep.mechanisms.validate import refuse
 from linksweep.results.compute import compute, require_scene
-from linksweep.results.record import provenance, variable
+from linksweep.results.dataset import provenance, variable
 from linksweep.results.sweep import sweep
 from linksweep.results.system import as_angles
+from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 FORMULAS = {

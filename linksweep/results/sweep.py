@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import choice_problems, count_problems, refuse
+from linksweep.base.validate import choice_problems, count_problems, refuse
 from linksweep.results.compute import blank, compute, quantity_problems, requested, require_scene, sample_status
-from linksweep.results.lazy import by_blocks
-from linksweep.results.record import described
+from linksweep.results.dask_blocks import by_blocks
+from linksweep.results.dataset import described
 from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene

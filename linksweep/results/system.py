@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.conversion import to_float64
+from linksweep.base.validate import choice_problems, refuse
 from linksweep.engine.run import Field, Grid
-from linksweep.mechanisms.bodies import Equation
-from linksweep.mechanisms.conversion import to_float64
-from linksweep.mechanisms.validate import choice_problems, refuse
+from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import blank, compute, require_scene, sample_status
-from linksweep.results.record import cycle_coordinates, index_coordinate, provenance, status_attributes
+from linksweep.results.dataset import cycle_coordinates, index_coordinate, provenance, status_attributes
+from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.lazy import in_memory
 from linksweep.scene.scene import Scene
 
 FORMS = ("reduced", "document")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from linksweep.mechanisms.conversion import as_pair, to_float64
-from linksweep.mechanisms.validate import Number, Rule, is_array, number_problems, pair_problems, refuse
-from linksweep.scene.paths import numbers
+from linksweep.base.conversion import as_pair, to_float64
+from linksweep.base.validate import Number, Rule, is_array, number_problems, pair_problems, refuse
+from linksweep.scene.parameters import numbers
 from linksweep.scene.units import unit_problems
 
 

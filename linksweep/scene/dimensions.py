@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.validate import said
+from linksweep.base.validate import said
 from linksweep.scene.storable import label_problem, name_problem
 
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")

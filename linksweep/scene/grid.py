@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.engine.memory import require_memory
+from linksweep.base.conversion import all_to_float64
+from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.memory import require_memory
+from linksweep.base.validate import refuse, said
 from linksweep.engine.run import Grid
-from linksweep.mechanisms.conversion import all_to_float64
-from linksweep.mechanisms.degrees import cos_sin_rests
-from linksweep.mechanisms.validate import refuse, said
 from linksweep.scene.units import unit_problems
 
 NAMES = ("cos2", "sin2", "cos2_rest", "sin2_rest", "radians2")

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.engine.plan import InputForms
 from linksweep.engine.run import Field
-from linksweep.mechanisms.motion import OverDesigns
+from linksweep.engine.trace.plan import InputForms
+from linksweep.mechanisms.rows.crank import OverDesigns
 from linksweep.scene.dimensions import side_by_side
 
 

@@ -11,12 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.plan import plan
-from linksweep.engine.quantity import Table
-from linksweep.engine.run import Grid, evaluate
-from linksweep.mechanisms import MECHANISMS, Mechanism
-from linksweep.mechanisms.content import ByContent, content
-from linksweep.mechanisms.validate import (
+from linksweep.base.equality import ByContent, content
+from linksweep.base.validate import (
     UNITS,
     Number,
     Rule,
@@ -28,17 +24,28 @@ from linksweep.mechanisms.validate import (
     refuse,
     said,
 )
-from linksweep.scene.acceleration import acceleration, acceleration_problems
-from linksweep.scene.action import Action, Revolution, with_sound
+from linksweep.engine.quantity import Table
+from linksweep.engine.run import Grid, evaluate
+from linksweep.engine.trace.plan import plan
+from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.checked_number import said_unit_problems
+from linksweep.scene.curves.acceleration import acceleration, acceleration_problems
+from linksweep.scene.curves.interpolation import CUBIC
+from linksweep.scene.curves.over_angle import (
+    Curves,
+    at_angles,
+    overshoot_of,
+    period_of,
+    period_of_function,
+    turning_problems,
+)
+from linksweep.scene.curves.quick import Quick, quick_angles
 from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, as_field, form_of, over_designs
-from linksweep.scene.interpolation import CUBIC
-from linksweep.scene.over_angle import Curves, at_angles, overshoot_of, period_of, period_of_function, turning_problems
-from linksweep.scene.paths import bare, numbers
-from linksweep.scene.quick import Quick, quick_angles
+from linksweep.scene.loads.action import Action, Revolution, with_sound
+from linksweep.scene.parameters import bare, numbers
 
 ACCELERATION = Rule("acceleration")
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
@@ -249,7 +256,7 @@ class Scene(ByContent):
         mass = 700.0
         <BLANKLINE>
         """
-        from linksweep.scene.file import toml_of  # here: it takes scenes
+        from linksweep.scene.file.toml import toml_of  # here: it takes scenes
 
         return toml_of(self)
 

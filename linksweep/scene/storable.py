@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.mechanisms.validate import said
+from linksweep.base.validate import said
 
 NAME = re.compile(r"(\w|[^\x00-\x7f])([^\x00-\x1f/\x7f]*[^\x00-\x20/\x7f])?", re.ASCII)
 LONGEST = 255

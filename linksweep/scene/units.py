@@ -24,9 +24,9 @@ from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
 
-from linksweep.engine.cache import keep, recall
-from linksweep.mechanisms.conversion import to_float64
-from linksweep.mechanisms.validate import UNITS, did_you_mean
+from linksweep.base.cache import keep, recall
+from linksweep.base.conversion import to_float64
+from linksweep.base.validate import UNITS, did_you_mean
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import Attack, Outcome, attacks
+from benchmarks.stress.attacks import Attack, Outcome, attacks
 
 RESULTS = Path(__file__).parents[2] / "ATTACKS.md"
 

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "bearing life is that of many samples, and none where peaks are infinite"
 ROUNDS = 240

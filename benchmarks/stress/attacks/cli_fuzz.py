@@ -14,10 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.stress.attacks import Outcome
+from linksweep.cli.main import main
 from linksweep.scene.examples import names
-from linksweep.surface.cli import main
-
-from . import Outcome
 
 TITLE = "the command line with random commands, options, files and bad numbers: exit code 0 or 2, a clean message"
 ROUNDS, SMALL = 1000, 12

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "processes, six at a time, on a cold kernel cache: equal results, no temporary file left"
 ROUNDS, SMALL = 60, 2
@@ -20,7 +20,7 @@ AT_ONCE = 6
 PROGRAM = """
 import sys
 import numpy as np
-from linksweep.engine.compile import compiled
+from linksweep.engine.kernel.compile import compiled
 x = np.array([2.0])
 compiled("def kernel(x):\\n    x[0] = sqrt(x[0])\\n", "", "void(f8[::1])")(x)
 sys.stdout.buffer.write(x.tobytes())

@@ -12,9 +12,8 @@ from unittest import mock
 
 import numpy as np
 
-from linksweep.engine import compile as kernels
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
+from linksweep.engine.kernel import compile as kernels
 
 TITLE = "a kept kernel damaged, planted by others or replaced by a folder, link or pipe: compiled afresh"
 ROUNDS, SMALL = 300, 10

@@ -17,8 +17,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "workers of a cluster killed during a study: byte-equal in the end, nothing left behind"
 ROUNDS, SMALL = 60, 0

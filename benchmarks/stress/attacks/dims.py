@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "up to thirty dims over several parameters: the bits of each design alone"
 ROUNDS = 300

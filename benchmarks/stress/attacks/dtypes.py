@@ -9,10 +9,9 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-from linksweep.results.chunk import scene_digest
-from linksweep.scene.paths import free, replaced
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
+from linksweep.scene.parameters import free, replaced
+from linksweep.studies.job import scene_digest
 
 TITLE = "numbers of every dtype, alone and in arrays, are float64 of the same values"
 ROUNDS = 2000

@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import linksweep as ls
-from linksweep.scene.interpolation import OvershootWarning
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
+from linksweep.scene.curves.interpolation import OvershootWarning
 
 TITLE = "scene files and CSV columns damaged, huge or odd: a scene that sweeps, or one clean ValueError, soon"
 ROUNDS, SMALL = 5000, 40

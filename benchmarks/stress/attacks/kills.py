@@ -14,8 +14,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "kill -9 while a file is saved or a study runs: byte-equal in the end, nothing left behind"
 ROUNDS, SMALL = 400, 6

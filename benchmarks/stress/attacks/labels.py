@@ -13,8 +13,7 @@ import pandas as pd
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "odd names and labels are refused in words, or come back from every kind of file"
 ROUNDS = 2000

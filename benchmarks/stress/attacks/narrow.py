@@ -12,8 +12,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "springs and dampers whose ends pass close by, and narrow functions"
 ROUNDS, SMALL = 400, 8

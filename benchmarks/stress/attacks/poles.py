@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "dead centres of every drive: forces without bound are inf, with status 3, and all others finite"
 ROUNDS = 1500

@@ -15,8 +15,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "loads over a slider's position, by random tables and ways"
 ROUNDS, SMALL = 300, 4

@@ -13,8 +13,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "a study of three million designs: bounded memory, and rows equal to designs alone, to the bit"
 ROUNDS, SMALL = 3_000_000, 40

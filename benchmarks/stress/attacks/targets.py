@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import linksweep as ls
-from linksweep.surface.atomic import whole
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
+from linksweep.files.atomic import whole
 
 TITLE = "results written over folders, pipes, devices, sockets, links and long names: only files are replaced"
 ROUNDS, SMALL = 2000, 60

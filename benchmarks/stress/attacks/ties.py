@@ -8,8 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import linksweep as ls
-
-from . import Outcome
+from benchmarks.stress.attacks import Outcome
 
 TITLE = "symmetric machines: the force at every `_peak_at` is the peak"
 ROUNDS = 2000

@@ -3,8 +3,8 @@
 from importlib.resources import files
 from itertools import takewhile
 
-from linksweep.mechanisms.validate import choice_problems, refuse
-from linksweep.scene.file import parse_scene
+from linksweep.base.validate import choice_problems, refuse
+from linksweep.scene.file.toml import parse_scene
 from linksweep.scene.scene import Scene
 
 

@@ -1,0 +1,1 @@
+"""Measure errors beside run time, against fifty digits and against dense samples."""

@@ -1,0 +1,202 @@
+"""Does the search for peaks miss any? Random machines against the largest of many samples, which no search has chosen.
+
+The samples are the same for all designs of a kind: a dense even grid, and others graded geometrically about both
+pinches, from a radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than
+`ALLOWED`, relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1
+of their lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import linksweep as ls
+from benchmarks.cases import Size
+from benchmarks.timing import FASTER, Row
+
+ALLOWED = 1e-10
+CHUNK = 10_000
+FINEST = 1e-9
+"""Of the graded samples, the nearest to a pinch [rad]."""
+EVEN, PER_DECADE = 3600, 60
+
+Array = np.ndarray
+Random = np.random.Generator
+
+
+class Missed(NamedTuple):
+    """How many designs have a peak that falls short of a sample, by how much at most, and the one that does so most;
+    with the time that the search takes, and the samples [s]."""
+
+    designs: int
+    count: int
+    shortfall: float
+    worst: dict[str, Array]
+    seconds: float
+    samples_take: float
+
+
+class Family(NamedTuple):
+    """Random scenes of one kind, and the crank angle [degree] of one of their pinches; the other is opposite."""
+
+    scene: Callable[[Random, int], ls.Scene]
+    pinch: float = 0.0
+
+
+def rows(size: Size) -> list[Row]:
+    return [_row(name, search(family, size.machines)) for name, family in FAMILIES.items()]
+
+
+def _row(name: str, found: Missed) -> Row:
+    note = f"{found.count} of {found.designs:,} missed"
+    times = found.samples_take / found.seconds, found.seconds, found.samples_take
+    return Row(name, f"{len(angles(0.0)):,} samples", FASTER, *times, error=found.shortfall, note=note)
+
+
+def search(family: Family, designs: int, seed: int = 0) -> Missed:
+    """Peaks of so many random designs of a family against the largest samples."""
+    parts = [_part(family, min(CHUNK, designs - k), [seed, k]) for k in range(0, designs, CHUNK)]
+    worst = max(parts, key=lambda part: part.shortfall)
+    designs, count, seconds, samples_take = (
+        sum(getattr(part, field) for part in parts) for field in ("designs", "count", "seconds", "samples_take")
+    )
+    return Missed(designs, count, worst.shortfall, worst.worst, seconds, samples_take)
+
+
+def _part(family: Family, designs: int, seed: list[int]) -> Missed:
+    scene = family.scene(np.random.default_rng(seed), designs)
+    start = perf_counter()
+    found = ls.peaks(scene)
+    halfway = perf_counter()
+    dense = ls.peaks(scene, theta2=angles(family.pinch))
+    times = halfway - start, perf_counter() - halfway
+    short = shortfall(found, dense)
+    k = int(short.argmax())
+    worst = {path: array.values[k] for path, array in scene.arrays.items()}
+    return Missed(designs, int((short > ALLOWED).sum()), float(short[k]), worst, *times)
+
+
+def angles(pinch: float) -> Array:
+    """Crank angles [degree]: even ones, and geometrically graded ones about both pinches."""
+    steps = np.degrees(np.geomspace(FINEST, 1.0, round(PER_DECADE * -np.log10(FINEST))))
+    graded = [middle + side * steps for middle in (pinch, pinch + 180.0) for side in (-1.0, 1.0)]
+    even = (np.arange(EVEN) + 0.3) * (360.0 / EVEN)
+    return np.unique(np.concatenate([even, [pinch, pinch + 180.0], *graded]))
+
+
+def shortfall(found: xr.Dataset, dense: xr.Dataset) -> Array:
+    """By how much the largest samples of each design exceed its peaks, relative to the peaks; 0 where by nothing,
+    infinite where there are samples and no peak."""
+    return np.max([_short(found, dense, name) for name in _peaks_of(found)], axis=0)
+
+
+def _short(found: xr.Dataset, dense: xr.Dataset, name: str) -> Array:
+    sign = -1.0 if name.endswith("_min") else 1.0
+    peak, sample = sign * found[name].values, sign * dense[name].values
+    scale = np.abs(found[f"{name.rsplit('_', 1)[0]}_peak"].values)
+    with np.errstate(invalid="ignore"):
+        short = np.where(sample > peak, (sample - peak) / scale, 0.0)
+    return np.where(np.isnan(peak) & ~np.isnan(sample), np.inf, short)
+
+
+def _peaks_of(found: xr.Dataset) -> list[str]:
+    return [name for name in map(str, found.data_vars) if name.endswith(("_peak", "_max", "_min"))]
+
+
+# ------------------------------------------------------------------------------------------ random machines
+
+
+def _four_bar(random: Random, n: int) -> ls.Scene:
+    """The crank a turns fully where |b − c| < |d − a| and b + c > d + a: with a shortest, the rocker swings; with the
+    ground d shortest, it turns too."""
+    a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
+    difference, total = np.abs(d - a) * (1.0 - _margin(random, n)), (d + a) * (1.0 + _margin(random, n))
+    difference *= random.choice([-1.0, 1.0], n)
+    b, c = 0.5 * (total + difference), 0.5 * (total - difference)
+    links = (_link(random, length) for length in (a, b, c))
+    branch = str(random.choice(["open", "crossed"]))
+    loads = [ls.Load("coupler", _pair(random, n, 50.0), at=(_number(0.7 * b), 20.0)), ls.Load("rocker", torque=3.0)]
+    return _scene(random, n, ls.FourBar(*links, _number(d), branch), loads)
+
+
+def _any_four_bar(random: Random, n: int) -> ls.Scene:
+    """Any lengths that close."""
+    lengths = np.exp(random.uniform(-1.5, 1.5, (4, n)))
+    longest = lengths.max(axis=0)
+    lengths = np.minimum(lengths, 0.98 * (lengths.sum(axis=0) - longest))
+    *links, d = lengths
+    branch = str(random.choice(["open", "crossed"]))
+    return _scene(random, n, ls.FourBar(*(_link(random, length) for length in links), _number(d), branch), [])
+
+
+def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
+    def scene(random: Random, n: int) -> ls.Scene:
+        """The crank turns fully where the rod is longer than the crank and the offset together."""
+        a = np.exp(random.uniform(-1.5, 1.5, n))
+        offset = a * random.uniform(-0.8, 0.8, n) * random.choice([0.0, 1.0], n)
+        height = a + np.abs(offset)
+        b = height * (1.0 + _margin(random, n))
+        wedges = np.sqrt((b - height) * (b + height)) / height
+        slides = np.minimum(wedges * random.uniform(0.0, 0.95, n), 0.5) if friction else np.zeros(n)
+        mass = _number(random.uniform(0.2, 2.0, n))
+        branch = str(random.choice(["open", "crossed"]))
+        crank, rod = _link(random, a), _link(random, b)
+        mechanism = ls.SliderCrank(crank, rod, mass, _number(offset), _number(slides) if friction else 0.0, branch)
+        return _scene(random, n, mechanism, [ls.Load("slider", _pair(random, n, 50.0))])
+
+    return scene
+
+
+def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
+    """The crank turns fully where the offset is less than the difference of crank and ground."""
+    a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
+    offset = np.abs(d - a) * (1.0 - _margin(random, n)) * random.choice([-1.0, 1.0], n)
+    mass, inertia = random.uniform(0.2, 2.0, (2, n))
+    branch = str(random.choice(["open", "crossed"]))
+    crank, rocker = _link(random, a), _link(random, d)
+    mechanism = ls.InvertedSliderCrank(
+        crank, rocker, _number(d), _number(mass), _number(0.1 * inertia), _number(offset), branch
+    )
+    return _scene(random, n, mechanism, [ls.Load("rocker", torque=3.0)])
+
+
+def _margin(random: Random, n: int) -> Array:
+    """By how much a machine misses a toggle, of its lengths: half of them by anything, half by little."""
+    return np.where(random.random(n) < 0.5, random.uniform(0.02, 0.98, n), 10.0 ** random.uniform(-7.0, -1.0, n))
+
+
+def _link(random: Random, length: Array) -> ls.Link:
+    """A link of any mass, its centre of gravity anywhere."""
+    n = len(length)
+    mass, reach = random.uniform(0.2, 2.0, n), random.uniform(0.0, 1.2, n)
+    inertia = mass * length**2 * random.uniform(0.02, 0.2, n)
+    angle = random.uniform(-180.0, 180.0, n) * random.choice([0.0, 1.0], n)
+    return ls.Link(*map(_number, (length, mass, inertia, reach * length, angle)))
+
+
+def _scene(random: Random, n: int, mechanism: object, loads: list[ls.Load]) -> ls.Scene:
+    omega2, alpha2 = random.uniform(-20.0, 20.0, n), random.uniform(-100.0, 100.0, n)
+    return ls.Scene(mechanism, _number(omega2), _number(alpha2), (0.0, -9.81), loads)
+
+
+def _pair(random: Random, n: int, size: float) -> tuple[xr.DataArray, xr.DataArray]:
+    x, y = random.uniform(-size, size, (2, n))
+    return _number(x), _number(y)
+
+
+def _number(values: Array) -> xr.DataArray:
+    return xr.DataArray(values, dims="design")
+
+
+FAMILIES = {
+    "four-bar": Family(_four_bar),
+    "four-bar of any lengths": Family(_any_four_bar),
+    "slider-crank": Family(_slider_crank(friction=False), 90.0),
+    "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
+    "inverted slider-crank": Family(_inverted_slider_crank),
+}

@@ -1,0 +1,98 @@
+"""The limit to chase: limit.c, built for this machine where there is a C compiler, and called through ctypes.
+
+`build()` is None without a compiler. `store` and `peaks` answer as `peers.numpy_lapack` and
+`peers.numpy_lapack_peaks` do; `bind_store` and `bind_peaks` prepare a call without arguments, to time.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.rivals.peers import Array, Design, grid
+
+# sqrt is vectorised only with -fno-math-errno; -fno-trapping-math makes the comparisons of peaks cheaper.
+# Neither changes a value. -ffast-math would (it reorders sums): left out. a * b + c is contracted by default.
+FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fopenmp-simd")
+LANES = 16  # as in limit.c
+
+
+def compiler() -> str | None:
+    """The first C compiler found, or None."""
+    return next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
+
+
+@cache
+def build(cc: str | None = None, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL | None:
+    """limit.c as a loaded library, or None where no compiler is."""
+    cc = cc or compiler()
+    if cc is None:
+        return None
+    source = Path(__file__).with_name("limit.c")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        library = Path(folder) / "limit.so"
+        subprocess.run([cc, *flags, "-shared", "-fPIC", source, "-o", library, "-lm"], check=True)
+        return ctypes.CDLL(str(library))
+
+
+def bind_store(lib: ctypes.CDLL, design: Design, theta2: Array) -> tuple[Callable[[], object], Array]:
+    """A call that computes the nine unknowns at theta2 [degree], and the array (9, n) it fills."""
+    out = np.empty((9, len(theta2)))
+    return _bind(lib.store, [len(theta2)], [*_tables(theta2), _pack(design), out]), out
+
+
+def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callable[[], object], tuple[Array, Array]]:
+    """A call that computes the grid peaks of many designs, and the two arrays (n_designs, 6) it fills.
+
+    Columns: largest F12, F32, F43, F14, largest T12, smallest T12; the second array holds the samples
+    they are at, as floats; -1 where there is none, and the value is NaN.
+    """
+    if n_angles < LANES:
+        raise ValueError(f"n_angles = {n_angles}: must be at least {LANES}, the lanes of limit.c")
+    packed = _pack(designs)
+    values, at = np.empty((len(packed), 6)), np.empty((len(packed), 6))
+    counts, arrays = [len(packed), n_angles], [*_tables(grid(n_angles)), packed, values, at]
+    return _bind(lib.peaks, counts, arrays), (values, at)
+
+
+def store(lib: ctypes.CDLL, design: Design, theta2: Array) -> Array:
+    """The nine unknowns (9, n) at theta2 [degree]."""
+    call, out = bind_store(lib, design, theta2)
+    call()
+    return out
+
+
+def peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Array, Array]:
+    """Grid peaks of many designs and the samples they are at."""
+    call, out = bind_peaks(lib, designs, n_angles)
+    call()
+    return out
+
+
+def _bind(function: Callable, counts: list[int], arrays: list[Array]) -> Callable[[], object]:
+    call = partial(function, *map(ctypes.c_int64, counts), *(ctypes.c_void_p(a.ctypes.data) for a in arrays))
+    call.arrays = arrays  # a bare address keeps nothing alive
+    return call
+
+
+def _tables(theta2: Array) -> list[Array]:
+    """cos and sin of theta2, sin2 and cos2 of its half."""
+    t2 = np.radians(np.asarray(theta2, dtype=float))
+    return [np.cos(t2), np.sin(t2), np.sin(t2 / 2) ** 2, np.cos(t2 / 2) ** 2]
+
+
+def _pack(q: Design) -> Array:
+    """Rows of limit.c's Design: centres of gravity as x, y in the link."""
+    columns = [q.a, q.b, q.c, q.d, q.m2, q.m3, q.m4, q.I2, q.I3, q.I4]
+    for distance, delta in ((q.s, q.delta2), (q.p, q.delta3), (q.u, q.delta4)):
+        columns += [distance * np.cos(np.radians(delta)), distance * np.sin(np.radians(delta))]
+    columns += [q.omega2, q.alpha2, q.gx, q.gy, q.sign]
+    rows = np.stack([np.ravel(column) for column in np.broadcast_arrays(*columns)], axis=-1)
+    return np.ascontiguousarray(rows, dtype=float)

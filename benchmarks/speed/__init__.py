@@ -1,0 +1,1 @@
+"""Time linksweep against its peers, as ratios within one run."""

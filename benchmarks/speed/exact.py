@@ -1,0 +1,161 @@
+"""Exact peaks of many designs, against grids of samples and against what users write today."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+import linksweep as ls
+from benchmarks.cases import ALL, LENGTHS, Size, batch, scene
+from benchmarks.rivals import peers
+from benchmarks.speed.kernel import kernel_of, way
+from benchmarks.timing import FASTER, SHARE, Race, Row, race
+
+EXACT = "ls.peaks, exact"
+FORCES = ("F12", "F32", "F43", "F14", "T12")
+
+
+def rows(size: Size) -> list[Row]:
+    with way("compiled"):
+        return [
+            *_grids(size, 20.0, {720: 1.0, 360: 1.0}),
+            *_grids(size, 0.0, {1440: 1.0}),
+            _over_angle(size),
+            _lapack(size),
+            *_shared(size),
+            _memory(size),
+        ]
+
+
+def crank_rockers(count: int, least_transmission_angle: float, seed: int = 1) -> ls.Scene:
+    """Random crank-rockers, every number of every design its own, that transmit at least so well [degree]."""
+    rng = np.random.default_rng(seed)
+    a, b, c, d = np.concatenate(list(_lengths(rng, count, least_transmission_angle)), axis=1)[:, :count]
+    links = [_link(rng, length) for length in (a, b, c)]
+    mechanism = ls.FourBar(*links, ground=_designs(d))
+    speed, acceleration = rng.uniform(1.0, 30.0, count), rng.uniform(-20.0, 20.0, count)
+    return ls.Scene(mechanism, _designs(speed), _designs(acceleration), gravity=(0.0, -9.81))
+
+
+def _lengths(rng: np.random.Generator, count: int, least: float) -> Iterator[np.ndarray]:
+    found = 0
+    while found < count:
+        lengths = np.sort(rng.uniform(0.05, 1.0, (4 * count, 4)), axis=1)
+        a, longest = lengths[:, 0], lengths[:, 3]
+        b, c, d = rng.permuted(lengths[:, 1:], axis=1).T
+        grashof = a + longest < lengths[:, 1] + lengths[:, 2]
+        good = grashof & (np.minimum(_transmission(b, c, d - a), _transmission(b, c, d + a)) > least)
+        found += good.sum()
+        yield np.stack([a, b, c, d])[:, good]
+
+
+def _transmission(b: np.ndarray, c: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
+    """Acute angle between coupler and rocker [degree], by the cosine rule."""
+    angle = np.degrees(np.arccos(np.clip((b * b + c * c - diagonal**2) / (2.0 * b * c), -1.0, 1.0)))
+    return np.minimum(angle, 180.0 - angle)
+
+
+def _link(rng: np.random.Generator, length: np.ndarray) -> ls.Link:
+    n = len(length)
+    mass, share = rng.uniform(0.2, 3.0, n), rng.uniform(0.05, 0.2, n)
+    distance, angle = length * rng.uniform(0.0, 1.0, n), rng.uniform(-60.0, 60.0, n)
+    return ls.Link(*map(_designs, (length, mass, mass * length**2 * share, distance, angle)))
+
+
+def _designs(values: np.ndarray) -> xr.DataArray:
+    return xr.DataArray(values, dims="design")
+
+
+def _grids(size: Size, least: float, goals: dict[int, float]) -> list[Row]:
+    """Exact peaks against the largest of so many samples; the error is how far the samples stay below."""
+    designs = crank_rockers(100 * size.designs, least)
+    said = f"transmission angle above {least:g}°" if least else "all crank-rockers"
+    calls = {EXACT: partial(ls.peaks, designs, threads=1)}
+    calls |= {_grid(n): partial(ls.peaks, designs, theta2=n, threads=1) for n in goals}
+    exact = calls[EXACT]()
+    timed = race(calls, size)
+    return [
+        timed.row(SHARE, EXACT, _grid(n), goal, note=f"{said}; the grid errs by {_shortfall(calls[_grid(n)](), exact)}")
+        for n, goal in goals.items()
+    ]
+
+
+def _over_angle(size: Size) -> Row:
+    """Exact peaks where a load over the angle is given: along the way, at 720 angles of a turn and more."""
+    angles = np.arange(0.0, 360.0, 5.0)
+    push = xr.DataArray(-300.0 * np.exp(-(((angles - 180.0) / 40.0) ** 2)), {"theta2": angles}, "theta2")
+    designs = replace(crank_rockers(size.designs, 20.0), loads=(ls.Load("rocker", torque=push),))
+    exact = partial(ls.peaks, designs, threads=1)
+    timed = race({EXACT: exact, _grid(360): partial(exact, theta2=360)}, size)
+    return timed.row(SHARE, EXACT, _grid(360), note="with a torque over theta2 that all designs share")
+
+
+def _grid(count: int) -> str:
+    return f"largest of {count} samples"
+
+
+def _shortfall(grid: xr.Dataset, exact: xr.Dataset) -> str:
+    worst = np.max([1.0 - grid[f"{name}_peak"].values / exact[f"{name}_peak"].values for name in FORCES], axis=0)
+    return f"{np.median(worst):.0e} in the median, {np.max(worst):.0e} at worst"
+
+
+def _lapack(size: Size) -> Row:
+    """Per design: ours of a hundred times as many, for theirs would take a minute a round."""
+    lapack = "numpy + LAPACK, 720 samples"
+    calls = {
+        EXACT: partial(ls.peaks, scene(batch(100 * size.designs, *ALL)), threads=1),
+        lapack: partial(peers.numpy_lapack_peaks, batch(size.designs, *ALL), size.turn),
+    }
+    timed = race(calls, size)
+    fair = Race({EXACT: [seconds / 100.0 for seconds in timed.seconds[EXACT]], lapack: timed.seconds[lapack]})
+    return fair.row(FASTER, EXACT, lapack, 400, note=f"times for {size.designs} designs")
+
+
+def _shared(size: Size) -> list[Row]:
+    """A thousand masses, or speeds, of one geometry against a thousand geometries: exact peaks, which share the
+    kinematics of the samples; and the largest of samples, by sums of a few cycles."""
+    jobs = {name: scene(batch(size.designs, *numbers)) for name, numbers in SHARED.items()}
+    exact = {f"{size.designs} {name}": partial(ls.peaks, job, threads=1) for name, job in jobs.items()}
+    sums = {
+        f"{size.designs} {name}, {_grid(size.turn)}, superposed": partial(
+            ls.peaks, job, theta2=size.turn, threads=1, solver="superposed"
+        )
+        for name, job in jobs.items()
+    }
+    kernels = {f"{name}: kernel": kernel_of(call).call for name, call in sums.items()}
+    goals = ((exact, (0.7, 0.35)), (sums, (0.35, 0.35)), (kernels, (0.35, 0.35)))
+    return [row for calls, goal in goals for row in _against_first(race(calls, size), goal)]
+
+
+SHARED = {"geometries": LENGTHS, "masses": ("m3",), "speeds": ("omega2",)}
+"""What is different in each design."""
+
+
+def _against_first(timed: Race, goals: Iterable[float | None]) -> list[Row]:
+    theirs, *ours = timed.seconds
+    return [timed.row(SHARE, name, theirs, goal) for name, goal in zip(ours, goals, strict=True)]
+
+
+MILLION = """
+import linksweep as ls
+from benchmarks.speed import exact
+from benchmarks.speed import growth
+scene = exact.crank_rockers({designs}, 0.0)
+ls.peaks(scene)
+print(growth.peak_memory())
+"""
+
+
+def _memory(size: Size) -> Row:
+    """Largest memory of a fresh process that finds the peaks of a million designs [GB]."""
+    designs = 1000 * size.designs
+    made = subprocess.run(
+        [sys.executable, "-c", MILLION.format(designs=designs)], capture_output=True, text=True, check=True
+    )
+    return Row(f"ls.peaks of {designs:,} designs", "", "GB in all", float(made.stdout), goal=1.0)

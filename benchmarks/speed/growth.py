@@ -1,0 +1,103 @@
+"""How cost grows: with angles and designs, by one thread and two, in time and memory, each size in a fresh process; and
+with what is asked, in the time to compile its kernel. `first` has the start-up times.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest import mock
+
+import linksweep as ls
+from benchmarks.cases import ALL, GENERAL, LOADS, NINE, Size, batch, few, scene
+from benchmarks.speed.kernel import way
+from benchmarks.timing import FASTER, WALL, Call, Row, timed
+
+MANY = 1_000_000
+"""So many are timed twice: at first they wait for memory."""
+JOBS = {"angle": "ls.sweep, {:,} angle", "design": "ls.peaks, {:,} design"}
+
+
+def rows(size: Size) -> list[Row]:
+    sizes = {"angle": _decades(100, size.largest_angles), "design": _decades(1, size.largest_designs)}
+    grown = [_grown(job, count, few(size).rounds) for job in sizes for count in sizes[job]]
+    return grown + [_first(name) for name in list(REQUESTS)[: size.requests]]
+
+
+def _decades(least: int, largest: int) -> list[int]:
+    return [10**k for k in range(20) if least <= 10**k <= largest]
+
+
+def _fresh(call: str) -> str:
+    """What a function of this module prints in a fresh process."""
+    command = [sys.executable, "-c", f"from benchmarks import growth; growth.{call}"]
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+# -------------------------------------------------------------------------------- angles, designs, threads
+
+
+def _grown(job: str, count: int, rounds: int) -> Row:
+    """One size of a job in a process of its own: two threads against one, per angle or design; and its memory."""
+    one, two, memory = json.loads(_fresh(f"measure({job!r}, {count}, {rounds})"))
+    name = JOBS[job].format(count) + ("s" if count > 1 else "")
+    return Row(f"{name}, 2 threads", "1 thread", FASTER, one / two, two, one, count, note=f"{memory:.2f} GB in all")
+
+
+def measure(job: str, count: int, rounds: int) -> None:
+    """Print the times of one thread and of two [s], and the most memory that this process has had [GB]."""
+    with way("compiled"):
+        _call(job, 100)()  # reads the kernel
+        call = _call(job, count)
+        again = rounds + 1 if count < MANY else 2
+        times = [min(timed(partial(call, threads=n)) for _ in range(again)) for n in (1, 2)]
+    print(json.dumps([*times, peak_memory()]))
+
+
+def _call(job: str, count: int) -> Call:
+    if job == "angle":
+        return partial(ls.sweep, scene(GENERAL), count, NINE)
+    return partial(ls.peaks, scene(batch(count, *ALL)))
+
+
+def peak_memory() -> float:
+    """The most that this process has had [GB]. On Linux getrusage counts what its parent had before it, too."""
+    status = Path("/proc/self/status")
+    if status.exists():
+        return int(re.search(r"VmHWM:\s*(\d+) kB", status.read_text())[1]) / 1e6
+    unit = 1e9 if sys.platform == "darwin" else 1e6
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+# --------------------------------------------------------------------------------------------- compiling
+
+REQUESTS = {
+    "omega3, omega4": partial(ls.sweep, scene(GENERAL), 72, ["omega3", "omega4"]),
+    "the nine unknowns": partial(ls.sweep, scene(GENERAL), 72, NINE),
+    "kinematics too, two loads": partial(ls.sweep, scene(GENERAL, LOADS), 72),
+    "exact peaks": partial(ls.peaks, scene(GENERAL)),
+}
+
+
+def _first(name: str) -> Row:
+    """The first call in a process, its kernel compiled, or read from the user's cache; numba is awake."""
+    empty = TemporaryDirectory(ignore_cleanup_errors=True)
+    with empty as folder, mock.patch.dict(os.environ, {"LINKSWEEP_CACHE_DIR": folder}):
+        compiled, read = (float(_fresh(f"first_call({name!r})")) for _ in range(2))
+    return Row(f"{name}: first call", "kernel from disk", WALL, compiled / read, compiled, read)
+
+
+def first_call(name: str) -> None:
+    """Print the time of a request's first call [s]."""
+    import numba
+
+    numba.njit("f8(f8)")(lambda x: x)
+    with way("compiled"):
+        print(timed(REQUESTS[name]))

@@ -1,0 +1,46 @@
+"""linksweep's two ways to run, chosen, and its compiled kernel without the Python around it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import NamedTuple
+from unittest import mock
+
+from benchmarks.timing import Call
+from linksweep.engine import run
+from linksweep.engine.peaks import find_peaks
+
+
+class Kernel(NamedTuple):
+    """A compiled kernel: its sources, as engine.compile takes them, and a call bound to all its arguments."""
+
+    sources: tuple[str, str]
+    call: Call
+
+
+@contextmanager
+def way(name: str) -> Iterator[None]:
+    """All requests "compiled" from their first sample, or "interpreted" for ever."""
+    most = {"compiled": -1, "interpreted": math.inf}[name]
+    with mock.patch.object(run, "COMPILE_AFTER", most), mock.patch.object(find_peaks, "INTERPRETED_DESIGNS", most):
+        yield
+
+
+def kernel_of(call: Call) -> Kernel:
+    """The largest kernel that a call runs, with the arguments it was given: same inputs, same buffers, no labels."""
+    found: list[Kernel] = []
+    compiled = run.compiled
+
+    def recording(*sources: str) -> Callable:
+        def kernel(*arguments) -> None:
+            found.append(Kernel(sources, partial(compiled(*sources), *arguments)))
+            found[-1].call()
+
+        return kernel
+
+    with mock.patch.object(run, "compiled", recording), way("compiled"):
+        call()
+    return max(found, key=lambda kernel: len(kernel.sources[0]))

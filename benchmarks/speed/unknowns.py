@@ -1,0 +1,56 @@
+"""All nine unknowns of one general four-bar at many crank angles."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+import linksweep as ls
+from benchmarks.cases import GENERAL, NINE, Size, scene, stacked
+from benchmarks.rivals import limit, peers
+from benchmarks.speed.kernel import kernel_of, way
+from benchmarks.timing import FASTER, SHARE, Row, race
+
+SWEEP, KERNEL, LAPACK, CLOSED, C = "ls.sweep", "kernel alone", "numpy + LAPACK", "numpy closed form", "limit.c"
+BLOCKS, ANEW, DEFAULT = "numpy + LAPACK, a tenth at a time", "ls.sweep, scene built anew", "ls.sweep, kinematics too"
+
+
+def rows(size: Size) -> list[Row]:
+    theta2, machine = peers.grid(size.angles), scene(GENERAL)
+    sweep = partial(ls.sweep, theta2=size.angles, threads=1)
+    sweeps = {
+        SWEEP: partial(sweep, machine, outputs=NINE),
+        ANEW: lambda: sweep(scene(GENERAL), outputs=NINE),
+        DEFAULT: partial(sweep, machine),
+    }
+    calls = sweeps | {
+        KERNEL: kernel_of(sweeps[SWEEP]).call,
+        CLOSED: partial(peers.numpy_closed_form, GENERAL, theta2),
+        LAPACK: partial(peers.numpy_lapack, GENERAL, theta2),
+        BLOCKS: lambda: [peers.numpy_lapack(GENERAL, block) for block in np.split(theta2, 10)],
+    }
+    with way("compiled"):
+        found = {name: stacked(call()) for name, call in sweeps.items()} | {CLOSED: calls[CLOSED]()}
+        found[KERNEL] = found[SWEEP]  # the kernel is the one that ls.sweep runs
+        if lib := limit.build():
+            calls[C], found[C] = limit.bind_store(lib, GENERAL, theta2)
+            calls[C]()
+        dense, found[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
+        error = {name: peers.difference(nine, dense) for name, nine in found.items()}
+        timed = race(calls, size, size.angles)
+
+    def row(kind: str, ours: str, theirs: str, goal: float | None = None) -> Row:
+        return timed.row(kind, ours, theirs, goal, error=error.get(ours))
+
+    return [
+        row(FASTER, SWEEP, LAPACK, 60),
+        row(FASTER, KERNEL, LAPACK, 250),
+        row(SHARE, KERNEL, C, 1.3),
+        row(FASTER, C, LAPACK),
+        row(FASTER, BLOCKS, LAPACK),
+        row(FASTER, CLOSED, LAPACK),
+        row(FASTER, SWEEP, CLOSED),
+        row(FASTER, ANEW, LAPACK),
+        row(FASTER, DEFAULT, LAPACK),
+    ]

@@ -1,0 +1,140 @@
+"""What the tests are worth: slips planted one at a time in a copy of the package, each of which they must catch.
+
+``python -m benchmarks.stress.mutants`` runs all of `mutants.toml`, in some minutes, and prints which test caught which;
+``--only WORDS`` those whose description has these words. The exit code is 1 where a mutant survives.
+
+Tests that fail without any mutant are named first and then left out: what they catch would say nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+LIST = Path(__file__).with_suffix(".toml")
+TAKEN = ("linksweep", "tests", "benchmarks", "pyproject.toml")
+"""What the tests need of the project."""
+FOREVER = 600.0
+"""Seconds after which tests that do not end count as failed."""
+NO_TESTS = 5
+"""What pytest ends with where all tests are left out: nothing then catches anything."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A slip: in this file of the package, `old` becomes `new`; these files of tests should notice."""
+
+    what: str
+    file: str
+    old: str
+    new: str
+    tests: tuple[str, ...]
+
+    def planted(self, text: str) -> str:
+        """The text of the file with the slip. Raises ValueError where `old` does not stand there exactly once."""
+        if (count := text.count(self.old)) != 1:
+            raise ValueError(f'"{self.what}": what it changes stands {count} times in linksweep/{self.file}, not once')
+        return text.replace(self.old, self.new)
+
+
+@dataclass(frozen=True)
+class Copy:
+    """A copy of the project to spoil; `red` are tests that fail in it as it stands."""
+
+    folder: Path
+    red: tuple[str, ...] = ()
+
+    def failures(self, tests: Iterable[str], *options: str) -> list[str]:
+        """Tests of these files that fail."""
+        left_out = [f"--deselect={name}" for name in self.red]
+        command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--tb=no", "-rfE", *options, *left_out]
+        # no .pyc: a source planted and restored within a second would be taken for the same
+        surroundings = os.environ | {"LINKSWEEP_CACHE_DIR": str(self.folder / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+        surroundings.pop("PYTEST_ADDOPTS", None)  # one after the other: -x is to name the first
+        try:
+            ran = subprocess.run(
+                [*command, *(f"tests/{name}" for name in tests)],
+                cwd=self.folder,
+                env=surroundings,
+                timeout=FOREVER,
+                capture_output=True,
+                text=True,
+            )
+        except subprocess.TimeoutExpired:
+            return ["(the tests did not end)"]
+        named = re.findall(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", ran.stdout, re.MULTILINE)
+        return named or ([f"(pytest ended with {ran.returncode})"] if ran.returncode not in (0, NO_TESTS) else [])
+
+    @contextmanager
+    def planted(self, mutant: Mutant) -> Iterator[None]:
+        path = self.folder / "linksweep" / mutant.file
+        sound = path.read_text(encoding="utf-8")
+        path.write_text(mutant.planted(sound), encoding="utf-8")
+        try:
+            yield
+        finally:
+            path.write_text(sound, encoding="utf-8")
+
+    def catcher(self, mutant: Mutant) -> str | None:
+        """The test that catches a mutant, or None where it survives."""
+        with self.planted(mutant):
+            return next(iter(self.failures(mutant.tests, "-x")), None)
+
+
+def mutants(path: Path = LIST) -> list[Mutant]:
+    """The list."""
+    listed = tomllib.loads(path.read_text(encoding="utf-8"))["mutants"]
+    return [Mutant(**{**words, "tests": tuple(words["tests"])}) for words in listed]
+
+
+@contextmanager
+def copied() -> Iterator[Copy]:
+    """A copy of the project in a temporary folder."""
+    with tempfile.TemporaryDirectory(prefix="linksweep-mutants-") as folder:
+        for name in TAKEN:
+            source, target = ROOT / name, Path(folder) / name
+            if source.is_dir():
+                shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+            else:
+                shutil.copy(source, target)
+        yield Copy(Path(folder))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Plant the mutants one by one and print what becomes of them; 1 where one survives, or a test fails without."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.stress.mutants", description="What the tests are worth."
+    )
+    parser.add_argument("--only", metavar="WORDS", default="", help="mutants whose description has these words")
+    only = parser.parse_args(arguments).only
+    chosen = [mutant for mutant in mutants() if only in mutant.what]
+    with copied() as copy:
+        return _run(copy, chosen)
+
+
+def _run(copy: Copy, chosen: list[Mutant]) -> int:
+    red = copy.failures(sorted({test for mutant in chosen for test in mutant.tests}))
+    for name in red:
+        print(f"fails without a mutant: {name}", flush=True)
+    copy, survived = Copy(copy.folder, tuple(red)), 0
+    for mutant in chosen:
+        caught = copy.catcher(mutant)
+        survived += caught is None
+        print(f"{'caught' if caught else 'SURVIVED':<8}  {mutant.what}  {caught or ''}".rstrip(), flush=True)
+    print(f"{len(chosen) - survived} of {len(chosen)} mutants caught")
+    return int(bool(red or survived))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Answer what engineers ask next, from sweeps and exact peaks."""

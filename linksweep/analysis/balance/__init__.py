@@ -1,0 +1,1 @@
+"""Answer what shakes: orders, counterweights, regressor, comparison before and after."""

@@ -1,0 +1,252 @@
+"""best_counterweights(scene, minimize={...}): the counterweights that serve a mix of aims best, by least squares.
+
+Each link may carry masses at a radius, in DIRECTIONS directions round its first pin. Forces are linear in these masses
+(see `linksweep.analysis.balance.regressor`), so that the sum of squares of relative sizes
+
+    Σ weight · (size after / size before)²
+
+is a convex function of masses ≥ 0. An RMS or a ripple is a 2-norm, and this is bounded linear least squares. A peak is
+the norm of a high power, reached by reweighting the samples while the power rises (iteratively reweighted least
+squares).
+
+Source: C. L. Lawson and R. J. Hanson, Solving Least Squares Problems (bounds); R. Fletcher, J. A. Grant and M. D.
+Hebden, The Calculation of Linear Best Lp Approximations, Computer Journal 14 (1971) (damped reweighting).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.balance.compare import sizes_named
+from linksweep.analysis.balance.counterweights import Counterweight, by_link
+from linksweep.analysis.balance.regressor import OF_LINK, own_links, regressor
+from linksweep.base.validate import Rule, name_problems, refuse, said
+from linksweep.engine.quantity import Quantity
+from linksweep.results.compute import require_scene
+from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_number
+from linksweep.scene.designs.selection import design_sizes
+from linksweep.scene.scene import Scene
+
+Array = np.ndarray
+DIRECTIONS = 24
+POWERS = (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+"""Of the norms on the way to a peak; of 720 samples the last is within a part in a hundred of the largest."""
+STEPS = 10
+TRIED = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02)
+"""Parts of the way to the solution of the weighted squares that are looked at in each step."""
+LIGHTER, HEAVIER = 1e-7, 1e4
+"""Weights, relative to all others, of what should be light, and of what must be at its limit."""
+WEIGHT = Rule("dimensionless", above=0.0)
+MOST = Rule("mass", above=0.0)
+
+
+class Aim(NamedTuple):
+    """A size to be made small: its samples (component, angle) are `base + change @ added`, `added` being m, mx, my and
+    J that the counterweights add to each link; each is a `share` of the cycle's time."""
+
+    word: str
+    weight: float
+    base: Array
+    change: Array
+    share: Array
+
+    def samples(self, added: Array) -> Array:
+        return self.base + self.change @ added
+
+    def size(self, added: Array) -> float:
+        """Largest magnitude, or root mean square."""
+        squares = (self.samples(added) ** 2).sum(axis=0)
+        return float(np.sqrt(squares.max() if self.word == "peak" else (squares * self.share).sum()))
+
+
+def best_counterweights(
+    scene: Scene,
+    minimize: Mapping[str, float],
+    radius: Any,
+    most: Any = None,
+    theta2: int = 720,
+    threads: int | None = None,
+) -> list[Counterweight]:
+    """Counterweights that make a weighted mix of forces, torques and shaking small.
+
+    Parameters
+    ----------
+    scene : Scene of one design, without friction
+    minimize : weights of what is to be small, {"F32_peak": 1.0, "T12_ripple": 0.5, "Fs_rms": 1.0, "Ms_peak": 0.2}: of
+        a quantity its `_peak` (largest magnitude), `_rms` over time, or `_ripple` (root mean square about its mean)
+    radius : where the counterweights sit [m]: a number for all links on ground pins, or one for each link that may have
+        one, {"crank": 0.05}
+    most : largest mass [kg], a number or one for each of these links; by default as large as it takes
+    theta2 : count of crank angles over the cycle
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    list of Counterweight. Where one consists of masses in several directions it is given as one body: mass, centre of
+    gravity (at most `radius` from the pin) and moment of inertia.
+
+    Raises
+    ------
+    ValueError
+        For designs, friction, unknown names, and weights, radii and masses out of bounds.
+
+    Notes
+    -----
+    Minimized is the sum of weight·(size after / size before)². Equations and sources: `linksweep.analysis.balance.best_counterweights`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.example("press")
+    >>> weights = ls.best_counterweights(scene, {"Fs_rms": 1.0, "T12_ripple": 1.0}, radius=0.06, theta2=180)
+    >>> table = ls.compare(scene, ls.with_counterweights(scene, weights), of=["Fs_rms"], theta2=180)
+    >>> bool(table.Fs_rms.sel(balance="after") < table.Fs_rms.sel(balance="before"))
+    True
+    """
+    require_scene(scene)
+    sizes = design_sizes(scene)
+    refuse([f"scene has designs over {', '.join(sizes)}: give one, as ls.scene_at(scene, ...)"] * bool(sizes))
+    wanted = _wanted(scene, minimize)
+    grounded = [role for role in own_links(scene.mechanism) if role in ("crank", "rocker")]
+    radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
+    refuse([p for link in radii for p in name_problems("radius", link, own_links(scene.mechanism))])
+    bounds = _bounds(most, list(radii))
+    spokes = {link: _spokes(float(r)) for link, r in radii.items()}
+    aims = _aims(scene, wanted, list(spokes), theta2, threads)
+    masses = _best(aims, list(spokes.values()), np.array([bounds[link] for link in spokes]))
+    parts = masses.reshape(len(spokes), DIRECTIONS)
+    return [_as_one(link, part, spokes[link]) for link, part in zip(spokes, parts, strict=True)]
+
+
+def _wanted(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
+    """Weights by quantity and kind of size."""
+    form = 'must be weights by name, as {"F32_peak": 1.0, "T12_ripple": 0.5}'
+    refuse([f"minimize = {said(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
+    sizes = sizes_named("minimize", scene, minimize)
+    weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
+    return dict(zip(sizes, map(float, weights), strict=True))
+
+
+def _bounds(most: Any, links: list[str]) -> dict[str, float]:
+    if most is None:
+        return dict.fromkeys(links, np.inf)
+    return {link: float(number) for link, number in by_link("most", most, links, MOST).items()}
+
+
+def _spokes(radius: float) -> Array:
+    """m, mx, my and J of a mass of 1 kg in each direction."""
+    angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
+    ones = np.ones(DIRECTIONS)
+    return np.stack([ones, radius * np.cos(angles), radius * np.sin(angles), radius * radius * ones])
+
+
+def _aims(
+    scene: Scene, wanted: Mapping[tuple[str, str], float], links: list[str], theta2: int, threads: int | None
+) -> list[Aim]:
+    components = {name: components_of(scene.table.quantity[name]) for name, _ in wanted}
+    names = [name for pair in components.values() for name in pair]
+    found, cycle = regressor(scene, names, theta2, threads), sweep(scene, theta2, names, threads=threads)
+    labels = [f"{link}.{word}" for link in links for word in OF_LINK]
+    there = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
+    share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[there]
+    share = share / share.sum()
+    aims = []
+    for (name, word), weight in wanted.items():
+        base = np.stack([_over_angles(cycle[part], cycle)[there] for part in components[name]])
+        rows = [_over_angles(found[part].sel(parameter=labels), cycle)[there] for part in components[name]]
+        change = np.stack(rows)
+        if word == "ripple":
+            base = base - (base * share).sum(axis=1, keepdims=True)
+            change = change - (change * share[:, None]).sum(axis=1, keepdims=True)
+        aims.append(Aim(word, weight, base, change, share))
+    return aims
+
+
+def components_of(quantity: Quantity) -> tuple[str, ...]:
+    """A magnitude's components; anything else is its own."""
+    return (f"{quantity.name}x", f"{quantity.name}y") if quantity.squared else (quantity.name,)
+
+
+def _over_angles(array: xr.DataArray, cycle: xr.Dataset) -> Array:
+    return array.broadcast_like(cycle["theta2"]).transpose("theta2", ...).values
+
+
+def _best(aims: list[Aim], spokes: list[Array], limits: Array) -> Array:
+    """The masses with the least sum of squares of all that was tried; none at all is among it."""
+    from scipy.linalg import block_diag
+
+    adds = block_diag(*spokes)
+    nothing = np.zeros(len(adds))
+    scales = [np.sqrt(aim.weight) / (aim.size(nothing) or 1.0) for aim in aims]
+
+    def total(masses: Array, power: float = 0.0) -> float:
+        return sum((scale * _norm(aim, adds @ masses, power)) ** 2 for scale, aim in zip(scales, aims, strict=True))
+
+    best = masses = np.zeros(adds.shape[1])
+    for power in POWERS if any(aim.word == "peak" for aim in aims) else POWERS[:1]:
+        for _ in range(STEPS if power > 2.0 else 1):
+            weighted = [_weighted(aim, adds @ masses, scale, power) for scale, aim in zip(scales, aims, strict=True)]
+            towards = _bounded(np.concatenate(weighted), adds, limits) - masses
+            tries = [masses + step * towards for step in TRIED]
+            masses = min([masses, *tries], key=lambda tried: total(tried, power))
+            best = min(best, masses, key=total)
+    return best
+
+
+def _norm(aim: Aim, added: Array, power: float) -> float:
+    """The size; of a peak for a power above 0 the mean of that power."""
+    if aim.word != "peak" or power == 0.0:
+        return aim.size(added)
+    magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
+    largest = float(magnitude.max()) or 1.0
+    return largest * float(((magnitude / largest) ** power * aim.share).sum() ** (1.0 / power))
+
+
+def _weighted(aim: Aim, added: Array, scale: float, power: float) -> Array:
+    """Rows (change | −base) whose sum of squares has the gradient of the norm's square."""
+    magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
+    weights = scale * np.sqrt(aim.share)
+    norm = _norm(aim, added, power)
+    if aim.word == "peak" and norm > 0.0:
+        weights = weights * (magnitude / norm) ** (0.5 * power - 1.0)
+    rows = np.concatenate([aim.change, -aim.base[..., None]], axis=-1) * weights[:, None]
+    return rows.reshape(-1, rows.shape[-1])
+
+
+def _bounded(rows: Array, adds: Array, limits: Array) -> Array:
+    """Masses ≥ 0 of least squares, those of a link together not above its limit; of equally good ones the lightest."""
+    triangle = np.linalg.qr(rows).R  # the same sum of squares in a few rows
+    of_masses = np.column_stack([triangle[:, :-1] @ adds, triangle[:, -1]])
+    size, count = np.linalg.norm(of_masses[:, :-1]), adds.shape[1]
+    light = np.append(np.full(count, LIGHTER * size), 0.0)[None]
+    masses = _not_negative(np.concatenate([of_masses, light]))
+    over = _totals(masses) > limits
+    if over.any():  # the function is convex: at the best masses within the limits, these are reached
+        full = np.repeat(np.eye(len(over))[over], DIRECTIONS, axis=1) * (HEAVIER * size)
+        at = HEAVIER * size * limits[over]
+        masses = _not_negative(np.concatenate([of_masses, light, np.column_stack([full, at])]))
+    shrink = np.minimum(1.0, limits / np.maximum(_totals(masses), 1e-300))
+    return masses * np.repeat(shrink, DIRECTIONS)
+
+
+def _not_negative(rows: Array) -> Array:
+    from scipy.optimize import nnls
+
+    return nnls(rows[:, :-1], rows[:, -1], maxiter=100 * rows.shape[1])[0]
+
+
+def _totals(masses: Array) -> Array:
+    return masses.reshape(-1, DIRECTIONS).sum(axis=1)
+
+
+def _as_one(link: str, masses: Array, spokes: Array) -> Counterweight:
+    """Masses in several directions as one body."""
+    mass, x, y, about_pin = spokes @ masses
+    distance = float(np.hypot(x, y) / mass) if mass > 0.0 else 0.0
+    inertia = max(0.0, float(about_pin - mass * distance * distance))
+    return Counterweight(link, float(mass), (distance, float(np.degrees(np.arctan2(y, x)))), inertia)

@@ -1,0 +1,235 @@
+"""Counterweights: which cancel the shaking force, how to put them on, and which serve a mix of aims best.
+
+The moving links' centre of gravity moves with Σ m r_G. With h = m·(xG + i·yG) the first moment of a link about its
+first pin in its own axes, lengths a, b, c of crank, coupler and rocker, and the loop a·e^{iθ2} + b·e^{iθ3} = d +
+c·e^{iθ4} to eliminate the coupler's direction,
+
+    four-bar       Σ m r_G = (h2 + m3·a − h3·a/b) e^{iθ2} + (h4 + h3·c/b) e^{iθ4} + constant
+    slider-crank   Σ m r_G = (h2 + m3·a − h3·a/b) e^{iθ2} + (m4 + h3/b) r_C
+
+A four-bar shakes no more where both coefficients are zero, whatever its speed: two counterweights can see to that. Of a
+slider-crank one on the crank cancels the first coefficient and, of the slider's inertia along the guide, a fraction of
+the first order, which then appears across the guide.
+
+Sources: R. S. Berkof and G. G. Lowen, A New Method for Completely Force Balancing Simple Linkages, Journal of
+Engineering for Industry 91 (1969) 21–26; for engines R. L. Norton, Design of Machinery, chapter "Engine Dynamics"
+(balancing the single-cylinder engine).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.balance.regressor import Placed, mass_of, moments, own_links
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import (
+    Number,
+    Rule,
+    choice_problems,
+    pair_problems,
+    parameter,
+    problems,
+    refuse,
+    said,
+)
+from linksweep.mechanisms import FourBar, LoopTrack, SliderCrank
+from linksweep.mechanisms.links import Link
+from linksweep.results.compute import require_scene
+from linksweep.scene.checked_number import checked_number, said_unit_problems
+from linksweep.scene.loads.load import AT
+from linksweep.scene.scene import Scene
+
+RADIUS = Rule("length", above=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Counterweight(ByContent):
+    """A mass fixed to a link.
+
+    Parameters
+    ----------
+    link : the link that carries it, by name
+    mass : [kg]
+    at : where, in the link's own polar coordinates: (distance from its first pin [m], angle from its line of pins
+        [degree])
+    inertia : about its own centre of gravity [kg m²]
+
+    Numbers may be DataArrays of design dims.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter that is not allowed.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Counterweight("crank", mass=0.4, at=(0.05, 180.0)).inertia
+    0.0
+    """
+
+    link: str
+    mass: Number = parameter("mass", at_least=0.0)
+    at: tuple[Number, Number] = (0.0, 0.0)
+    inertia: Number = parameter("inertia", 0.0, at_least=0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        named = f'link = {said(self.link)}: must be a name, such as "crank"'
+        refuse(
+            [named] * (not isinstance(self.link, str))
+            + problems(self)
+            + pair_problems("at", self.at, AT, "(distance in m, angle in degrees)")
+        )
+        refuse(said_unit_problems(self))
+
+
+def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -> Scene:
+    """A scene whose links carry counterweights.
+
+    Parameters
+    ----------
+    scene : Scene
+    counterweights : any number of Counterweight
+
+    Returns
+    -------
+    Scene with each such link a Link of the mass, centre of gravity and inertia of both together.
+
+    Raises
+    ------
+    ValueError
+        For a link that cannot carry one, and for loads that would move with its centre of gravity (origin="cg").
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.with_counterweights(ls.example("press"), [ls.Counterweight("crank", 0.248, at=(0.04, 180.0))])
+    >>> scene.mechanism.crank.mass, round(scene.mechanism.crank.cg_distance, 15)
+    (0.496, 0.0)
+    """
+    require_scene(scene)
+    weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
+    refuse(
+        [f"counterweights = {said(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]
+    )
+    carriers = own_links(scene.mechanism)
+    refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
+    loaded = {weight.link for weight in weights}
+    moving = [
+        k
+        for k, load in enumerate(scene.loads, 1)
+        if getattr(load, "origin", "") == "cg" and getattr(load, "link", "") in loaded
+    ]
+    refuse(
+        [f'loads[{k}].origin = "cg": would move with the counterweight; give its place from the pin' for k in moving]
+    )
+    mechanism: Any = scene.mechanism
+    links = {role: _carrying(getattr(mechanism, role), [w for w in weights if w.link == role]) for role in loaded}
+    return replace(scene, mechanism=replace(mechanism, **links))
+
+
+def _carrying(link: Any, weights: list[Counterweight]) -> Link:
+    """The link with its weights: masses, first moments and moments of inertia about its pin add up."""
+    parts = [moments(part) for part in (link, *(Placed(*weight.at, weight.mass, weight.inertia) for weight in weights))]
+    mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
+    distance = np.hypot(x, y) / mass.where(mass > 0.0, 1.0)
+    inertia = (about_pin - mass * distance * distance).clip(min=0.0)
+    numbers = (mass, inertia, distance, np.degrees(np.arctan2(y, x)))
+    return Link(link.length, *map(_plain, numbers))
+
+
+def _plain(number: Any) -> Number:
+    """A float, or a DataArray where there are dims, without what it remembers of its making."""
+    number = xr.DataArray(number)
+    return number.drop_attrs() if number.dims else float(number)
+
+
+def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) -> list[Counterweight]:
+    """The counterweights that cancel the shaking force of a four-bar, or balance a slider-crank.
+
+    Parameters
+    ----------
+    scene : Scene of a mechanism of links
+    radius : where they sit [m]: a number, or one for each link, {"crank": 0.05, "rocker": 0.06}
+    fraction : of a slider-crank, of the first order of the slider's inertia (with its share of the rod) that the
+        crank's counterweight takes; by default half of it. 0 balances what turns, 1 moves the first order wholly across
+        the guide
+
+    Returns
+    -------
+    A Counterweight of the crank and, of mechanisms with a rocker, one of the rocker. With them on a four-bar and an
+    inverted slider-crank shake no more, at any speed; a slider-crank shakes along the guide with 1 − fraction, across
+    it with fraction of the first order, and with all of the higher ones.
+
+    Raises
+    ------
+    ValueError
+        For a car in a loop, a fraction given of what balances wholly, and a radius that is none.
+
+    Notes
+    -----
+    Conditions and source: `linksweep.analysis.balance.counterweights` (Berkof and Lowen). The shaking moment remains, and commonly
+    grows, as do pin forces and torque; `linksweep.best_counterweights` finds compromises.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.example("press")
+    >>> balanced = ls.with_counterweights(scene, ls.counterweights(scene, radius=0.06))
+    >>> before, after = (float(ls.sweep(s, outputs=["Fs"]).Fs.max()) for s in (scene, balanced))
+    >>> after < 1e-10 * before
+    True
+    """
+    require_scene(scene)
+    mechanism = scene.mechanism
+    kind = type(mechanism).__name__
+    refuse([f"scene is of a {kind}, which has no links: give another"] if isinstance(mechanism, LoopTrack) else [])
+    slides = isinstance(mechanism, SliderCrank)
+    wholly = f"fraction = {said(fraction)}: must be left out, a {kind} is balanced wholly"
+    refuse([wholly] if fraction is not None and not slides else [])
+    share = checked_number("fraction", 0.5 if fraction is None else fraction, Rule("dimensionless"))
+    lacking = _lacking(mechanism, share)
+    radii = by_link("radius", radius, list(lacking))
+    return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]
+
+
+def by_link(word: str, given: Any, links: list[str], rule: Rule = RADIUS) -> dict[str, Number]:
+    """A number for each link: one for all, or by name."""
+    if not isinstance(given, Mapping):
+        return dict.fromkeys(links, checked_number(word, given, rule))
+    by_link = dict(given)
+    refuse([p for link in by_link for p in choice_problems(word, link, links)])
+    refuse([f"{word}.{link}: missing; give it {rule.number}" for link in links if link not in by_link])
+    return {link: checked_number(f"{word}.{link}", number, rule) for link, number in by_link.items()}
+
+
+def _first_moment(link: Any) -> Any:
+    """h of the module's equations."""
+    _, x, y, _ = moments(link)
+    return xr.DataArray(x + 1j * y)
+
+
+def _lacking(mechanism: Any, fraction: Number) -> dict[str, Any]:
+    """First moments that the links lack for balance, by the module's equations."""
+    crank, a = _first_moment(mechanism.crank), mechanism.crank.length
+    if isinstance(mechanism, SliderCrank):
+        h3, b = _first_moment(mechanism.rod), mechanism.rod.length
+        turning = crank + mechanism.rod.mass * a - h3 * (a / b)
+        return {"crank": -turning - fraction * a * (mechanism.slider_mass + h3.real / b)}
+    rocker = _first_moment(mechanism.rocker)
+    if isinstance(mechanism, FourBar):
+        h3, b = _first_moment(mechanism.coupler), mechanism.coupler.length
+        turning = crank + mechanism.coupler.mass * a - h3 * (a / b)
+        return {"crank": -turning, "rocker": -rocker - h3 * (mechanism.rocker.length / b)}
+    return {"crank": -crank - mechanism.block_mass * a, "rocker": -rocker - _first_moment(mass_of(mechanism, "block"))}
+
+
+def _weight(link: str, moment: Any, radius: Number) -> Counterweight:
+    angle = np.degrees(np.arctan2(moment.imag, moment.real))
+    return Counterweight(link, _plain(abs(moment) / radius), at=(radius, _plain(angle)))

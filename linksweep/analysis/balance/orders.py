@@ -1,0 +1,105 @@
+"""orders(ds, "Fsx"): how much of a signal turns once, twice, … as fast as the crank.
+
+    F(θ2) = Σ (c_k cos kθ2 + s_k sin kθ2) = Σ A_k cos(kθ2 − φ_k)
+
+Source: W. T. Thomson, Theory of Vibration with Applications (harmonic analysis); for engines C. F. Taylor, The
+Internal-Combustion Engine in Theory and Practice, volume 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import count_problems, name_problems, refuse, said
+from linksweep.mechanisms import INDICES
+from linksweep.results.compute import requested
+from linksweep.scene.grid import whole_turns
+
+TURN = 360.0
+
+
+def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
+    """Fourier orders of signals over a whole cycle: of shaking forces, of torques, of accelerations.
+
+    Parameters
+    ----------
+    ds : Dataset over a whole cycle in equal steps, as from ``sweep(scene, theta2=720)``
+    of : names of its variables
+    n : the highest order; in a cycle of two turns (four-stroke) there are half orders too, in one of three thirds
+
+    Returns
+    -------
+    Dataset with the dim `order` (0, 1, 2, … n; 0 is the mean over theta2) in place of theta2. For each signal
+    `Fsx_amplitude` and, in its unit, the coefficients `Fsx_cos`, `Fsx_sin`; and `Fsx_phase` [degree], the angle k·θ2 at
+    which the order is largest. Where a sample is not ok, that design's orders are NaN.
+
+    Raises
+    ------
+    ValueError
+        For unknown names, angles that are not a whole cycle in equal steps, and more orders than
+        half the samples of a turn can tell.
+
+    Notes
+    -----
+    Sums over samples, exact to rounding for all orders below the sampling's limit where the signal is smooth; of
+    a signal with jumps, amplitudes err by about its jump divided by the number of samples.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> shaking = ls.sweep(ls.example("engine"), outputs=["Fsx", "Fsy"])
+    >>> found = ls.orders(shaking, "Fsy", n=4)
+    >>> found.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
+    [4460.0, 820.0]
+    """
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset, as from ls.sweep"])
+    names = requested("of", of)
+    index = next((dim for dim in INDICES if dim in ds.dims), "theta2")
+    refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])
+    known = [str(name) for name in ds.data_vars if name != "status"]
+    refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))
+    angles = ds[index].values.astype(float)
+    period = _period(angles, index)
+    most = len(angles) * TURN / period / 2.0
+    few = f"n = {said(n)}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
+    refuse([] if n < most else [few])
+    order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
+    waves = [xr.DataArray(wave, dims=("order", index)) for wave in cos_sin(np.multiply.outer(order, angles))]
+    weight = xr.DataArray(np.where(order == 0.0, 1.0, 2.0) / len(angles), dims="order")
+    variables: dict[str, xr.DataArray] = {}
+    for name in names:
+        signal = ds[name].broadcast_like(ds[index])  # what does not change is all mean
+        variables |= _named(name, ds[name], *(weight * xr.dot(signal, wave, dim=index) for wave in waves))
+    said_order = {"units": "1", "long_name": f"multiple of one turn of the {'crank' if index == 'theta2' else 'car'}"}
+    return xr.Dataset(variables).assign_coords(order=("order", order, said_order))
+
+
+def _named(name: str, signal: xr.DataArray, cos: xr.DataArray, sin: xr.DataArray) -> dict[str, xr.DataArray]:
+    units, said_of = signal.attrs.get("units", ""), signal.attrs.get("long_name", name)
+    amplitude, phase = np.hypot(cos, sin), np.degrees(np.arctan2(sin, cos))
+    found: dict[str, tuple[Any, str, str]] = {
+        f"{name}_amplitude": (amplitude, units, "amplitude of each order"),
+        f"{name}_phase": (phase, "degree", "order times crank angle at which each order is largest"),
+        f"{name}_cos": (cos, units, "coefficient of the cosine of each order"),
+        f"{name}_sin": (sin, units, "coefficient of the sine of each order"),
+    }
+    return {
+        key: values.transpose(..., "order").assign_attrs(units=unit, long_name=f"{words} of: {said_of}")
+        for key, (values, unit, words) in found.items()
+    }
+
+
+def _period(angles: np.ndarray, index: str) -> float:
+    """Return the turns [degree] that the angles divide evenly, in any order."""
+    period = whole_turns(np.sort(angles), TURN) if len(angles) > 2 else None
+    if period is not None:
+        return period
+    raise ValueError(
+        f"{index} has {len(angles)} angles from {angles.min():g} to {angles.max():g}: orders take a whole cycle in "
+        f"equal steps; sweep with a count, such as {index}=720"
+    )

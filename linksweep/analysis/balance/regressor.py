@@ -1,0 +1,172 @@
+"""regressor(scene, [...]): how each force depends on the mass distribution of the links, on which it depends linearly.
+
+With h = m·(xG, yG) the first moment of a link about its first pin, in its own axes, and J its moment of inertia about
+that pin, every force and torque at given angles and speeds is
+
+    F(θ2) = Σ (∂F/∂m · m + ∂F/∂mx · mx + ∂F/∂my · my + ∂F/∂J · J) + what the loads make alone
+
+since `linksweep.physics.inertia` is linear in them. The coefficients come from sweeps of links with one of them alone.
+
+Source: W. Khalil and E. Dombre, Modeling, Identification and Control of Robots (identification of the dynamic
+parameters), for linkages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.pins.bearings import joined
+from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import Number, refuse
+from linksweep.mechanisms import LoopTrack
+from linksweep.mechanisms.links import Bar, Disk, Link
+from linksweep.results.compute import quantity_problems, requested, require_scene
+from linksweep.results.dataset import provenance
+from linksweep.results.sweep import sweep
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+PROBE = "_probe"
+LINEAR_UNITS = ("N", "N m", "W")
+UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m2"}
+OF_LINK = tuple(UNITS)
+
+
+class Placed(NamedTuple):
+    """A mass distribution, with the names that a link has for its numbers."""
+
+    cg_distance: Number
+    cg_angle: Number
+    mass: Number
+    inertia: Number
+
+
+def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
+    """Coefficients of the links' mass distributions in forces and torques.
+
+    Parameters
+    ----------
+    scene : Scene without friction
+    outputs : names of components of forces, of torques and powers ("F32x", "T12", "Fsx", "Ms")
+    theta2 : count of crank angles, or angles [degree]
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    Dataset with, for each output, the coefficients over (…, theta2, parameter), and `F32x_of_loads` (…, theta2), what
+    is there without any mass; `value` (…, parameter), what the parameters are in the scene. Parameters of a link are
+    "crank.m" [kg], "crank.mx" and "crank.my" [kg m], mass times the centre of gravity's coordinates from the first pin
+    in the link's axes, and "crank.J" [kg m²], moment of inertia about that pin; a slider does not turn and has no J.
+
+    Raises
+    ------
+    ValueError
+        For names of what is not linear in the masses, friction, and a car in a loop.
+
+    Notes
+    -----
+    Equation and source: `linksweep.analysis.balance.regressor`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.example("press")
+    >>> found = ls.regressor(scene, ["T12"], theta2=36)
+    >>> torque = (found.T12 * found.value).sum("parameter") + found.T12_of_loads
+    >>> bool(abs(torque - ls.sweep(scene, theta2=36, outputs=["T12"]).T12).max() < 1e-12)
+    True
+    """
+    names = _checked(scene, outputs)
+    mechanism, quantity = scene.mechanism, scene.table.quantity
+    grid = crank_grid(theta2, scene.period, mechanism.index)
+    angles = grid.angles  # those of the loads' whole cycle
+    values = _values(mechanism)
+    probes = _with_masses(mechanism, list(values))
+    alone = sweep(replace(scene, mechanism=probes, loads=()), angles, names, threads=threads)
+    massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, names, threads=threads)
+    known = np.stack([np.broadcast_to(row, len(values)) for row in _values(probes).values()], axis=-1)
+    inverse = xr.DataArray(np.linalg.inv(known), {"parameter": list(values)}, ("parameter", PROBE))
+    found = {"value": joined(values.values(), "parameter", values).transpose(..., "parameter")}
+    for name in names:
+        spread = alone[name].expand_dims({PROBE: len(values)}) if PROBE not in alone[name].dims else alone[name]
+        said = f"coefficient of each parameter in: {quantity[name].long_name}"
+        column = xr.dot(spread, inverse, dim=PROBE).transpose(..., "parameter")
+        found |= {name: column.assign_attrs(units=quantity[name].units, long_name=said)}
+        found |= {f"{name}_of_loads": massless[name]}
+    found["value"].attrs = {"long_name": "what each parameter is in the scene, in the unit that `unit` says"}
+    found["value"] = found["value"].assign_coords(unit=("parameter", [UNITS[label.split(".")[-1]] for label in values]))
+    attributes = provenance(scene, f"linksweep.regressor(scene, {names})", {})
+    return xr.Dataset({**found, "status": massless["status"]}, attrs=attributes)
+
+
+def _checked(scene: Scene, outputs: Iterable[str]) -> list[str]:
+    require_scene(scene)
+    mechanism, quantity = scene.mechanism, scene.table.quantity
+    kind = "a car in a loop has no links: give a mechanism of links"
+    refuse([f"scene is of a {type(mechanism).__name__}: {kind}"] if isinstance(mechanism, LoopTrack) else [])
+    names = requested("outputs", outputs)
+    linear = [name for name, q in quantity.items() if q.units in LINEAR_UNITS and not q.squared]
+    refuse([problem for name in names for problem in quantity_problems("outputs", name, linear, scene)])
+    rubs = np.any(getattr(mechanism, "friction", 0.0))
+    refuse(["friction is not 0: forces are not linear in the masses then; make it 0"] if rubs else [])
+    return names
+
+
+def own_links(mechanism: Any) -> list[str]:
+    """Roles of the links whose mass distribution is given by a Link, Bar or Disk."""
+    return [role for role in mechanism.links if isinstance(getattr(mechanism, role, None), Link | Bar | Disk)]
+
+
+def moments(link: Any) -> tuple[Number, Number, Number, Number]:
+    """m, m·xG, m·yG and J of a link."""
+    cos, sin = cos_sin(link.cg_angle)
+    first = link.mass * link.cg_distance
+    return link.mass, first * cos, first * sin, link.inertia + first * link.cg_distance
+
+
+def mass_of(mechanism: Any, role: str) -> Any:
+    """Return a link, or the mass distribution of a block: numbers of the mechanism, such as block_mass."""
+    if role in own_links(mechanism):
+        return getattr(mechanism, role)
+    return Placed(*(getattr(mechanism, f"{role}_{name}", 0.0) for name in Placed._fields))
+
+
+def _values(mechanism: Any) -> dict[str, Number]:
+    """The parameters of a mechanism by label."""
+    found: dict[str, Number] = {}
+    for role in mechanism.links:
+        turns = role in own_links(mechanism) or hasattr(mechanism, f"{role}_inertia")
+        numbers = dict(zip(OF_LINK, moments(mass_of(mechanism, role)), strict=True))
+        found |= {f"{role}.{word}": number for word, number in numbers.items() if turns or word != "J"}
+    return found
+
+
+def _with_masses(mechanism: Any, labels: list[str]) -> Any:
+    """The mechanism over a dim of mass distributions, each with one parameter, or of mx and my one besides m and J.
+
+    Of no labels it has no mass at all, its centres of gravity where they are.
+    """
+
+    def only(role: str, *words: str) -> Number:
+        chosen = np.array([label in [f"{role}.{word}" for word in words] for label in labels], dtype=float)
+        return xr.DataArray(chosen, dims=PROBE) if labels else 0.0
+
+    changed: dict[str, Any] = {}
+    for role in mechanism.links:
+        part = mass_of(mechanism, role)
+        length = getattr(part, "length", mechanism.crank.length)
+        place = part.cg_distance, part.cg_angle
+        if labels:
+            place = float(np.max(length)) * only(role, "mx", "my"), 90.0 * only(role, "my")
+        numbers = Placed(*place, only(role, "m", "mx", "my"), only(role, "J"))._asdict()
+        if role in own_links(mechanism):
+            changed[role] = Link(length, **numbers)
+        else:
+            own = {f"{role}_{name}": number for name, number in numbers.items()}
+            changed |= {name: number for name, number in own.items() if hasattr(mechanism, name)}
+    return replace(mechanism, **changed)

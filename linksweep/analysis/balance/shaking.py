@@ -1,0 +1,48 @@
+"""The shaking moment about any point, from what a sweep gives about A."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from linksweep.base.validate import Rule, refuse, said
+from linksweep.scene.checked_number import checked_pair
+
+POINT = (Rule("length"), Rule("length"))
+
+
+def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.DataArray:
+    """Moment [N m] of the moving links' inertia on the ground about a point of the ground.
+
+    Parameters
+    ----------
+    ds : Dataset with Fsx, Fsy and Ms, as from ``sweep(scene, outputs=["Fsx", "Fsy", "Ms"])``
+    about : (x, y) of the point from A, in ground axes [m]; each may be a DataArray
+
+    Returns
+    -------
+    DataArray `Ms` [N m] over the dims of these, counter-clockwise: Ms about A less r × Fs.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without them, and a point that is none.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> shaking = ls.sweep(ls.example("press"), outputs=["Fsx", "Fsy", "Ms"])
+    >>> about_d = ls.shaking_moment(shaking, about=(0.20, 0.0))
+    >>> about_d.units, bool((about_d == shaking.Ms - 0.20 * shaking.Fsy).all())
+    ('N m', True)
+    """
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset, as from ls.sweep"])
+    missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
+    advice = 'sweep with outputs=["Fsx", "Fsy", "Ms"]'
+    refuse([f"ds has no {name}: {advice}" for name in missing])
+    about = checked_pair("about", about, POINT, "(x, y) in m from A")
+    moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
+    where = "the point given" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"
+    long_name = f"shaking moment of the moving links' inertia on the ground about {where}, counter-clockwise"
+    return moment.rename("Ms").assign_attrs(units="N m", long_name=long_name)

@@ -1,0 +1,1 @@
+"""Choose a design: objective, Pareto front, geometry."""

@@ -1,0 +1,136 @@
+"""pareto(ds, minimize=[...]): the designs that no other design beats in everything asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import name_problems, refuse, said
+from linksweep.mechanisms import INDICES
+from linksweep.results.compute import requested
+
+FRONT = "front"
+"""Dimension of a front whose designs had several."""
+BATCH = 64
+KEPT = ("ok", "partial_revolution")
+"""Words of a status whose designs have peaks to choose by: an arm moves over part of a turn, and is none the worse."""
+
+
+def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str] = ()) -> xr.Dataset:
+    """The Pareto front of a study: designs for which no other is as good in every objective and better in one.
+
+    Parameters
+    ----------
+    ds : Dataset over designs, as from `peaks`
+    minimize, maximize : names of variables or coordinates of it ("F32_peak", "coupler.length"); what else is wanted
+        can be put there first, as ``ds.assign(weight=...)``
+
+    Returns
+    -------
+    The same Dataset at those designs alone, the best in the first objective first, then in the second, and so on.
+    Equal designs are all kept. A design whose status is neither ok (0) nor partial_revolution (1), or with an objective
+    that is not finite, is never among them; of designs that must turn fully, give ``ds.where(ds.status == 0)``. One
+    design dim keeps its name; of several the designs lie along `front`, and their labels with them.
+    `linksweep.scene_at` makes scenes of them.
+
+    Raises
+    ------
+    ValueError
+        For names that are not there, that are no numbers, or that change over the revolution.
+
+    Notes
+    -----
+    Two objectives take one sort; more take a pass over the designs for each design of the front.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> study = ls.peaks(ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "omega2": (20, 30)}, n=64))
+    >>> front = ls.pareto(study, minimize=["F32_peak"], maximize=["omega2"])
+    >>> bool((front.omega2.diff("design") > 0).all())  # in order of F32_peak: what costs more gives more
+    True
+    """
+    objectives = _objectives(ds, minimize, maximize)
+    *together, sound_status = xr.broadcast(*objectives, has_peaks(ds))
+    dims, shape = sound_status.dims, sound_status.shape
+    refuse([] if dims else ["ds holds one design: there is nothing to choose from; give it a dimension of designs"])
+    costs = np.stack([item.values.reshape(-1).astype(float) for item in together], axis=-1)
+    sound = np.isfinite(costs).all(axis=1) & sound_status.values.reshape(-1)
+    designs = np.flatnonzero(sound)
+    designs = designs[front(costs[designs])]
+    return _at(ds, {str(dim): at for dim, at in zip(dims, np.unravel_index(designs, shape), strict=True)})
+
+
+def has_peaks(ds: xr.Dataset) -> xr.DataArray:
+    """Whether each design has peaks to choose by."""
+    if "status" not in ds.variables:
+        return xr.DataArray(True)
+    words = str(ds["status"].attrs.get("flag_meanings", "ok")).split()
+    return ds["status"].isin([code for code, word in enumerate(words) if word in KEPT])
+
+
+def front(costs: np.ndarray) -> np.ndarray:
+    """Rows of costs (designs, objectives) that no other dominates, in order of the columns; equal ones are all kept."""
+    order = np.lexsort(costs.T[::-1])  # only what comes before a row can dominate it
+    ordered = costs[order]
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    different = ordered[first]
+    best = _of_two(different) if costs.shape[1] <= 2 else _of_more(different)
+    return order[best[np.cumsum(first) - 1]]
+
+
+def _of_two(costs: np.ndarray) -> np.ndarray:
+    """Whether each of different rows in order has a last column below all before it."""
+    last = costs[:, -1]
+    before = np.minimum.accumulate(np.concatenate([[np.inf], last]))[:-1]
+    return last < before
+
+
+def _of_more(costs: np.ndarray) -> np.ndarray:
+    """The same for any number of columns: each row of the front strikes out what it dominates of all after it.
+
+    The rows with the least sum of ranks come first: they dominate the most, and nothing that comes later can dominate
+    them. Those struck out are dropped a batch of rows at a time.
+    """
+    rows = np.argsort(np.argsort(np.argsort(costs, axis=0), axis=0).sum(axis=1), kind="stable")
+    best = np.zeros(len(rows), dtype=bool)
+    while rows.size:
+        after = np.ascontiguousarray(costs[rows].T)
+        left = np.ones(len(rows), dtype=bool)
+        for k in range(min(BATCH, len(rows))):
+            if left[k]:
+                left[k:] &= (after[:, k:] < after[:, k, None]).any(axis=0)
+                best[rows[k]] = True
+        rows = rows[BATCH:][left[BATCH:]]
+    return best
+
+
+def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
+    """What is asked for, all to be small."""
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset over designs, as from ls.peaks"])
+    wanted = [("minimize", name) for name in requested("minimize", minimize)]
+    wanted += [("maximize", name) for name in requested("maximize", maximize)]
+    refuse([] if wanted else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
+    names = list(map(str, ds.variables))
+    refuse([problem for path, name in wanted for problem in name_problems(path, name, names)])
+    refuse([problem for path, name in wanted for problem in _variable_problems(path, ds[name])])
+    return [-ds[name] if path == "maximize" else ds[name] for path, name in wanted]
+
+
+def _variable_problems(path: str, values: xr.DataArray) -> list[str]:
+    if values.dtype.kind not in "fiu":
+        return [f"{path}: {values.name} holds {values.dtype} values, which must be numbers"]
+    over = [dim for dim in INDICES if dim in values.dims]
+    advice = f'ls.peaks(scene, of=["{values.name}"]) has one number for each design; take those'
+    return [f"{path}: {values.name} depends on {over[0]}, and must not; {advice}"] if over else []
+
+
+def _at(ds: xr.Dataset, designs: dict[str, np.ndarray]) -> xr.Dataset:
+    """A Dataset at positions along its design dims, taken together; dims without labels get their positions."""
+    ds = ds.assign_coords({dim: np.arange(ds.sizes[dim]) for dim in designs if dim not in ds.coords})
+    along = next(iter(designs)) if len(designs) == 1 else FRONT
+    return ds.isel({dim: xr.Variable(along, at) for dim, at in designs.items()})

@@ -1,0 +1,1 @@
+"""Answer what the drive must give: duty, motor, flywheel, several cylinders."""

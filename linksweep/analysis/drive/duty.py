@@ -1,0 +1,122 @@
+"""duty(scene): what the drive gives over a cycle: torque, power, work, and what it takes back."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import refuse
+from linksweep.mechanisms import LoopTrack
+from linksweep.results.compute import require_scene
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
+from linksweep.results.peak_search.quadrature import cycle_time
+from linksweep.results.peaks import peaks
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+
+class Entry(NamedTuple):
+    """A result: the name of what `peaks` gives for it, and its words; work is mean power over the time of a cycle."""
+
+    name: str
+    source: str
+    long_name: str
+    work: bool = False
+
+
+ENTRIES = (
+    Entry("effort_mean", "{drive}_mean", "mean over time of the drive's torque or force"),
+    Entry("effort_rms", "{drive}_rms", "root mean square over time of the drive's torque or force"),
+    Entry("effort_peak", "{drive}_peak", "largest magnitude of the drive's torque or force"),
+    Entry("power_mean", "power_mean", "mean power of the drive over time"),
+    Entry("power_max", "power_max", "largest power that the drive feeds"),
+    Entry("power_min", "power_min", "least power of the drive; negative where the mechanism drives it"),
+    Entry("work", "power_mean", "work of the drive in a cycle", work=True),
+    Entry("work_fed", "power_fed_mean", "work that the drive feeds in a cycle, where its power is positive", work=True),
+    Entry(
+        *("work_regenerated", "power_regenerated_mean"),
+        "work that the drive takes back in a cycle, where its power is negative, counted positive",
+        work=True,
+    ),
+    Entry("work_of_loads", "load_power_mean", "work of all loads in a cycle, positive when they feed", work=True),
+)
+LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a cycle, never positive", work=True)
+
+
+def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset:
+    """Torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
+
+    Parameters
+    ----------
+    scene : Scene, or MultiCylinder, of a machine whose crank turns in one direction: omega2 is nowhere 0
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    Dataset over the design dims.
+
+    - `effort_mean`, `effort_rms`, `effort_peak`: of the drive's torque [N m], of a cylinder its force [N]
+    - `power_mean`, `power_max`, `power_min` [W]
+    - `work`, `work_fed`, `work_regenerated` [J] in a cycle: of one turn, or two of a four-stroke engine; `work` is
+      `work_fed` less `work_regenerated`
+    - `work_of_loads`, and of a slider-crank `work_of_friction` [J]; with `work` they add up to 0 where alpha2 is that
+      of omega2
+    - `status` as in `peaks`; where a revolution is not whole, there is no work of a cycle (NaN)
+
+    Raises
+    ------
+    ValueError
+        For a car in a loop, and a crank that stands still or turns back.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> found = ls.duty(ls.example("press"))
+    >>> found.work.units, bool(abs(found.work + found.work_of_loads) < 1e-9)
+    ('J', True)
+    """
+    one = one_cylinder(scene)
+    require_scene(one)
+    refuse(turning_problems(one))
+    drive = one.mechanism.drives[one.drive]
+    entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
+    sources = {entry.source.format(drive=drive): entry for entry in entries}
+    wanted = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
+    found = peaks(scene, of=list(dict.fromkeys(wanted)), threads=threads)
+    time = cycle_time(one, threads)
+    variables = {entry.name: _value(entry, found[entry.source.format(drive=drive)], time) for entry in entries}
+    whole = found["status"] == 0
+    for entry in entries:
+        if entry.work and not bool(whole.all()):
+            variables[entry.name] = variables[entry.name].where(whole)
+    result = found.drop_vars([name for name in found.data_vars if name != "status"]).assign(variables)
+    return result.assign_attrs(command="linksweep.duty(scene)")
+
+
+def _value(entry: Entry, found: xr.DataArray, time: Any) -> xr.DataArray:
+    value = found * time if entry.work else found
+    return value.assign_attrs(units="J" if entry.work else found.units, long_name=entry.long_name)
+
+
+def turning_problems(scene: Scene) -> list[str]:
+    """List why a scene has no crank that turns in one direction."""
+    kind = type(scene.mechanism).__name__
+    if kind == LoopTrack.__name__:
+        return [f"scene.mechanism is a {kind}, which has no crank"]
+    grid = crank_grid(round(2.0 * scene.period), scene.period, scene.mechanism.index)
+    omega2 = scene.at(grid).omega2 if scene.changes_speed else scene.omega2
+    if np.any(np.equal(omega2, 0.0)):
+        return ["omega2 = 0 rad/s: must turn; give the speed of the crank"]
+    if scene.changes_speed and np.any(omega2.min(grid.dim) * omega2.max(grid.dim) < 0.0):
+        return [f"omega2: changes its sign over {grid.dim}: such a crank does not come round; give one sign"]
+    return []
+
+
+def steady_problems(scene: Scene) -> list[str]:
+    """List why a scene has no crank that turns steadily."""
+    if scene.changes_speed:
+        index = scene.mechanism.index
+        return [f"omega2: changes with {index}, but its flywheel makes the speed change; give the mean speed"]
+    return turning_problems(scene)

@@ -1,0 +1,165 @@
+"""flywheel(scene, fluctuation=0.02): the flywheel that keeps a crank's speed within bounds, and that speed.
+
+A drive of constant torque T_d, the work of a cycle over its angle, and a mechanism that resists by T_s(θ) at rest:
+
+    d/dθ [½ (J_f + J(θ)) ω²] = T_d − T_s(θ)        so that        ½ (J_f + J) ω² = E0 + E(θ),   E = ∫ (T_d − T_s) dθ
+
+With ω between Ω1 = ω2 (1 + δ/2) and Ω2 = ω2 (1 − δ/2), touching both, E0 falls out of the two extremes, and exactly
+
+    J_f = (max(E − ½ J Ω1²) − min(E − ½ J Ω2²)) / (δ ω2²)
+
+the two tangents of Wittenbauer's diagram. Source: F. Wittenbauer, Graphische Dynamik (1923); R. L. Norton, Design of
+Machinery, chapter "Dynamic Force Analysis" (flywheels), which neglects how J changes the speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.drive.duty import steady_problems
+from linksweep.base.validate import Number, Rule, refuse, said
+from linksweep.results.compute import require_scene
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
+from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import checked_number
+from linksweep.scene.scene import Scene
+
+FLUCTUATION = Rule("dimensionless", above=0.0)
+INERTIA = Rule("inertia", at_least=0.0)
+BISECTIONS = 60
+
+
+def flywheel(
+    scene: Scene | MultiCylinder, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
+) -> xr.Dataset:
+    """The flywheel on the crank for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
+
+    Parameters
+    ----------
+    scene : Scene or MultiCylinder whose omega2 is the mean speed, (largest + least)/2
+    fluctuation : wanted coefficient, (largest − least speed)/mean; or
+    inertia : of a given flywheel about the crank's axis [kg m²]; 0 for none. Either may be a DataArray
+    theta2 : a count of angles in the cycle
+
+    Returns
+    -------
+    Dataset over the design dims.
+
+    - `flywheel_inertia` [kg m²], of what turns with the crank besides its own; 0 where none is needed
+    - `speed` [rad/s] of the crank over theta2, with the drive's torque constant
+    - `fluctuation`: the coefficient that results; smaller than asked for where no flywheel is needed
+    - `drive_torque` [N m]: that constant torque, on the crank
+    - `energy_fluctuation` [J]: most less least of what is stored at constant speed
+
+    NaN where a revolution is not whole, and where that mean speed cannot be kept: it would stall on the way.
+
+    Raises
+    ------
+    ValueError
+        For both or neither of fluctuation and inertia, numbers out of bounds, and a crank that stands still or changes
+        its speed.
+
+    Notes
+    -----
+    Loads, friction and dampers are taken at their values at the mean speed; where they do not depend on the speed, the
+    result is that of the equation of motion, to the fourth order in the step (at jumps of loads, to the first).
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> found = ls.flywheel(ls.example("press"), fluctuation=0.05)
+    >>> found.flywheel_inertia.units, round(float(found.fluctuation), 12)
+    ('kg m2', 0.05)
+    """
+    require_scene(one_cylinder(scene))
+    refuse(_problems(one_cylinder(scene), fluctuation, inertia))
+    if inertia is None:
+        fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
+        refuse(_too_large(fluctuation))
+    else:
+        inertia = checked_number("inertia", inertia, INERTIA)
+    cycle, one = _at_constant_speed(scene, theta2), one_cylinder(scene)
+    index, mean = one.mechanism.index, abs(one.omega2)
+    J, torque = (cycle[name].broadcast_like(cycle[index]) for name in ("reduced_inertia", "reduced_torque"))
+    stored, drive = _work(torque, one.period, index)
+    E = stored + 0.5 * mean**2 * J
+    size = _wanted(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
+    speed = _speed(E, J, size, mean, index)
+    spread = (speed.max(index, skipna=False) - speed.min(index, skipna=False)) / mean
+    made = {
+        "flywheel_inertia": (size, "kg m2", "moment of inertia of the flywheel about the crank's axis"),
+        "speed": (np.sign(one.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
+        "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
+        "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
+        "energy_fluctuation": (
+            *(stored.max(index, skipna=False) - stored.min(index, skipna=False), "J"),
+            "most less least work that the drive's constant torque has done ahead of what it takes at constant speed",
+        ),
+    }
+    variables = {name: xr.DataArray(v).assign_attrs(units=u, long_name=said) for name, (v, u, said) in made.items()}
+    attributes = cycle.attrs | {"command": "linksweep.flywheel(scene, ...)"}
+    return cycle[["status"]].assign(variables).assign_attrs(attributes)
+
+
+def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
+    names = ["reduced_torque", "reduced_inertia"]
+    if isinstance(scene, MultiCylinder):
+        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, outputs=names)
+    return sweep(replace(scene, alpha2=0.0), theta2, outputs=names)
+
+
+def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
+    found = steady_problems(scene)
+    if (fluctuation is None) == (inertia is None):
+        found.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
+    return found
+
+
+def _too_large(fluctuation: Number) -> list[str]:
+    """With 2, the crank would stand still at its least speed."""
+    return [f"fluctuation = {said(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
+
+
+def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """∫ (T_d − T) dθ from the first angle on, at every angle; and T_d. By the periodic cubic spline."""
+    from scipy.interpolate import CubicSpline
+
+    torque = torque.transpose(..., index)
+    angle = np.radians(np.append(torque[index].values, torque[index].values[0] + period))
+    closed = np.concatenate([torque.values, torque.values[..., :1]], axis=-1)
+    whole = np.isfinite(closed).all(axis=-1, keepdims=True)
+    integral = CubicSpline(angle, np.where(whole, closed, 0.0), axis=-1, bc_type="periodic").antiderivative()(angle)
+    integral = np.where(whole, integral - integral[..., :1], np.nan)
+    mean = integral[..., -1] / (angle[-1] - angle[0])
+    stored = mean[..., None] * (angle[:-1] - angle[0]) - integral[..., :-1]
+    return torque.copy(data=stored), torque.isel({index: 0}, drop=True).copy(data=mean)
+
+
+def _wanted(E: xr.DataArray, J: xr.DataArray, mean: Number, fluctuation: Number, index: str) -> xr.DataArray:
+    """J_f of the module's equation, 0 where none is needed."""
+    fast, slow = mean * (1.0 + 0.5 * fluctuation), mean * (1.0 - 0.5 * fluctuation)
+    highest, lowest = (E - 0.5 * J * fast**2).max(index, skipna=False), (E - 0.5 * J * slow**2).min(index, skipna=False)
+    size = (highest - lowest) / (fluctuation * mean**2)
+    return size.where(~(size < 0.0), 0.0)
+
+
+def _speed(E: xr.DataArray, J: xr.DataArray, size: xr.DataArray, mean: Number, index: str) -> xr.DataArray:
+    """Speed at every angle whose largest and least have this mean: E0 by bisection, in which that grows."""
+    total = size + J
+    low = -E.min(index, skipna=False)
+    stalls = _middle(E + low, total, index) > mean
+    high = (0.5 * total * mean**2 - E).max(index, skipna=False)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = _middle(E + middle, total, index) > mean
+        low, high = low.where(above, middle), high.where(~above, middle)
+    return ((2.0 * (E + high).clip(min=0.0) / total) ** 0.5).where(~stalls)
+
+
+def _middle(energy: xr.DataArray, total: xr.DataArray, index: str) -> xr.DataArray:
+    speed = (2.0 * energy.clip(min=0.0) / total) ** 0.5
+    return 0.5 * (speed.max(index, skipna=False) + speed.min(index, skipna=False))

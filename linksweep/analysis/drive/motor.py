@@ -1,0 +1,150 @@
+"""motor_load(scene, motor): what a motor behind a gear must give at every angle, beside what it can."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.conversion import all_to_float64, to_float64
+from linksweep.base.validate import Number, Rule, number_problems, refuse, said
+from linksweep.results.compute import require_scene
+from linksweep.results.over_time import mean_over_time
+from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import array_unit_problems, checked_number
+from linksweep.scene.scene import Scene
+
+INERTIA = Rule("inertia", at_least=0.0)
+CURVE = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torque", at_least=0.0)}
+RATIO = Rule("dimensionless", above=0.0)
+EFFICIENCY = Rule("dimensionless", above=0.0)
+DRIVEN = {"T12": 2, "T13": 3, "T14": 4}
+"""The link that each torque turns."""
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor: its curve of torque over speed, and the inertia of its rotor.
+
+    Parameters
+    ----------
+    speeds : of the curve's points [rad/s], from 0, growing
+    torques : the most that it gives at these speeds [N m]; straight lines between; none beyond the last speed
+    inertia : of its rotor [kg m²]
+
+    Raises
+    ------
+    ValueError
+        For curves that are none.
+
+    Examples
+    --------
+    A direct-current motor: 2 N m when held, 400 rad/s when free.
+
+    >>> import linksweep as ls
+    >>> ls.Motor(speeds=(0.0, 400.0), torques=(2.0, 0.0), inertia=1e-4).torque_at(100.0)
+    1.5
+    """
+
+    speeds: Sequence[float]
+    torques: Sequence[float]
+    inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "inertia", to_float64(self.inertia, INERTIA.kind))
+        found = number_problems("inertia", self.inertia, INERTIA)
+        for name, rule in CURVE.items():
+            points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
+            found += array_unit_problems(name, getattr(self, name), rule.kind)
+            found += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
+            object.__setattr__(self, name, tuple(points))
+        count = len(self.speeds)
+        if len(self.torques) != count or count < 2:
+            found.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
+        elif not found and (self.speeds[0] != 0.0 or np.any(np.diff(self.speeds) <= 0.0)):
+            found.append(f"speeds = {said(list(self.speeds))}: must grow from 0")
+        refuse(found)
+
+    def torque_at(self, speed: Any) -> Any:
+        """The most torque [N m] that it gives at a speed [rad/s], in either direction."""
+        at = np.abs(speed)
+        torque = np.interp(at, self.speeds, self.torques, right=0.0)
+        return float(torque) if np.ndim(torque) == 0 else torque
+
+
+def motor_load(
+    scene: Scene, motor: Motor, ratio: Number = 1.0, efficiency: Number = 1.0, theta2: Any = 720
+) -> xr.Dataset:
+    """Torque–speed points of a motor that drives a machine through a gear.
+
+    Parameters
+    ----------
+    scene : Scene driven by the torque on one of its links
+    motor : Motor
+    ratio : of the gear: the motor's speed per that of the driven link; may be a DataArray
+    efficiency : of the gear, in (0, 1]: power lost on the way to the machine, and again on the way back
+    theta2 : as in `sweep`
+
+    Returns
+    -------
+    Dataset over the dims of a sweep (and those of ratio and efficiency).
+
+    - `motor_speed` [rad/s] and `motor_torque` [N m], which has that for the rotor's own inertia in it
+    - `available_torque` [N m]: the most that the motor gives at that speed
+    - `torque_margin` [N m]: available less |motor_torque|; negative where the motor is too weak
+    - `reflected_inertia` [kg m²]: the rotor's inertia as the driven link feels it, inertia·ratio²
+    - `motor_torque_rms` [N m]: root mean square over time, what heats the motor
+
+    Raises
+    ------
+    ValueError
+        For a drive that is no torque on a link, and numbers out of bounds.
+
+    Notes
+    -----
+    motor_torque = T/(ratio·η) + inertia·ratio·α where the drive feeds the machine, T·η/ratio + … where the machine
+    drives it. Source: R. L. Norton, Design of Machinery, chapters "Kinematics Fundamentals" (motors and drivers) and
+    "Dynamics Fundamentals" (inertia seen through a gear).
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> servo = ls.Motor(speeds=(0.0, 300.0, 600.0), torques=(4.0, 4.0, 1.0), inertia=2e-4)
+    >>> found = ls.motor_load(ls.example("press"), servo, ratio=10.0)
+    >>> bool((found.torque_margin > 0.0).all()), round(float(found.reflected_inertia), 9)
+    (True, 0.02)
+    """
+    require_scene(scene)
+    refuse(_problems(scene, motor))
+    ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
+    refuse([f"efficiency = {said(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
+    torque = scene.mechanism.drives[scene.drive]
+    omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
+    cycle = sweep(scene, theta2, outputs=[torque, omega, alpha])
+    index = scene.mechanism.index
+    T, speed = cycle[torque].broadcast_like(cycle[index]), ratio * cycle[omega]
+    fed = T * cycle[omega] > 0.0
+    needed = xr.where(fed, T / efficiency, T * efficiency) / ratio + motor.inertia * ratio * cycle[alpha]
+    available = xr.apply_ufunc(motor.torque_at, speed).where(speed.notnull())
+    made = {
+        "motor_speed": (speed, "rad s-1", "angular velocity of the motor"),
+        "motor_torque": (needed, "N m", "torque of the motor, in the direction of the driven link's"),
+        "available_torque": (available, "N m", "the most torque that the motor gives at its speed"),
+        "torque_margin": (available - abs(needed), "N m", "available torque less that needed"),
+        "reflected_inertia": (xr.DataArray(motor.inertia * ratio**2), "kg m2", "rotor inertia at the driven link"),
+        "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
+    }
+    variables = {name: v.assign_attrs(units=unit, long_name=words) for name, (v, unit, words) in made.items()}
+    attributes = cycle.attrs | {"command": "linksweep.motor_load(scene, ...)"}
+    return cycle[["status"]].assign(variables).assign_attrs(attributes)
+
+
+def _problems(scene: Scene, motor: Any) -> list[str]:
+    found = [] if isinstance(motor, Motor) else [f"motor = {said(motor)}: must be a Motor"]
+    torque = scene.mechanism.drives.get(scene.drive)
+    if torque not in DRIVEN:
+        found.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
+    return found

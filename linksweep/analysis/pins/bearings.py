@@ -1,0 +1,346 @@
+"""bearings(scene, {...}): what each pin asks of its bearing over a cycle: load diagrams, pressure, friction, life.
+
+Equations and sources: of rolling bearings `linksweep.analysis.pins.bearing_life`, of plain ones `linksweep.physics.bearing`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.pins.bearing_life import MEANINGS, UNBOUNDED, Rotation, rotation_under_load
+from linksweep.base.equality import ByContent
+from linksweep.base.memory import require_memory
+from linksweep.base.validate import (
+    Number,
+    choice_problems,
+    count_problems,
+    name_problems,
+    parameter,
+    problems,
+    refuse,
+    said,
+)
+from linksweep.physics import bearing as plain
+from linksweep.results.compute import angles_missing, require_scene
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.dataset import flags
+from linksweep.results.peak_search.paths import Part
+from linksweep.results.sweep import sweep
+from linksweep.scene.checked_number import said_unit_problems
+from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
+FRAMES = ("ground", "journal", "bearing")
+SAID = {
+    "F": ("N", "magnitude of the pin force"),
+    "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
+    "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
+    "rotation_speed": ("rad s-1", "angular velocity of link j relative to link i, of the pin force Fij"),
+    "rotation_share": ("1", "share of the cycle's rotation of the journal in its bearing that this sample stands for"),
+    "rotation": ("degree", "angle that the journal turns in its bearing on the crank's way, to and fro added up"),
+    "pressure": ("Pa", "projected pressure, force over diameter times length"),
+    "sliding_speed": ("m s-1", "sliding speed of the journal in its bearing, never negative"),
+    "pv": ("Pa m s-1", "projected pressure times sliding speed"),
+    "friction_loss": ("W", "power that friction in the pin takes, never negative"),
+    "equivalent_load": ("N", "constant load of the same life as the cycle's loads"),
+    "L10": ("1e6", "revolutions of the journal in its bearing that nine of ten rolling bearings reach"),
+    "L10h": ("h", "running time that nine of ten rolling bearings reach"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing(ByContent):
+    """The bearing of a pin.
+
+    Parameters
+    ----------
+    diameter : of the journal [m]
+    length : of the bush [m]
+    friction : coefficient of Coulomb friction between the two; its friction circle is exact, μ·r/√(1 + μ²)
+    capacity : basic dynamic load rating C of a rolling bearing [N]
+    kind : "ball" or "roller", for the exponent of its life
+
+    All may be left out; what needs them is then NaN. Numbers may be DataArrays of design dims.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Bearing(diameter=0.02, length=0.03, friction=0.1).kind
+    'ball'
+    """
+
+    diameter: Number = parameter("length", None, above=0.0)
+    length: Number = parameter("length", None, above=0.0)
+    friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
+    capacity: Number = parameter("force", None, above=0.0)
+    kind: str = "ball"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        refuse(problems(self) + choice_problems("kind", self.kind, EXPONENTS))
+        refuse(said_unit_problems(self))
+
+    @property
+    def exponent(self) -> float:
+        """p of the module's equations."""
+        return EXPONENTS[self.kind]
+
+
+def bearings(
+    scene: Scene | MultiCylinder,
+    given: Mapping[str, Bearing] | None = None,
+    theta2: Any = 720,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Loads, rotation, friction and life of the bearings in the pins of a mechanism.
+
+    Parameters
+    ----------
+    scene : Scene; or a MultiCylinder, for the main bearings of its crankshaft: dim `main` in place of `pin`
+    given : a Bearing by pin, {"B": ls.Bearing(...)}, or by main bearing, {"main1": ls.Bearing(...)}; those that are not
+        named have one without sizes
+    theta2 : count of crank angles over the cycle; or, of a machine that moves over part of a turn, any array of angles
+        [degree], of which the least and the largest are the ends of its way
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    Dataset over (design dims…, pin, frame, theta2), each variable over those that it depends on:
+
+    - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on link j;
+      what link i feels is the opposite. "ground" are the ground's axes, "journal" and "bearing" those of the links that
+      have them (x along the line of pins, of a slider along its guide). At A and B the crank has the journal, at D the
+      rocker; at C the coupler, but of a slider-crank the slider, as an engine's piston has the gudgeon pin.
+    - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` of each sample in all rotation in the pin
+    - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
+      friction; `linksweep.pin_friction` couples the two
+    - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
+      revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of samples
+    - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
+
+    `status` is that of each sample; angles that are not ok are left out of integrals, of that over time too.
+    `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
+    unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
+
+    Raises
+    ------
+    ValueError
+        For a machine without pins, a pin that it lacks, what is no Bearing, angles that are none or of more than a
+        cycle, and arrays over theta2 that do not say of which angles they are.
+
+    Notes
+    -----
+    Integrals to 1e-10. What moves to and fro over part of a turn is taken to come back as it went. Source: equations of
+    `linksweep.analysis.pins.bearing_life` and `linksweep.physics.bearing`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> found = ls.bearings(ls.example("press"), {"C": ls.Bearing(diameter=0.01, length=0.02, capacity=5000.0)})
+    >>> round(float(found.rotation.sel(pin="A")), 6), bool(found.L10.sel(pin="C") > 1.0)
+    (360.0, True)
+    """
+    if isinstance(scene, MultiCylinder):
+        from linksweep.analysis.pins.main_bearings import main_bearings  # here: it takes what is below
+
+        return main_bearings(scene.in_memory, given, theta2, threads)
+    pins = checked_pins(scene, given)
+    scene = in_memory(scene)
+    grid = crank_grid(theta2, scene.period)
+    part = None if grid.period else (float(grid.angles.min()), float(grid.angles.max()))
+    refuse(angles_missing(scene) + _part_problems(part, scene.period))
+    names = [name for pin, links in pins.items() for name in _outputs(scene, pin, links)]
+    cycle = sweep(scene, theta2, ["omega2", *dict.fromkeys(names)], threads=threads)
+    fitted = {pin: (given or {}).get(pin, Bearing()) for pin in pins}
+    forces, exponents = {pin: _force(links) for pin, links in pins.items()}, {p: b.exponent for p, b in fitted.items()}
+    turned, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
+    parts = [
+        _of_pin(cycle, pins[pin], cycle[f"omega_{pin}"], bearing, reach)
+        | _in_frames(cycle, *pins[pin], scene.mechanism.journals[pin])
+        | of_life(turned, pin, bearing)
+        for pin, bearing in fitted.items()
+    ]
+    found = {
+        name: joined([part[name] for part in parts], "pin", pins).assign_attrs(attributes_of(name)) for name in parts[0]
+    }
+    angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
+    attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
+    return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes)
+
+
+def _part_problems(part: Part | None, period: float) -> list[str]:
+    """List why two angles are no ends of a crank's way."""
+    if part is None or 0.0 < part[1] - part[0] <= period:
+        return []
+    ends = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
+    if part[0] == part[1]:
+        return [f"{ends}: is one angle; give the ends of a part of a turn, or a count"]
+    return [f"{ends}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
+
+
+def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
+    """The pins of a scene's mechanism; ValueError for a scene without, and for bearings of pins that it lacks."""
+    require_scene(scene)
+    pins = scene.mechanism.pins
+    refuse(
+        []
+        if pins
+        else [f"scene is of a {type(scene.mechanism).__name__}, which has no pins: give a mechanism of links"]
+    )
+    refuse(bearing_problems(given, pins))
+    return pins
+
+
+def bearing_problems(given: Any, pins: Iterable[str]) -> list[str]:
+    """List what is wrong with bearings by pin."""
+    if not isinstance(given, Mapping | None):
+        return [f'given = {said(given)}: must be as {{"B": ls.Bearing(...)}}']
+    wrong = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
+    return wrong + [
+        f"given.{pin} = {said(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
+    ]
+
+
+def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
+    i, j = links
+    force = f"F{i}{j}"
+    frames = [f"{force}{axis}_link{k}" for k in (i, j) if k != 1 for axis in "xy"]
+    return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
+
+
+def attributes_of(name: str) -> dict[str, Any]:
+    if name == "life_status":
+        return flags("which loads the life of the bearing is that of", MEANINGS)
+    return dict(zip(("units", "long_name"), SAID[name], strict=True))
+
+
+def _force(links: tuple[int, int]) -> str:
+    return "F{}{}".format(*links)
+
+
+def _of_pin(
+    cycle: xr.Dataset, links: tuple[int, int], speed: xr.DataArray, bearing: Bearing, reach: xr.DataArray
+) -> dict[str, xr.DataArray]:
+    """Return load, motion and friction at each sample."""
+    force = cycle[_force(links)]
+    found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
+    return found | on_journal(force, speed, bearing)
+
+
+def on_journal(force: xr.DataArray, speed: xr.DataArray, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return pressure, sliding and friction of a journal under a load at each sample."""
+    diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
+    sliding = plain.sliding_speed(speed, diameter)
+    pressure = plain.projected_pressure(force, diameter, length)
+    found = {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
+    radius = plain.friction_circle(bearing.friction, diameter)
+    return found | {"friction_loss": plain.friction_loss(radius, force, speed)}
+
+
+def of_life(turned: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
+    """Return rotation, equivalent load and life of the bearing in a pin."""
+    return turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
+
+
+def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
+    """Return the share of each sample in the relative rotation of all that are ok."""
+    turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0) * reach
+    return turns / turns.sum("theta2", skipna=True, min_count=1)
+
+
+def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
+    """Return how much of the crank's way each angle stands for: as much as others, or half way to its neighbours."""
+    if part is None:
+        return xr.ones_like(angles)
+    order = np.argsort(angles.values, kind="stable")
+    ordered = angles.values[order]
+    reach = np.empty(len(order))
+    reach[order] = np.diff(np.concatenate([ordered[:1], 0.5 * (ordered[1:] + ordered[:-1]), ordered[-1:]]))
+    return angles.copy(data=reach)
+
+
+def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.DataArray]:
+    """Return Fx and Fy in the axes of the ground, of the journal's link and of the bearing's."""
+    force, bearing = f"F{i}{j}", i + j - journal
+    suffixes = [_link_axes(k) for k in (1, journal, bearing)]
+    return {
+        f"F{axis}": joined([cycle[f"{force}{axis}{suffix}"] for suffix in suffixes], "frame", FRAMES) for axis in "xy"
+    }
+
+
+def _link_axes(link: int) -> str:
+    """Return the ending of a force component's name in a link's axes; the ground's have none."""
+    return "" if link == 1 else f"_link{link}"
+
+
+def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
+    """How much of its rotation each pin makes under which load.
+
+    Parameters
+    ----------
+    found : Dataset from `linksweep.bearings`
+    classes : count of equal classes of load, from none to the largest sample of the pin
+
+    Returns
+    -------
+    Dataset over (…, pin, load_class): `class_load` [N], the middle of each class, and `share` of the rotation in it;
+    the shares of a pin add up to 1. NaN where a load is unbounded: no classes reach up to it.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset that does not hold F, rotation_share and life_status, or no count of classes.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> spectrum = ls.load_spectrum(ls.bearings(ls.example("press")), classes=5)
+    >>> spectrum.share.sel(pin="C").sum().round(12).item()
+    1.0
+    """
+    sound = isinstance(found, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*found}
+    refuse([] if sound else ["found: must be what ls.bearings returns, with F, rotation_share and life_status"])
+    refuse(count_problems("classes", classes))
+    require_memory(f"classes = {said(classes)}", 8.0 * classes * found.sizes.get("pin", 1))
+    share, largest = xr.apply_ufunc(
+        lambda force, share: _histogram(force, share, classes),
+        *xr.broadcast(found["F"], found["rotation_share"]),
+        input_core_dims=[["theta2"], ["theta2"]],
+        output_core_dims=[["load_class"], []],
+        vectorize=True,
+    )
+    bounded = found["life_status"] != UNBOUNDED
+    share, largest = share.where(bounded), largest.where(bounded)
+    middle = (xr.DataArray(np.arange(classes), dims="load_class") + 0.5) / classes
+    share.attrs = {"units": "1", "long_name": "share of the rotation of the journal in its bearing under such loads"}
+    load = (largest * middle).assign_attrs(units="N", long_name="load in the middle of the class")
+    return xr.Dataset({"share": share, "class_load": load}, attrs=found.attrs)
+
+
+def _histogram(force: np.ndarray, share: np.ndarray, classes: int) -> tuple[np.ndarray, float]:
+    known = np.isfinite(force) & np.isfinite(share)
+    largest = float(np.max(force, initial=0.0, where=known))
+    at = np.minimum((force[known] * (classes / (largest or 1.0))).astype(int), classes - 1)
+    return np.bincount(at, share[known], classes), largest
+
+
+def _or_nan(number: Number) -> Number:
+    return np.nan if number is None else number
+
+
+def joined(parts: Iterable[Any], dim: str, labels: Iterable[str]) -> xr.DataArray:
+    """Arrays side by side along a new dim, each spread over the dims of all."""
+    spread = xr.broadcast(*(xr.DataArray(part) for part in parts))
+    return xr.concat(spread, xr.Variable(dim, list(labels)), coords="minimal", compat="override", join="override")

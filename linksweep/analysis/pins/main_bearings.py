@@ -1,0 +1,76 @@
+"""Bearings of a crankshaft's mains, of an engine of several cylinders: loads by the lever rule, exact peaks, and life.
+
+Model and source of the loads: `linksweep.results.cylinders.cylinder_sums`; of life: `linksweep.analysis.pins.bearing_life`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import xarray as xr
+
+from linksweep.analysis.pins.bearing_life import rotation_under_load
+from linksweep.analysis.pins.bearings import Bearing, attributes_of, bearing_problems, joined, of_life, on_journal
+from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import count_problems, refuse
+from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
+from linksweep.results.cylinders.cylinder_sums import main
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.peaks import peaks
+
+FRAMES = ("ground", "journal")
+SAID = {
+    "F": ("N", "magnitude of the force of the main bearing on the crankshaft"),
+    "Fx": ("N", "force of the main bearing on the crankshaft, component along the x axis of the frame"),
+    "Fy": ("N", "force of the main bearing on the crankshaft, component along the y axis of the frame"),
+    "F_peak": ("N", "largest load over the continuous cycle"),
+    "F_peak_at": ("degree", "crank angle of the largest load"),
+    "rotation_speed": ("rad s-1", "angular velocity of the crankshaft, positive counter-clockwise"),
+}
+NO_MAINS = "main_positions: nothing says where the main bearings are; give two places or more, main_positions=[...]"
+
+
+def main_bearings(
+    machine: MultiCylinder, given: Mapping[str, Bearing] | None, theta2: int, threads: int | None = None
+) -> xr.Dataset:
+    """Return loads, rotation, friction and life of main bearings, as `linksweep.bearings` does of pins."""
+    refuse(count_problems("theta2", theta2) + ([] if machine.mains else [NO_MAINS]))
+    mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
+    refuse(bearing_problems(given, mains))
+    fitted = {name: (given or {}).get(name, Bearing()) for name in mains}
+    cycle = machine.sweep(theta2, threads, [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")])
+    turned = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
+    highest = peaks(machine, of=mains.values(), threads=threads)
+    speed = xr.DataArray(machine.engine.omega2)
+    parts = [
+        {"F": cycle[force], "F_peak": highest[f"{force}_peak"], "F_peak_at": highest[f"{force}_peak_at"]}
+        | _in_frames(cycle, force)
+        | {"rotation_speed": speed, "rotation_share": _share(cycle["status"])}
+        | on_journal(cycle[force], speed, fitted[name])
+        | of_life(turned, name, fitted[name])
+        for name, force in mains.items()
+    ]
+    found = {n: joined([part[n] for part in parts], "main", mains).assign_attrs(_attributes(n)) for n in parts[0]}
+    place = xr.DataArray(list(machine.mains), dims="main", attrs={"units": "m", "long_name": "place along the shaft"})
+    attributes = cycle.attrs | {"command": f"linksweep.bearings(engine, ..., theta2={theta2})"}
+    return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes).assign_coords(main_position=place)
+
+
+def _attributes(name: str) -> dict[str, Any]:
+    return dict(zip(("units", "long_name"), SAID[name], strict=True)) if name in SAID else attributes_of(name)
+
+
+def _in_frames(cycle: xr.Dataset, force: str) -> dict[str, xr.DataArray]:
+    """Return components in axes of the ground, which the bearing has, and of the crankshaft, which turn by theta2."""
+    x, y = cycle[f"{force}x"], cycle[f"{force}y"]
+    cos, sin = (xr.DataArray(wave, dims="theta2") for wave in cos_sin(cycle["theta2"].values))
+    return {
+        "Fx": joined([x, cos * x + sin * y], "frame", FRAMES),
+        "Fy": joined([y, cos * y - sin * x], "frame", FRAMES),
+    }
+
+
+def _share(status: xr.DataArray) -> xr.DataArray:
+    turns = xr.ones_like(status, dtype=float).where(status == 0)
+    return turns / turns.sum("theta2", min_count=1)

@@ -1,0 +1,196 @@
+"""pin_friction(scene, {...}): the cycle with friction in the pins, coupled to the loads that it changes.
+
+A pin of radius r, loaded by F, resists with the moment ρ·F against its rotation: on link j of its force Fij and,
+opposite, on link i. F thus passes the pin's centre at the distance ρ = μ·r/√(1 + μ²), the radius of the friction circle
+(see `linksweep.physics.bearing`). F depends on these moments in turn: they are computed from the forces, and the forces
+with them, until nothing changes.
+
+Source: the friction circle of textbooks on the theory of machines, such as R. S. Khurmi and J. K. Gupta, Theory of
+Machines, chapter "Friction".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.pins.bearings import Bearing, checked_pins, joined
+from linksweep.base.validate import Number, count_problems, refuse
+from linksweep.physics.bearing import friction_circle
+from linksweep.results.dataset import flags
+from linksweep.results.sweep import sweep
+from linksweep.scene.loads.load import Load
+from linksweep.scene.scene import Scene
+
+TOLERANCE = 1e-12
+"""Change of a moment, relative to the largest at that sample, at which it has converged."""
+MEANINGS = ("converged", "not_converged")
+Arrays = dict[str, xr.DataArray]
+
+
+class RubbingPin(NamedTuple):
+    """A pin with friction: links i and j of its force Fij, and the radius of its friction circle [m]."""
+
+    i: int
+    j: int
+    radius: Number
+
+    @property
+    def force(self) -> str:
+        return f"F{self.i}{self.j}"
+
+
+def pin_friction(
+    scene: Scene,
+    given: Mapping[str, Bearing],
+    theta2: int = 720,
+    outputs: Iterable[str] | None = None,
+    iterations: int = 100,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Sweep a scene with friction in its pins.
+
+    Parameters
+    ----------
+    scene : Scene, of one branch
+    given : a Bearing with diameter and friction by pin; the others turn without friction
+    theta2 : count of crank angles over the cycle
+    outputs : names of the variables wanted, as `linksweep.sweep` takes them
+    iterations : at most so many
+    threads : at most so many (default: all cores)
+
+    Returns
+    -------
+    Dataset as from `linksweep.sweep`, and besides
+
+    - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
+    - `friction_loss` (…, pin, theta2) [W], never negative
+    - `convergence` (…, theta2): converged, not_converged; where it has not, forces and torques are NaN: friction in the
+      pins holds the machine fast there, or nearly
+    - `efficiency` (…): of the energy that goes into the machine in a cycle, the share that comes out again, at the
+      drive or at its loads; all friction counts as lost, that of a guide too
+
+    Its scene is the one given with the moments of friction as loads.
+
+    Raises
+    ------
+    ValueError
+        For a machine without pins, a pin that it lacks, a bearing with friction but no diameter, and branch="both".
+
+    Notes
+    -----
+    A pin that stands still in its bearing has no friction. The friction circle is that of exact Coulomb friction, of
+    radius μ·r/√(1 + μ²); textbooks' μ·r is 0.5 % more at μ = 0.1. Source: module's equations.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> cycle = ls.pin_friction(ls.example("engine"), {"B": ls.Bearing(diameter=0.05, friction=0.01)})
+    >>> bool((cycle.convergence == 0).all()), bool(0.9 < cycle.efficiency < 1.0)
+    (True, True)
+    """
+    pins = _rubbing(scene, given)
+    refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))
+    senses = _senses(scene, pins, theta2, threads)
+    with_friction, torques, change = _converged(scene, pins, senses, theta2, iterations, threads)
+    wanted = None if outputs is None else [outputs] if isinstance(outputs, str) else list(outputs)
+    cycle = sweep(with_friction, theta2, wanted, threads=threads)
+    fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
+    told = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
+    found = {
+        "friction_torque": joined(torques.values(), "pin", torques).assign_attrs(told),
+        "friction_loss": _losses(scene, torques, theta2, threads),
+    }
+    shown = cycle.assign(found)
+    forces = [name for name in shown.data_vars if name not in (*scene.mechanism.kinematics(), "status")]
+    shown = shown.assign({name: shown[name].where(~fast).assign_attrs(shown[name].attrs) for name in forces})
+    said = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
+    shown["convergence"] = fast.astype(np.int8).assign_attrs(said)
+    shown["efficiency"] = _efficiency(with_friction, shown["friction_loss"].sum("pin", skipna=False), theta2, threads)
+    return shown.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
+
+
+def _rubbing(scene: Scene, given: Mapping[str, Bearing]) -> dict[str, RubbingPin]:
+    """Those of the pins that have friction."""
+    pins = checked_pins(scene, given)
+    rubs = {pin: bearing for pin, bearing in given.items() if np.any(bearing.friction)}
+    refuse([f"given.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
+    refuse(
+        [] if rubs else ['given: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}']
+    )
+    both = getattr(scene.mechanism, "branch", "") == "both"
+    refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
+    return {pin: RubbingPin(*pins[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
+
+
+def _senses(scene: Scene, pins: Mapping[str, RubbingPin], theta2: int, threads: int | None) -> Arrays:
+    """Return −1, 0 or 1 of the moment on link j, against its rotation; 0 where nothing is known."""
+    names = [f"omega_{pin}" for pin in pins]
+    speeds = sweep(scene, theta2, names, threads=threads)
+    return {pin: xr.DataArray(-np.sign(speeds[name])).fillna(0.0) for pin, name in zip(pins, names, strict=True)}
+
+
+def _converged(
+    scene: Scene, pins: Mapping[str, RubbingPin], senses: Arrays, theta2: int, iterations: int, threads: int | None
+) -> tuple[Scene, Arrays, xr.DataArray]:
+    """The scene with friction as loads, its moments by pin, and their last change, relative to the largest."""
+    forces = [pin.force for pin in pins.values()]
+    torques = {pin: 0.0 * senses[pin] for pin in pins}
+    for _ in range(iterations):
+        with_friction = replace(scene, loads=(*scene.loads, *_as_loads(scene, pins, torques, theta2)))
+        cycle = sweep(with_friction, theta2, forces, threads=threads)
+        new = {pin: senses[pin] * rub.radius * cycle[rub.force].fillna(0.0) for pin, rub in pins.items()}
+        change = _largest(new[pin] - torques[pin] for pin in pins) / _largest(new.values()).clip(min=1e-300)
+        runaway = ~np.isfinite(change)
+        torques = {pin: torque.where(~runaway, 0.0) for pin, torque in new.items()}
+        if (change <= TOLERANCE).all() or runaway.all():
+            break
+    return with_friction, torques, change
+
+
+def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, theta2: int) -> list[Load]:
+    """Moments of friction as torques on the moving links."""
+    angles = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2))
+    loads = []
+    for body in scene.mechanism.bodies:
+        acting = [torques[pin] for pin, rub in pins.items() if rub.j == body.number]
+        acting += [-torques[pin] for pin, rub in pins.items() if rub.i == body.number]
+        if acting:
+            total = sum(acting[1:], acting[0]).broadcast_like(xr.DataArray(angles, {"theta2": angles}))
+            loads.append(Load(body.role, torque=_bare(total)))
+    return loads
+
+
+def _bare(array: xr.DataArray) -> xr.DataArray:
+    """Values and labels alone: no attributes of what it was computed from."""
+    labels = {dim: array[dim].values for dim in array.dims if dim in array.coords}
+    return xr.DataArray(array.values, labels, array.dims)
+
+
+def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
+    return xr.concat(xr.broadcast(*(abs(array) for array in arrays)), "pin", coords="minimal", compat="override").max(
+        "pin", skipna=False
+    )
+
+
+def _losses(scene: Scene, torques: Arrays, theta2: int, threads: int | None) -> xr.DataArray:
+    speeds = sweep(scene, theta2, [f"omega_{pin}" for pin in torques], threads=threads)
+    losses = [abs(torque * speeds[f"omega_{pin}"]) for pin, torque in torques.items()]
+    said = {"units": "W", "long_name": "power that friction in the pin takes, never negative"}
+    return joined(losses, "pin", torques).assign_attrs(said)
+
+
+def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:
+    """Energies over time: a sample stands for the time that the crank takes to the next."""
+    names = ["power", "omega2"] + ["friction_power"] * ("friction_power" in scene.table.quantity)
+    cycle = sweep(scene, theta2, names, threads=threads)
+    times = 1.0 / abs(cycle["omega2"])
+    lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)
+    fed = (cycle["power"] * times).sum("theta2", skipna=False)
+    driven = ((fed - lost) / fed).clip(min=0.0)
+    said = {"units": "1", "long_name": "energy that comes out of the machine in a cycle over that which goes in"}
+    return xr.where(fed > 0.0, driven, fed / (fed - lost)).assign_attrs(said)

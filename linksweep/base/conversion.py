@@ -1,0 +1,126 @@
+"""Numbers where they enter: float64, in the unit of their kind.
+
+numpy reckons in an array's own dtype, where a mass of int8 wraps; so every number becomes float64 in the constructor.
+An integer that float64 cannot hold is rounded to the nearest that it can. A quantity of pint is known by what it can
+do and converted by its own registry, so that pint need not be imported.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from linksweep.base.validate import UNITS, as_float, is_array, is_quantity
+
+PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
+ROWS = {"breaks": "angle"}
+"""Kinds of the numbers that come in pairs, and of those that come in rows, by the name of the field."""
+
+
+def take_numbers(owner: Any) -> None:
+    """Convert the numbers of a frozen dataclass in place; what is none stays, for validation to refuse."""
+    for item in fields(owner):
+        value = getattr(owner, item.name)
+        rule = item.metadata.get("rule")
+        converted = to_float64(value, rule.kind) if rule else _several(item.name, value)
+        if converted is not value:
+            object.__setattr__(owner, item.name, converted)
+
+
+def kinds_of(name: str, value: tuple | list) -> tuple[str, ...]:
+    """Return the kinds of a pair, or of the end of a spring: a link, then a point of the ground or of the link."""
+    if name in ("from_", "to"):
+        ground = isinstance(value[0], str) and value[0] == "ground"
+        return ("", "length", "length" if ground else "angle")
+    return PAIRS.get(name, ("",) * len(value))
+
+
+def as_pair(value: Any, kinds: tuple[str, str]) -> Any:
+    """Return two numbers, or a bare array of them, as a pair of float64; anything else as it is."""
+    return tuple(map(to_float64, value, kinds)) if _is_row(value) and len(value) == 2 else value
+
+
+def to_float64(value: Any, kind: str) -> Any:
+    """Return a number as a float, an array as one of float64, in the unit of its kind; anything else as it is.
+
+    An array over theta2 has its angles converted, too.
+    """
+    if type(value) is float or isinstance(value, str) or value is None:
+        return value
+    if is_array(value):
+        return _with_angles(_array(value, kind))
+    if is_quantity(value):
+        magnitude = _in_unit(value, UNITS[kind])
+        return magnitude if magnitude is value or np.ndim(magnitude) else float(magnitude)
+    number = as_float(value)
+    return value if number is None else number
+
+
+def all_to_float64(values: Any, kind: str) -> Any:
+    """Return each of a list of numbers, or of an array without its labels, as `to_float64` does."""
+    if isinstance(values, tuple | list):
+        return [to_float64(value, kind) for value in values]
+    converted = to_float64(values, kind)
+    return converted.values if is_array(converted) and not is_quantity(converted) else converted
+
+
+def _several(name: str, value: Any) -> Any:
+    """Return a pair, a row, or the end of a spring, with numbers of float64; anything else as it is."""
+    if name in PAIRS:
+        return as_pair(value, PAIRS[name])
+    if name in ROWS:
+        return tuple(to_float64(number, ROWS[name]) for number in value) if _is_row(value) else value
+    end = name in ("from_", "to") and isinstance(value, tuple | list) and len(value) == 3
+    return tuple(map(to_float64, value, kinds_of(name, value))) if end else value
+
+
+def _is_row(value: Any) -> bool:
+    """Return whether a value is a list of numbers, or a bare array that can only be one."""
+    bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
+    return isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
+
+
+def _array(array: Any, kind: str) -> Any:
+    if is_quantity(array):
+        data = _in_unit(array.data, UNITS[kind])
+        attributes = {name: words for name, words in array.attrs.items() if name != "units"}
+        return array if data is array.data else array.copy(data=data).drop_attrs(deep=False).assign_attrs(attributes)
+    with np.errstate(over="ignore"):  # what float64 cannot hold is inf, which validation refuses
+        return array.astype(float) if _is_real(array.dtype) and array.dtype != np.float64 else array
+
+
+def _with_angles(array: Any) -> Any:
+    """Return an array with its angles theta2 converted, where it has any."""
+    if "theta2" not in array.dims or "theta2" not in array.coords:
+        return array
+    angles = array.coords["theta2"]
+    converted = _array(angles, "angle")
+    return array if converted is angles else array.assign_coords(theta2=converted.variable)
+
+
+def _in_unit(quantity: Any, unit: str) -> Any:
+    """Return the magnitude of a quantity of pint in a unit; the quantity itself where it is of another kind.
+
+    To pint an angle is a plain number, so that 50 Hz are 50 rad/s, and 45 without a unit are 45 rad: not so here.
+    """
+    kind = type(quantity)
+    try:
+        one = kind(1.0, "dimensionless" if unit == "1" else unit.replace(" ", "*"))
+        same = kind(1.0, quantity.units).to_root_units().units == one.to_root_units().units
+        return kind(_float64(quantity.magnitude), quantity.units).m_as(one.units) if same else quantity
+    except (AttributeError, TypeError, ValueError):  # what pint cannot convert is refused as it came
+        return quantity
+
+
+def _float64(magnitude: Any) -> Any:
+    """Return the magnitude of a quantity as float64; TypeError where it is no real number."""
+    number = magnitude.astype(float) if _is_real(getattr(magnitude, "dtype", None)) else as_float(magnitude)
+    if number is None:
+        raise TypeError
+    return number
+
+
+def _is_real(dtype: Any) -> bool:
+    return getattr(dtype, "kind", "") in ("f", "i", "u")

@@ -1,0 +1,39 @@
+"""Dataclasses of numbers: float64 whatever they were made of, and equal by content, also where they hold DataArrays."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from linksweep.base.conversion import take_numbers
+from linksweep.base.validate import is_array
+
+
+class ByContent:
+    """A dataclass(frozen=True, eq=False) of this has numbers of float64, and is equal to another of its class that has
+    the same content: numbers, dims and labels. One with a `__post_init__` of its own calls this one first."""
+
+    def __post_init__(self) -> None:
+        take_numbers(self)
+
+    def __eq__(self, other: object) -> bool:
+        return content(self) == content(other) if type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(content(self))
+
+
+def content(value: Any) -> Any:
+    """What makes two values equal, as nested tuples; names, attributes and other coordinates of arrays do not."""
+    if is_dataclass(value):
+        return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
+    if is_array(value):
+        labels = [(dim, _labels(value[dim].values)) for dim in value.dims if dim in value.coords]
+        return value.dims, value.values.tobytes(), repr(labels)
+    return tuple(map(content, value)) if isinstance(value, tuple | list) else value
+
+
+def _labels(values: Any) -> list[Any]:
+    """Return labels as a list, times in nanoseconds and texts as plain ones: files keep no more of them."""
+    listed: list[Any] = (values.astype("M8[ns]") if values.dtype.kind == "M" else values).tolist()
+    return list(map(str, listed)) if values.dtype.kind == "O" else listed

@@ -1,0 +1,1 @@
+"""Run linksweep from the command line."""

@@ -1,0 +1,219 @@
+"""Words of the command line for what an engineer asks next: each takes a scene of one design and prints a table."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.balance.compare import compare
+from linksweep.analysis.balance.counterweights import counterweights, with_counterweights
+from linksweep.analysis.balance.orders import orders
+from linksweep.analysis.drive.duty import duty
+from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.analysis.pins.bearings import EXPONENTS, FRAMES, Bearing, bearings
+from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.base.validate import refuse
+from linksweep.cli import summaries
+from linksweep.files.atomic import ending_of, whole
+from linksweep.files.netcdf import load_scene
+from linksweep.results.peaks import peaks
+from linksweep.results.sweep import sweep
+from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.scene import Scene
+from linksweep.scene.units import quantity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SAMPLES = 720
+PICTURES = (".png", ".pdf", ".svg")
+FILMS = (".gif", ".html")
+SHAKING = ["Fsx", "Fsy"]
+BALANCED = ("Fs_peak", "Fs_rms", "Ms_peak", "{drive}_peak", "{drive}_ripple")
+
+
+def add_commands(commands: Any) -> None:
+    """Add the words to those of the command line."""
+    film = _command(commands, "animate", _animate, "a film of the mechanism with its forces: .gif or .html")
+    film.add_argument("-o", "--output", type=a_file(FILMS), required=True, help="film to write: .gif or .html")
+    film.add_argument("--frames", type=int, default=72, metavar="N", help="in a cycle, 25 a second (72)")
+
+    pins = _command(commands, "bearings", _bearings, "load, rotation, pressure and life of the bearing in each pin")
+    pins.add_argument("--diameter", type=_number("length"), help='of all journals, such as "20 mm"')
+    pins.add_argument("--length", type=_number("length"), help='of all bushes, such as "30 mm"')
+    pins.add_argument("--capacity", type=_number("force"), help='dynamic load rating of all, such as "5 kN"')
+    pins.add_argument("--kind", choices=EXPONENTS, default="ball", help="of rolling bearings (ball)")
+    part = "of a machine that moves over part of a turn: its crank angles in degrees"
+    pins.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
+    pins.add_argument("--frame", choices=FRAMES, default="ground", help="axes of the load diagrams (ground)")
+    _plots(pins)
+
+    why = _command(
+        commands, "breakdown", _breakdown, "why a pin is loaded: the share of each source in its largest force"
+    )
+    why.add_argument("of", help="a pin force or the drive's torque, such as F32")
+    _plots(why)
+
+    weights = _command(commands, "balance", _balance, "counterweights against shaking: before and after")
+    weights.add_argument("--radius", type=_number("length"), required=True, help='where they sit, such as "6 cm"')
+    weights.add_argument("--fraction", type=float, help="of a slider-crank's first order that the crank takes (0.5)")
+    _plots(weights)
+
+    shaking = _command(commands, "orders", _orders, "orders of the shaking force, or of other quantities")
+    shaking.add_argument("of", nargs="*", default=SHAKING, help="their names (Fsx Fsy)")
+    shaking.add_argument("-n", type=int, default=12, help="the highest order (12)")
+    _plots(shaking)
+
+    drive = _command(commands, "flywheel", _flywheel, "what the drive gives in a cycle, and the flywheel that evens it")
+    drive.add_argument("--fluctuation", type=float, default=0.02, help="coefficient of speed fluctuation (0.02)")
+    _plots(drive)
+
+
+def _command(commands: Any, name: str, run: Callable, said: str) -> argparse.ArgumentParser:
+    parser = commands.add_parser(name, help=said)
+    parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    parser.set_defaults(run=run)
+    return parser
+
+
+def _plots(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
+
+
+def a_file(endings: tuple[str, ...]) -> Callable[[str], Path]:
+    """Return what reads an argument as a file with one of these endings."""
+
+    def read(text: str) -> Path:
+        try:
+            ending_of(text, endings)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+        return Path(text)
+
+    return read
+
+
+def _number(kind: str) -> Callable[[str], float]:
+    """What reads an argument as a number with a unit, or in SI units."""
+
+    def read(text: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            pass
+        try:
+            return quantity(text, kind)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+
+    return read
+
+
+def one_design(path: Path) -> Scene:
+    """The scene of a file, of one design."""
+    scene = load_scene(path)
+    several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
+    refuse([f"{path}: has several designs, over {several}; this takes one, peaks and study take many"] * bool(several))
+    return scene
+
+
+def _require_whole(path: Path, found: xr.DataArray) -> None:
+    """Raise ValueError where a cycle has no result at some angle."""
+    whole = bool(np.isfinite(found).all())
+    refuse([] if whole else [f"{path}: does not run all the way round at that speed; check tells where it ends"])
+
+
+def show(options: argparse.Namespace, draw: Callable[[], Any]) -> None:
+    """Write the figure that a plot draws, where one is asked for, without a screen."""
+    if options.plot is None:
+        return
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    drawn = draw()
+    write_figure(drawn if hasattr(drawn, "savefig") else drawn.figure, options.plot)
+    print(f"\nwritten: {options.plot}")
+
+
+def write_figure(figure: Figure, path: Path) -> None:
+    with whole(path) as temporary:
+        figure.savefig(temporary, format=ending_of(path, PICTURES)[1:], dpi=150)
+
+
+def _animate(options: argparse.Namespace) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from linksweep.plot.animation import animate
+
+    animate(one_design(options.scene), options.frames).save(options.output)
+    print(f"written: {options.output}")
+
+
+def _bearings(options: argparse.Namespace) -> None:
+    from linksweep import plot
+
+    scene = one_design(options.scene)
+    bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
+    theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
+    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2)))
+    show(options, lambda: plot.bearings(sweep(scene, theta2), options.frame))
+
+
+def _breakdown(options: argparse.Namespace) -> None:
+    from linksweep import plot
+
+    scene = one_design(options.scene)
+    at = _worst_angle(scene, options.of)
+    print(summaries.share_table(breakdown(scene, options.of, theta2=[at]), options.of))
+    show(options, lambda: plot.breakdown(breakdown(scene, options.of)))
+
+
+def _worst_angle(scene: Scene, name: str) -> float:
+    """The crank angle [degree] where a force or torque is largest."""
+    found = peaks(scene, of=[name])
+    ends = [end for end in ("peak", "max", "min") if f"{name}_{end}_at" in found]
+    worst = max(ends, key=lambda end: abs(float(found[f"{name}_{end}"])))
+    at = float(found[f"{name}_{worst}_at"])
+    known = math.isfinite(at) and math.isfinite(float(found[f"{name}_{worst}"]))
+    refuse([] if known else [f"{name}: has no largest value; peaks and check say why"])
+    return at
+
+
+def _balance(options: argparse.Namespace) -> None:
+    from linksweep import plot
+
+    scene = one_design(options.scene)
+    weights = counterweights(scene, options.radius, options.fraction)
+    balanced = with_counterweights(scene, weights)
+    drive = scene.mechanism.drives[scene.drive]
+    pins = [f"F{i}{j}_peak" for i, j in scene.mechanism.pins.values()]
+    found = compare(scene, balanced, [*(name.format(drive=drive) for name in BALANCED), *pins])
+    print(summaries.weight_lines(weights))
+    print(summaries.balance_table(found))
+    show(options, lambda: plot.balance(scene, balanced))
+
+
+def _orders(options: argparse.Namespace) -> None:
+    from linksweep import plot
+
+    found = orders(sweep(one_design(options.scene), outputs=options.of), options.of, options.n)
+    _require_whole(options.scene, found[f"{options.of[0]}_amplitude"])
+    print(summaries.order_table(found, options.of))
+    show(options, lambda: plot.orders(found))
+
+
+def _flywheel(options: argparse.Namespace) -> None:
+    from linksweep import plot
+
+    scene = one_design(options.scene)
+    found = flywheel(scene, options.fluctuation)
+    _require_whole(options.scene, found["speed"])
+    print(summaries.drive_table(duty(scene), found))
+    show(options, lambda: plot.torque_with_flywheel(found))

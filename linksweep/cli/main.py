@@ -1,0 +1,208 @@
+"""The command line: demo, sweep, peaks, study, check, report; `commands` has the rest."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from linksweep.cli.commands import FILMS, PICTURES, a_file, add_commands, write_figure
+from linksweep.cli.text import check_lines, peak_table, study_report
+from linksweep.files.atomic import target_of
+from linksweep.files.netcdf import RESULTS, SCENES, load_scene, save
+from linksweep.reports.page import report
+from linksweep.results.check import check
+from linksweep.results.peaks import peaks
+from linksweep.results.sweep import sweep
+from linksweep.scene.examples import example, names, title
+from linksweep.studies.run import study
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+CLOSED_PIPE = 141
+"""Exit status, as a shell tells it, of a program that ended because nobody reads its output."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; 0 when all went well, 2 with a message when the input or a file was at fault."""
+    _print_anything()
+    try:
+        options = _parser().parse_args(arguments)
+        code = _run(options)
+        if sys.stdout:  # None where it was closed before the start
+            sys.stdout.flush()
+    except BrokenPipeError:  # who reads the output has had enough of it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return CLOSED_PIPE
+    return code
+
+
+def _run(options: argparse.Namespace) -> int:
+    try:
+        for path in filter(None, (getattr(options, "output", None), getattr(options, "plot", None))):
+            target_of(path)  # before anything is computed
+        options.run(options)
+    except BrokenPipeError:
+        raise
+    except (ValueError, OSError) as error:
+        print(f"linksweep: {error}", file=sys.stderr)
+        return 2
+    except MemoryError:
+        print("linksweep: the memory is full: ask for fewer angles, designs or quantities", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt as stopped:
+        print(f"linksweep: {str(stopped) or 'stopped'}", file=sys.stderr)
+        return 130
+    return 0
+
+
+def _print_anything() -> None:
+    """Print a question mark for what the terminal's encoding lacks, such as ° in ASCII."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="linksweep", description="How hard are my pins loaded, and where is the worst of it?"
+    )
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
+    scenes, without = names(), "name of the files without ending (demo)"
+    demo.add_argument("scene", nargs="?", choices=scenes, default="press", help=f"{', '.join(scenes)} (press)")
+    demo.add_argument("-o", "--output", type=_stem, dest="stem", metavar="NAME", default=Path("demo"), help=without)
+    demo.set_defaults(run=_demo)
+
+    cycle = commands.add_parser("sweep", help="one revolution to a file, and to a figure")
+    cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    cycle.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
+    cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
+    cycle.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
+    cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
+    cycle.set_defaults(run=_sweep)
+
+    worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
+    worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    said = "the largest of so many samples, not the exact peaks"
+    worst.add_argument("--theta2", type=int, metavar="N", help=said)
+    worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
+    worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
+    worst.set_defaults(run=_peaks)
+
+    _add_study(commands)
+    sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
+    sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    sound.set_defaults(run=_check)
+    _add_report(commands)
+    add_commands(commands)
+    return parser
+
+
+def _add_study(commands: Any) -> None:
+    many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
+    many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
+    many.add_argument("--of", type=_names, nargs="+", help="names of the quantities wanted")
+    chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
+    many.add_argument("--chunk", type=int, metavar="N", help=chunks)
+    many.set_defaults(run=_study)
+
+
+def _add_report(commands: Any) -> None:
+    page = commands.add_parser("report", help="a page to print: inputs, checks, peaks, drive, figures")
+    page.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
+    page.add_argument("--title", help="its heading (name of the scene file)")
+    part = "crank angles of a machine that moves over part of a turn"
+    page.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
+    page.set_defaults(run=_report)
+
+
+def _demo(options: argparse.Namespace) -> None:
+    scene = example(options.scene)
+    cycle = sweep(scene)
+    print(f"{title(options.scene)}\n")
+    print(peak_table(peaks(scene), scene.mechanism.index))
+    data, picture = (options.stem.with_name(options.stem.name + ending) for ending in (".nc", ".png"))
+    save(cycle, data)
+    write_figure(_figure(cycle), picture)
+    print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")
+
+
+def _sweep(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    cycle = sweep(scene, theta2=options.theta2, outputs=options.outputs)
+    figure = None
+    if options.plot:  # it shows all pin forces, whatever is asked for in the file
+        figure = _figure(cycle if options.outputs is None else sweep(scene, theta2=options.theta2))
+    save(cycle, options.output)
+    print(f"written: {options.output}")
+    if figure is not None:
+        write_figure(figure, options.plot)
+        print(f"written: {options.plot}")
+
+
+def _peaks(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    found = peaks(scene, of=options.of, theta2=options.theta2)
+    print(peak_table(found, scene.mechanism.index))
+    if options.output:
+        save(found, options.output)
+        print(f"\nwritten: {options.output}")
+
+
+def _study(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    there = options.output.exists()
+    of = None if options.of is None else [name for names in options.of for name in names]
+    with study(scene, options.output, of, options.chunk) as found:
+        print(study_report(found, scene.mechanism.index))
+    print(f"\n{'was done already' if there else 'written'}: {options.output}")
+
+
+def _check(options: argparse.Namespace) -> None:
+    scene = load_scene(options.scene)
+    print("\n".join(check_lines(check(scene))))
+
+
+def _report(options: argparse.Namespace) -> None:
+    part = tuple(options.theta2) if options.theta2 else None
+    report(load_scene(options.scene), options.output, options.title or options.scene.stem, part)
+    print(f"written: {options.output}")
+
+
+def _stem(text: str) -> Path:
+    """Return the name of files that differ by their endings."""
+    path = Path(text)
+    if path.suffix.lower() in (*RESULTS, *SCENES, *PICTURES, *FILMS, ".xlsx"):
+        raise argparse.ArgumentTypeError(
+            f"{text}: give a name without ending; {path.stem}.nc and {path.stem}.png follow"
+        )
+    return path
+
+
+def _names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    if not names:
+        raise argparse.ArgumentTypeError("must be names, separated by commas")
+    return names
+
+
+def _figure(cycle: xr.Dataset) -> Figure:
+    """The report page of a cycle, drawn without a screen."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from linksweep import plot
+
+    return plot.cycle(cycle)

@@ -1,0 +1,181 @@
+"""Results as text, for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Hashable, Iterable, Iterator, Sequence
+from math import prod
+
+import numpy as np
+import xarray as xr
+
+from linksweep.scene.curves.interpolation import RINGING
+
+
+def peak_table(found: xr.Dataset, index: str = "theta2") -> str:
+    """The peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
+    rows = [("quantity", "value", "unit", f"at {index}", *(f"worst {dim}" for dim in found.sizes))]
+    for name in map(str, found.data_vars):
+        if f"{name}_at" in found or name.endswith(("_mean", "_rms")):
+            rows.append(_row(found, name))
+    return "\n".join([*aligned(rows), *_remarks(found)])
+
+
+def _row(found: xr.Dataset, name: str) -> tuple[str, ...]:
+    values = found[name]
+    place = _worst(values)
+    angle = f"{float(found[f'{name}_at'].isel(place)):.2f}°" if f"{name}_at" in found else ""
+    labels = (_label(found, dim, place.get(dim)) for dim in found.sizes)
+    return name, f"{float(values.isel(place)):.6g}", _unit(values), angle, *labels
+
+
+def _worst(values: xr.DataArray) -> dict[Hashable, int]:
+    """Place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else."""
+    name = str(values.name)
+    size = values.values if name.endswith("_max") else -values.values if name.endswith("_min") else abs(values.values)
+    known = np.where(np.isfinite(size), size, -np.inf)
+    return dict(zip(values.dims, map(int, np.unravel_index(int(np.argmax(known)), values.shape)), strict=True))
+
+
+def _label(found: xr.Dataset, dim: Hashable, k: int | None) -> str:
+    if k is None:
+        return "any"
+    value = found[dim].values[k] if dim in found.coords else k
+    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def _unit(values: xr.DataArray) -> str:
+    return str(values.attrs["units"])
+
+
+def aligned(rows: Sequence[tuple[str, ...]], right: Container[int] = (1, 3)) -> Iterator[str]:
+    """Lines of a table, some columns to the right, as numbers are."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = enumerate(zip(row, widths, strict=True))
+        yield "  ".join(cell.rjust(width) if k in right else cell.ljust(width) for k, (cell, width) in cells).rstrip()
+
+
+def _remarks(found: xr.Dataset) -> list[str]:
+    status = np.asarray(found.status.values).reshape(-1)
+    partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
+    who = "It" if status.size == 1 else f"{partly} of {status.size} designs"
+    if "never_on_track" in found.status.attrs["flag_meanings"]:
+        somewhere = "does not stay on the track all the way round: peaks are those of where it is."
+        nowhere = "not on the track at any position."
+    else:
+        somewhere = (
+            "cannot be assembled at every angle, jams, or has dead centres: peaks are those of the angles that are ok."
+        )
+        nowhere = "cannot be assembled at any angle."
+    said = [f"{who} {somewhere}"] * bool(partly)
+    said += [f"{never} of {status.size} designs {nowhere}"] * bool(never)
+    grows = "grows without bound at a toggle, where it wedges or at a dead centre: its peak is inf."
+    which = "" if status.size == 1 else f" of {unbounded} of {status.size} designs"
+    said += [f"Some quantity{which} {grows}"] * bool(unbounded)
+    return ["", *said] if said else []
+
+
+def study_report(found: xr.Dataset, index: str = "theta2") -> str:
+    """A study in short: the worst design of each peak, the best of each, and how many designs are ok."""
+    text = peak_table(found, index)
+    if not found.sizes:
+        return text
+    rows = [_best(found, name) for name in map(str, found.data_vars) if name.endswith("_peak")]
+    header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in found.sizes))
+    tables = [text, "", *aligned([header, *filter(None, rows)]), ""] if any(rows) else [text, ""]
+    shape = ", ".join(f"{dim} {n}" for dim, n in found.sizes.items())
+    designs = prod(found.sizes.values())
+    counts = np.bincount(found.status.values.reshape(-1)) * (designs // found.status.size)
+    said = ", ".join(f"{word} {n}" for word, n in zip(_words(found.status), counts, strict=False) if n)
+    return "\n".join([*tables, f"designs: {designs} ({shape}): {said}"])
+
+
+def _best(found: xr.Dataset, name: str) -> tuple[str, ...]:
+    """A peak where it is least, of the designs that are ok all the way round; empty where there is none."""
+    values = found[name].where(found.status == 0)
+    size = np.where(np.isfinite(values.values), values.values, np.inf)
+    if not np.isfinite(size).any():
+        return ()
+    place = dict(zip(values.dims, map(int, np.unravel_index(int(np.argmin(size)), size.shape)), strict=True))
+    labels = (_label(found, dim, place.get(dim)) for dim in found.sizes)
+    return name, f"{float(size.min()):.6g}", _unit(found[name]), *labels
+
+
+def check_lines(found: xr.Dataset) -> list[str]:
+    """What check found, in words."""
+    said: Iterable[tuple[str, str]]
+    if "grashof" not in found:
+        others = [name for name in found.data_vars if name != "overshoot"]
+        said = ((str(name).replace("_", " "), _summary(found[name])) for name in others)
+    else:
+        said = (*(_of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)), *_of_acceleration(found))
+    return [f"{title + ':':<26}{text}" for title, text in (*said, *_of_splines(found))]
+
+
+def _of_splines(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Splines through loads that ring."""
+    ringing = found.overshoot.where(found.overshoot > RINGING, drop=True) if "overshoot" in found else ()
+    for overshoot in ringing:
+        yield "a spline rings", f"{overshoot.spline.item()} by {100.0 * float(overshoot):.2g} % of its range"
+
+
+def _summary(finding: xr.DataArray) -> str:
+    """A finding in words: how many designs have each, or the range of its values."""
+    if "flag_meanings" in finding.attrs:
+        words, counts = _words(finding), np.bincount(finding.values.reshape(-1))
+        found = [(word, n) for word, n in zip(words, counts, strict=False) if n]
+        return found[0][0] if finding.size == 1 else ", ".join(f"{word} {n}" for word, n in found)
+    unit = {"degree": "°", "1": ""}.get(_unit(finding), f" {_unit(finding)}")
+    ends = [f"{value:.6g}{unit}" for value in np.unique(finding.values[np.isfinite(finding.values)])]
+    if len(ends) > 4:
+        return f"{ends[0]} to {ends[-1]}"
+    return ", ".join(_labelled(finding, unit) or ends) or "none"
+
+
+def _labelled(finding: xr.DataArray, unit: str) -> list[str]:
+    """The values of one design, each with its label where they have some."""
+    if finding.ndim != 1 or finding[finding.dims[0]].dtype.kind != "U":
+        return []
+    pairs = zip(finding.values, finding[finding.dims[0]].values, strict=True)
+    return [f"{value:.6g}{unit} ({str(label).replace('_', ' ')})" for value, label in pairs if np.isfinite(value)]
+
+
+def _of_acceleration(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    if "alpha2_difference" in found:
+        worst, at = (_summary(found[f"alpha2_difference{end}"]) for end in ("", "_at"))
+        yield "alpha2", f"differs from that of omega2 by up to {worst}, at {at}"
+
+
+def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    arcs = [
+        f"{start:.4f}° to {end:.4f}°"
+        for start, end in zip(found.arc_start.values, found.arc_end.values, strict=True)
+        if np.isfinite(start)
+    ]
+    toggles = [
+        f"{angle:.4f}° ({str(name).replace('_', ', ')})"
+        for name, angle in zip(found.toggle.values, found.toggle_angle.values, strict=True)
+        if np.isfinite(angle)
+    ]
+    yield "Grashof class", _words(found.grashof)[int(found.grashof)]
+    yield "can be assembled", _words(found.assembly)[int(found.assembly)]
+    yield "at theta2 from", " and ".join(arcs) or "nowhere"
+    yield "toggles at theta2", ", ".join(toggles) or "none"
+    yield "least transmission angle", f"{float(found.transmission_angle_min):.4f}°"
+
+
+def _of_a_batch(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+    design = found.arc_start.isel(arc=0)
+    yield "designs", f"{design.size} ({', '.join(f'{dim} {n}' for dim, n in design.sizes.items())})"
+    for title, flag in (("Grashof class", found.grashof), ("can be assembled", found.assembly)):
+        words, values = _words(flag), flag.broadcast_like(design).values
+        counts = np.bincount(values.reshape(-1), minlength=len(words))
+        yield title, ", ".join(f"{word} {n}" for word, n in zip(words, counts, strict=True) if n)
+    least = found.transmission_angle_min.min()  # where there is one
+    if np.isfinite(least):
+        yield "least transmission angle", f"{float(least):.4f}°"
+
+
+def _words(flag: xr.DataArray) -> list[str]:
+    """What the values of a flag mean."""
+    return str(flag.attrs["flag_meanings"]).replace("_", "-").split()

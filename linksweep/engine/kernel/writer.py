@@ -1,0 +1,284 @@
+"""The source of one kernel that does a plan, nothing else.
+
+Design dimensions become nested loops, those too deep for Python one loop together, the index the inner loop. An
+operation is done in the loop of its own dimensions: what depends on no angle once per design, what depends on angle in
+the inner loop, and what is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views
+are taken before a plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart
+that the source says, so that they are known not to overlap: that is what vectorises. Results that are too many to be
+told apart when the loop begins are written to `scratch` too, and copied from there.
+
+    kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
+           block, block_at, single, single_at, scratch, angles, work)
+
+`parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each
+input starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost
+design loop (the samples, where there is none), so that a pool of threads can share the work.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+
+from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.plan import Plan
+
+ARGUMENTS = (
+    "first, last, samples, sizes, parameters, parameter_at, profiles, profile_at, "
+    "block, block_at, single, single_at, scratch, angles, work"
+)
+INFIX = {"+", "-", "*", "/", "<"}
+COMPARISONS = 128
+"""Pairs of rows, at most, that the compiler lets a vectorised loop compare before it begins, lest they overlap."""
+DEEPEST = 16
+"""Design loops within each other, at most: Python takes 20 blocks, and a search has two more inside. All dims beyond
+share the innermost loop."""
+TILE = 1024
+"""Samples that a kernel without design loops does at a time where it copies: the rows of a tile stay in the cache."""
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A row's summary by a function of engine.reduce: `kind` of the output `name`, as two numbers in `single`."""
+
+    kind: str
+    name: str
+
+
+class Writer:
+    """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what is around all."""
+
+    PLACED: tuple[str, ...] = ()
+    """Inputs per sample that the kernel itself puts into rows of scratch."""
+
+    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
+        self.plan, self.reductions, self.room = plan, reductions, room
+        self.innermost = min(len(plan.loops), DEEPEST)
+        late = set(self._late(plan))
+        self.nodes = [node for node in plan.nodes if node not in late]
+        stored = () if reductions else plan.stored
+        self.rows = tuple(node for node in stored if self.per_sample(node))
+        self.singles = tuple(node for node in stored if not self.per_sample(node))
+        inputs = [node for node in self.nodes if node.operator == "input"]
+        self.parameters = tuple(node for node in inputs if not self.per_sample(node))
+        self.placed = frozenset(node for node in inputs if node.value in self.PLACED)
+        self.profiles = tuple(node for node in inputs if self.per_sample(node) and node not in self.placed)
+        self.copied = self._copied()
+        self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
+        self.named = {*self.rows, *self.singles, *self.scratch}
+        self.uses = Counter(x for node in self.nodes for x in node.operands)
+        self.scratch_size = len(self.scratch) * room
+        self.lines: list[str] = []
+
+    def _late(self, plan: Plan) -> tuple[Node, ...]:
+        """What is left to numpy, after the kernel."""
+        return plan.late
+
+    def per_sample(self, node: Node) -> bool:
+        return self.plan.index in node.dims
+
+    def level(self, node: Node) -> int:
+        """Number of design loops around a node's work."""
+        deepest = max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
+        return min(deepest, self.innermost)
+
+    def _copied(self) -> frozenset[Node]:
+        """Results that are copied from scratch: those that deeper loops read, and all of a loop that has too many."""
+        copied = set(self.rows) & self._read_back()
+        for level in range(self.innermost + 1):
+            rows = {node for node in self.rows if self.level(node) == level}
+            if len(rows) * (len(rows) - 1) // 2 + len(rows) * len(self.profiles) > COMPARISONS:
+                copied |= rows
+        return frozenset(copied)
+
+    def _read_back(self) -> set[Node]:
+        """Rows that deeper loops read back."""
+        return {
+            x
+            for node in self.nodes
+            for x in node.operands
+            if self.per_sample(x) and x.operator != "input" and self.level(x) < self.level(node)
+        }
+
+    def _kept_in_scratch(self) -> list[Node]:
+        """Rows that deeper loops read back, the signals to be reduced, what is placed, and what is copied."""
+        signals = {self.plan.outputs[reduction.name] for reduction in self.reductions}
+        kept = self._read_back() | signals | self.placed | self.copied
+        return sorted(kept, key=lambda node: node.position)
+
+    def write(self, depth: int, line: str) -> None:
+        self.lines.append("    " * depth + line)
+
+    def kernel(self) -> str:
+        self._begin()
+        for level in range(self.innermost + 1):
+            if level:
+                self._design_loop(level)
+            self._body(level)
+        return "\n".join(self.lines) + "\n"
+
+    def _begin(self) -> None:
+        self.write(0, f"def kernel({ARGUMENTS}):")
+        self.write(1, "pass" if self.plan.loops else "start, samples = first, last - first")
+
+    def _design_loop(self, level: int) -> None:
+        if level < len(self.plan.loops) and level == self.innermost:
+            self._folded_loop(level)
+        else:
+            self.write(level, f"for {self.counter(level - 1)} in range({', '.join(self._bounds(level))}):")
+
+    def _folded_loop(self, level: int) -> None:
+        """One loop over the designs of all dims that are left, the last dim fastest."""
+        first, *others = range(level - 1, len(self.plan.loops))
+        sizes = " * ".join(f"sizes[{loop}]" for loop in (first, *others))
+        self.write(level, f"for folded in range({sizes}):")
+        self.write(level + 1, f"{self.counter(first)} = folded")
+        for loop in reversed(others):
+            left, size = self.counter(first), f"sizes[{loop}]"
+            self.write(level + 1, f"{self.counter(loop)}, {left} = {left} % {size}, {left} // {size}")
+
+    def _bounds(self, level: int) -> tuple[str, str]:
+        """First and last of the designs of a loop: of the outermost, those that this call is to do."""
+        return ("first", "last") if level == 1 else ("0", f"sizes[{level - 1}]")
+
+    def counter(self, loop: int) -> str:
+        return f"i{loop}"
+
+    def _body(self, level: int) -> None:
+        self._single_values(level)
+        self._sample_loop(level)
+        self._reductions(level)
+
+    def _work(self, level: int, per_sample: bool) -> list[Node]:
+        return [
+            node
+            for node in self.nodes
+            if self.level(node) == level
+            and self.per_sample(node) == per_sample
+            and node.operator not in ("input", "constant")
+        ]
+
+    def _single_values(self, level: int) -> None:
+        """What depends on no angle."""
+        depth = level + 1
+        for k, node in enumerate(self.parameters):
+            if self.level(node) == level:
+                self.write(depth, f"{self.name(node)} = parameters[{self._at('parameter', k, node)}]")
+        self._assign(self._work(level, per_sample=False), depth)
+        for k, node in enumerate(self.singles):
+            if self.level(node) == level:
+                self.write(depth, f"single[{self._at('single', k, node)}] = {self.name(node)}")
+
+    def _sample_loop(self, level: int) -> None:
+        """The inner loop over the samples, with the rows that it reads and writes."""
+        written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
+        written = [node for node in written if node not in self.placed]
+        if not written:
+            return
+        copied = [node for node in written if node in self.copied]
+        depth = self._tiles(level + 1) if copied and not self.plan.loops else level + 1
+        work = self._work(level, per_sample=True)
+        met = {*written, *(x for node in work for x in node.operands)}
+        read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
+        self._views(depth, read, written)
+        self.write(depth, "for j in range(samples):")
+        self._one_sample(depth + 1, read, work, written)
+        self._copies(depth, copied)
+
+    def _views(self, depth: int, read: list[Node], written: list[Node]) -> None:
+        """Views of the rows that are not in scratch."""
+        for node in read:
+            if self._given(node):
+                row = self._at("profile", self.profiles.index(node), node)
+                self.write(depth, f"read_{self.name(node)} = profiles[{row}]{self._part}")
+        for node in written:
+            if node not in self.scratch:
+                self.write(depth, f"written_{self.name(node)} = {self._block_row(node)}")
+
+    def _given(self, node: Node) -> bool:
+        return node.operator == "input" and node not in self.placed
+
+    def _one_sample(self, depth: int, read: list[Node], work: list[Node], written: list[Node]) -> None:
+        for node in read:
+            cell = f"read_{self.name(node)}[j]" if self._given(node) else self._scratch_cell(node)
+            self.write(depth, f"{self.name(node)} = {cell}")
+        self._assign(work, depth)
+        for node in written:
+            cell = self._scratch_cell(node) if node in self.scratch else f"written_{self.name(node)}[j]"
+            self.write(depth, f"{cell} = {self.name(node)}")
+
+    def _tiles(self, depth: int) -> int:
+        """Take the samples tile by tile; the depth inside."""
+        self.write(depth, f"for start in range(first, last, {TILE}):")
+        self.write(depth + 1, f"samples = min({TILE}, last - start)")
+        return depth + 1
+
+    def _copies(self, depth: int, copied: list[Node]) -> None:
+        for node in copied:
+            self.write(depth, f"row = {self._block_row(node)}")
+            self.write(depth, "for j in range(samples):")
+            self.write(depth + 1, f"row[j] = {self._scratch_cell(node)}")
+
+    def _scratch_cell(self, node: Node) -> str:
+        return f"scratch[{self.row_number(node) * self.room} + j]"
+
+    def row_number(self, node: Node) -> int:
+        """Which row of scratch a node has."""
+        return self.scratch[node]
+
+    def _block_row(self, node: Node) -> str:
+        return f"block[{self._at('block', self.rows.index(node), node)}]{self._part}"
+
+    @property
+    def _part(self) -> str:
+        """Which samples of a row: without design loops, what this call is to do."""
+        return "" if self.plan.loops else "[start:start + samples]"
+
+    def _row(self, node: Node) -> str:
+        """A node's row of scratch."""
+        return self._scratch_row(self.row_number(node))
+
+    def _scratch_row(self, k: int) -> str:
+        return f"scratch[{k * self.room}:{k * self.room} + samples]"
+
+    def _at(self, table: str, k: int, node: Node) -> str:
+        """Where a node's value of the current design is: row-major over the node's own loops."""
+        place = ""
+        for i, dim in enumerate(self.plan.loops):
+            if dim in node.dims:
+                place = f"({place}) * sizes[{i}] + {self.counter(i)}" if place else self.counter(i)
+        return f"{table}_at[{k}]" + (f" + {place}" if place else "")
+
+    def _assign(self, work: list[Node], depth: int) -> None:
+        """One line for each node used more than once, or elsewhere; the others are written into their only use."""
+        used_here = {x for node in work for x in node.operands}
+        inlined = {node for node in work if self.uses[node] == 1 and node in used_here and node not in self.named}
+        for node in work:
+            if node not in inlined:
+                self.write(depth, f"{self.name(node)} = {self.expression(node, inlined)}")
+
+    def name(self, node: Node) -> str:
+        if node.operator == "constant":
+            return repr(node.value) if math.isfinite(node.value) else f"math.{node.value}"
+        return node.value if node.operator == "input" else f"x{node.position}"
+
+    def expression(self, node: Node, inlined: set[Node]) -> str:
+        """An operation in Python, with the operations that only it uses written inside."""
+        x = [f"({self.expression(y, inlined)})" if y in inlined else self.name(y) for y in node.operands]
+        if node.operator in INFIX:
+            return f"{x[0]} {node.operator} {x[1]}"
+        if node.operator == "negate":
+            return f"-{x[0]}"
+        if node.operator == "where":
+            return f"{x[1]} if {x[0]} else {x[2]}"
+        return f"{node.operator}({', '.join(x)})"
+
+    def _reductions(self, level: int) -> None:
+        depth = level + 1
+        for k, reduction in enumerate(self.reductions):
+            node = self.plan.outputs[reduction.name]
+            if self.level(node) == level:
+                self.write(depth, f"value, at = {reduction.kind}({self._row(node)}, angles, work)")
+                self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
+                self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")

@@ -1,0 +1,126 @@
+"""Peaks of a plan's outputs over the whole turn, between the samples too."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled, compiled_functions
+from linksweep.engine.peaks import search
+from linksweep.engine.peaks.search_kernel import FOUND, SearchWriter
+from linksweep.engine.run import Field, Layout, flat, ordered, over_threads, single_of, slots
+from linksweep.engine.trace.plan import Plan
+
+INTERPRETED_DESIGNS = 40
+"""Designs that a plan may cost interpreted before its kernel is compiled."""
+INTERPRETED_SAMPLES = 100_000
+"""Samples that a search along paths may look at interpreted."""
+DESIGNS_PER_THREAD = 1000
+"""Fewer than this are not worth handing to another thread."""
+
+
+class Peak(NamedTuple):
+    """What was found of a signal: its largest value, the half-angle tangent and half turn of its place, a bound on how
+    much higher it might be, and how often the plan was evaluated."""
+
+    value: Field
+    tangent: Field
+    far: Field
+    beyond: Field
+    evaluations: Field
+
+
+@dataclass(eq=False)
+class Searcher:
+    """The search for the peaks of some outputs of a plan, made ready to run."""
+
+    plan: Plan
+    signals: tuple[str, ...]
+    interpreted: int = 0
+    layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
+
+    @cached_property
+    def writer(self) -> SearchWriter:
+        return SearchWriter(self.plan, self.signals)
+
+    @cached_property
+    def source(self) -> str:
+        return self.writer.kernel()
+
+    def layout(self, sizes: Mapping[str, int]) -> Layout:
+        key = tuple(sizes[dim] for dim in self.plan.loops)
+        if key not in self.layouts:
+            nodes = [node for node in self.writer.signals for _ in FOUND]
+            self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), (), slots(self.plan, nodes, sizes))
+        return self.layouts[key]
+
+    def kernel(self, designs: int) -> Callable:
+        """The kernel as Python while that is cheap, then compiled."""
+        self.interpreted += designs
+        if self.interpreted > INTERPRETED_DESIGNS:
+            return compiled(self.source, search_source(), SEARCH_SIGNATURE)
+        return self.in_python
+
+    @cached_property
+    def in_python(self) -> Callable:
+        namespace = vars(search) | {"sqrt": np.sqrt, "atan2": math.atan2}
+        exec(self.source, namespace)
+        return namespace["kernel"]
+
+
+@lru_cache(maxsize=256)
+def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
+    return Searcher(plan, signals)
+
+
+@lru_cache(maxsize=1)
+def grades() -> np.ndarray:
+    """Half-angle tangents of the samples of half a turn, for each scale of the sinh grade."""
+    scale = 0.5 ** np.arange(search.GRADES)[:, None]
+    steps = np.arange(-search.HALF, search.HALF) / search.HALF
+    table = scale * np.sinh(np.arcsinh(1.0 / scale) * steps)
+    table[:, 0] = -1.0
+    return table
+
+
+def find_peaks(
+    plan: Plan, signals: tuple[str, ...], inputs: Mapping[str, Field], sizes: Mapping[str, int], threads: int | None
+) -> dict[str, Peak]:
+    """The largest value of each signal over the turn, for every design."""
+    ready = searcher(plan, signals)
+    layout, designs = ready.layout(sizes), math.prod(sizes[dim] for dim in plan.loops)
+    kernel, writer = ready.kernel(designs), ready.writer
+    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in writer.parameters])
+    single_at, single_size = layout.places(layout.singles)
+    single = np.empty(single_size)
+    room = search.in_blocks(len(signals) * search.SAMPLES // 2)
+
+    def work(first: int, last: int) -> None:
+        scratch = np.empty(writer.scratch_size)
+        lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
+        best = np.empty((search.BEST_ROWS, len(signals)))
+        kernel(
+            first, last, layout.sizes, parameters, parameter_at, single, single_at,
+            scratch, grades(), lanes, trials, best, np.zeros(search.SAMPLES, dtype=np.int64),
+        )  # fmt: skip
+
+    with np.errstate(all="ignore"):
+        over_threads(work, int(layout.sizes[0]), 1 + designs // DESIGNS_PER_THREAD if plan.loops else 1, threads)
+    fields = iter(single_of(slot, single) for slot in layout.singles)
+    return {signal: Peak(*(next(fields) for _ in FOUND)) for signal in signals}
+
+
+@lru_cache(maxsize=1)
+def search_source() -> str:
+    return inspect.getsource(search)
+
+
+def search_functions(samples: int) -> Mapping[str, Callable]:
+    """The functions of engine.search, compiled where there is much to search."""
+    return compiled_functions(search_source()) if samples > INTERPRETED_SAMPLES else vars(search)

@@ -1,0 +1,1 @@
+"""Write and read files whole: NetCDF with its scene, tables, checksums, damaged files."""

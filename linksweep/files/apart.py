@@ -1,0 +1,63 @@
+"""NetCDF files without our seal, read in a process of their own: HDF5 may die of one that is damaged, or never end.
+
+``python -m linksweep.files.apart cycle.nc`` writes what is in the file to its standard output, as
+`linksweep.studies.partial.packed` has it.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import xarray as xr
+
+from linksweep.studies.partial import packed, unpacked
+
+LONGEST = 60.0
+"""Seconds that reading a file may take."""
+HDF5 = b"\x89HDF\r\n\x1a\n"
+END = {0: 40, 1: 44, 2: 28, 3: 28}
+"""Where an HDF5 file says how long it is, by the version of its format."""
+
+
+def read_apart(path: Path) -> xr.Dataset:
+    """All variables of a NetCDF file, as coordinates. Raises ValueError that names the file where it cannot be read."""
+    try:
+        if not (reason := _cut_off(path)):
+            command = [sys.executable, "-P", "-m", __name__, os.fspath(path)]
+            ran = subprocess.run(command, capture_output=True, timeout=LONGEST, check=False)
+            if not ran.returncode:
+                ds = unpacked(ran.stdout)
+                return ds.set_coords([*ds.data_vars])
+            reason = "damaged: the NetCDF library dies of it" if ran.returncode < 0 else ran.stderr.decode().strip()
+    except subprocess.TimeoutExpired:
+        reason = f"damaged: the NetCDF library has not come back after {LONGEST:g} s"
+    except OSError as error:
+        reason = str(error.strerror)
+    raise ValueError(f"{path}: cannot be read as NetCDF ({reason}); a scene file ends in .toml")
+
+
+def _cut_off(path: Path) -> str:
+    """What is missing of a file that is shorter than it says itself; nothing where it is not."""
+    with open(path, "rb") as file:
+        head, size = file.read(64), file.seek(0, os.SEEK_END)
+    if not head.startswith(HDF5) or len(head) < 64 or head[8] not in END:
+        return ""
+    end = int.from_bytes(head[END[head[8]] :][:8], "little")
+    return f"cut off: {size} of {end} bytes" if size < end else ""
+
+
+def _main(path: str) -> None:
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as ds:
+            whole = ds.load()
+            texts = {name: values.astype(str) for name, values in whole.variables.items() if values.dtype.kind == "O"}
+            sys.stdout.buffer.write(packed(whole.assign(texts)))
+    except Exception as error:  # of a damaged file, it may be anything
+        sys.exit(" ".join(str(getattr(error, "strerror", None) or error).split()))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

@@ -1,0 +1,95 @@
+"""Results as a table: one row a design, or a design and crank angle, for spreadsheets and pandas."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.files.atomic import ending_of, whole
+from linksweep.mechanisms import INDICES
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMULAS = ("=", "+", "-", "@", "\t", "\r")
+"""How a text begins that a spreadsheet takes for a formula."""
+
+
+def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
+    """A Dataset as a table.
+
+    Parameters
+    ----------
+    ds : Dataset of linksweep
+
+    Returns
+    -------
+    pandas.DataFrame with a row for each design, or for each design and crank angle. The columns are the dims (labels,
+    or positions from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]".
+    Status stands in words.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> table = ls.peaks(ls.example("press"), of=["F32"]).linksweep.to_pandas()
+    >>> list(table.columns)
+    ['F32_peak [N]', 'F32_peak_at [degree]', 'status']
+    """
+    import pandas as pd  # here: it comes with xarray, but takes its time
+
+    sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in INDICES)}  # angles innermost
+    known = ds.assign_coords({dim: np.arange(n) for dim, n in sizes.items() if dim not in ds.coords})
+    names = [*sizes, *(name for name in known.coords if name not in sizes), *known.data_vars]
+    return pd.DataFrame({_header(known[name]): _column(known[name].variable, sizes) for name in names})
+
+
+def to_csv(ds: xr.Dataset, path: str | os.PathLike) -> None:
+    """Write a Dataset as a CSV file, whole or not at all, with the columns of `to_pandas`.
+
+    Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would run as a formula
+    has an apostrophe before it.
+
+    Raises
+    ------
+    ValueError
+        When the name of the file does not end in .csv.
+    OSError
+        When the folder is missing, cannot be written or is full; what was there before stays.
+    """
+    ending_of(path, (".csv",))
+    table = to_pandas(ds)
+    with whole(path) as temporary:
+        table.map(_no_formula).rename(columns=_no_formula).to_csv(temporary, index=False, encoding="utf-8")
+
+
+def _no_formula(cell: Any) -> Any:
+    """Return a cell as it is, or with an apostrophe before a text that a spreadsheet would run."""
+    if not isinstance(cell, str):
+        return cell
+    mark = "'" if cell.startswith(FORMULAS) and not _is_number(cell) else ""
+    return mark + cell.replace("\r", "\n")  # which csv puts in quotes
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _header(values: xr.DataArray) -> str:
+    units = str(values.attrs.get("units", ""))
+    return str(values.name) if units in ("", "1") else f"{values.name} [{units}]"
+
+
+def _column(variable: xr.Variable, sizes: dict[Any, int]) -> Any:
+    """One value a row; those of flags in words."""
+    values = variable.set_dims(sizes).values.reshape(-1)
+    if "flag_meanings" not in variable.attrs:
+        return values
+    words = np.array(str(variable.attrs["flag_meanings"]).split())
+    return words[np.searchsorted(np.atleast_1d(variable.attrs["flag_values"]), values)]

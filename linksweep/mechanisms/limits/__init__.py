@@ -1,0 +1,1 @@
+"""Find where each machine can be assembled, and where it toggles, in closed form."""

@@ -1,0 +1,170 @@
+"""Where a four-bar closes: Grashof class, assembly limits and toggle angles in closed form, for arrays of designs.
+
+With φ the angle from the line A→D to the crank, the four-bar closes while (see `linksweep.physics.four_bar`)
+
+    low  = (d−a−b+c)(d−a+b−c) + 4ad·sin²(φ/2) ≥ 0        low = 0: coupler folded back over the rocker, f = |b−c|
+    high = (b+c−d−a)(b+c+d+a) + 4ad·cos²(φ/2) ≥ 0        high = 0: coupler and rocker stretched out, f = b+c
+
+so that φ lies between ±φ_folded and ±φ_stretched. With 1 = cos² + sin² each is x·cos²(φ/2) + y·sin²(φ/2) = 0, whose x
+and y factor into sums of lengths: tan(φ/2) = √(−x/y), without the loss that acos has near 0 and 180.
+
+A driven rocker stands still where crank and coupler lie in one line, a driven coupler where crank and rocker are
+parallel. Both times the crank, made longer or shorter by the link in line with it, closes a triangle with d and the
+third link: with g = a ± b and h = c, or g = a ∓ c and h = b, is (d−g−h)(d−g+h) + 4dg·sin²(φ/2) = 0.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
+from linksweep.physics.four_bar import extremes
+
+GRASHOF = (
+    "crank_rocker",
+    "double_crank",
+    "double_rocker",
+    "rocker_crank",
+    "triple_rocker",
+    "change_point",
+)
+"""By the shortest link: crank, ground, coupler, rocker; then no link turns fully; then the borderline between."""
+
+DEAD_CENTRES = {
+    "rocker": ("open_stretched", "open_folded", "crossed_stretched", "crossed_folded"),
+    "coupler": ("open_alike", "open_opposite", "crossed_alike", "crossed_opposite"),
+}
+"""By branch: how the coupler lies to the crank; whether crank and rocker point the same way."""
+
+TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
+
+
+def classes(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
+    """What the lengths alone decide."""
+    found = limits(a, b, c, d)
+    return {
+        "grashof": Finding(found.grashof, "Grashof class", words=GRASHOF),
+        "assembly": Finding(found.assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
+        "transmission_angle_min": Finding(
+            found.transmission_angle_min, "smallest acute angle between coupler and rocker"
+        ),
+    }
+
+
+def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Crank angles, which turn with the frame."""
+    found = limits(a, b, c, d)
+    start, end = arcs(found, ground_angle)
+    toggles = np.stack([found.folded, found.stretched, -found.stretched, -found.folded], axis=-1)
+    toggles = np.mod(toggles + ground_angle[..., None], 360.0)
+    return {
+        "arc_start": Finding(start, "crank angle at which an assembled arc starts", along=("arc", ())),
+        "arc_end": Finding(end, "crank angle at which it ends (may pass 360)", along=("arc", ())),
+        "toggle_angle": Finding(toggles, "coupler and rocker in one line", along=("toggle", TOGGLES)),
+    }
+
+
+def rocker_dead_centres(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
+) -> dict[str, Finding]:
+    """Crank angles at which the rocker turns round, and cannot drive."""
+    found = _crank_in_line(a + b, c, d), -_crank_in_line(a - b, c, d)
+    return _dead_centres(found, ground_angle, "rocker", "crank and coupler in one line")
+
+
+def coupler_dead_centres(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
+) -> dict[str, Finding]:
+    """Crank angles at which the coupler does not turn, and cannot drive."""
+    found = _crank_in_line(a - c, b, d), -_crank_in_line(a + c, b, d)
+    return _dead_centres(found, ground_angle, "coupler", "crank and rocker parallel")
+
+
+def _dead_centres(
+    found: tuple[np.ndarray, np.ndarray], ground_angle: np.ndarray, driven: str, said: str
+) -> dict[str, Finding]:
+    """From those of the open branch, of which those of the crossed one are the mirror image."""
+    angle = np.mod(np.stack([*found, *(-one for one in found)], axis=-1) + ground_angle[..., None], 360.0)
+    return {"dead_centre_angle": Finding(angle, said, along=("dead_centre", DEAD_CENTRES[driven]))}
+
+
+def _crank_in_line(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Angle φ in [0, 180] of the module's equation of dead centres; NaN where there is none."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        near, far = ((h - d) + g) * ((h + d) - g), ((d - h) + g) * ((d + h) + g)
+        angle = 2.0 * np.degrees(np.arctan2(np.sqrt(near * np.sign(g)), np.sqrt(far * np.sign(g))))
+    return np.where(g == 0.0, np.nan, angle)
+
+
+class Limits(NamedTuple):
+    """Arrays over the designs; angles in degrees from the line A→D to the crank. NaN where there is no such limit."""
+
+    grashof: np.ndarray
+    assembly: np.ndarray
+    folded: np.ndarray
+    stretched: np.ndarray
+    transmission_angle_min: np.ndarray
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
+    """Limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
+    low, largest_low, high, largest_high = extremes(a, b, c, d)
+    never = (largest_low < 0.0) | (largest_high < 0.0)
+    folded = _where_zero(low, largest_low, never)
+    stretched = _where_zero(largest_high, high, never)
+    assembly = np.where(never, 2, np.where((low < 0.0) | (high < 0.0), 1, 0)).astype(np.int8)
+    return Limits(_grashof(a, b, c, d), assembly, folded, stretched, _least_transmission_angle(a, b, c, d, never))
+
+
+def _where_zero(x: np.ndarray, y: np.ndarray, never: np.ndarray) -> np.ndarray:
+    """Angle φ in [0, 180] where x cos²(φ/2) + y sin²(φ/2) is 0; NaN where x and y have the same sign."""
+    crossing = (np.minimum(x, y) <= 0.0) & (np.maximum(x, y) >= 0.0) & ~never
+    half = np.arctan2(np.sqrt(np.abs(x)), np.sqrt(np.abs(y)))
+    return np.where(crossing, 2.0 * np.degrees(half), np.nan)
+
+
+def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Shortest + longest against the sum of the other two; equal if so but for the rounding of the lengths."""
+    links = np.stack(np.broadcast_arrays(a, d, b, c))
+    shortest, p, q, longest = np.sort(links, axis=0)
+    margin = (p + q) - (shortest + longest)
+    borderline = np.abs(margin) <= 2.0 * np.finfo(float).eps * (p + q)
+    return np.select([borderline, margin > 0.0], [5, links.argmin(axis=0)], 4).astype(np.int8)
+
+
+def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
+    """The acute angle between coupler and rocker is least where the diagonal f is shortest or longest."""
+    shortest = np.maximum(np.abs(d - a), np.abs(b - c))
+    longest = np.minimum(d + a, b + c)
+
+    def acute(f):
+        # half-angle form of the cosine rule: tan²(μ/2) = (f² − (b−c)²) / ((b+c)² − f²)
+        half_square = (f - b + c) * (f + b - c), (b + c - f) * (b + c + f)
+        angle = 2.0 * np.degrees(np.arctan2(*(np.sqrt(np.maximum(x, 0.0)) for x in half_square)))
+        return np.minimum(angle, 180.0 - angle)
+
+    return np.where(never, np.nan, np.minimum(acute(shortest), acute(longest)))
+
+
+def arcs(found: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
+
+    NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame
+    line, with one limit a single arc through the side where there is none.
+    """
+    folded, stretched = np.isfinite(found.folded), np.isfinite(found.stretched)
+    whole = found.assembly == 0
+    both = folded & stretched & ~whole
+    cases = [whole, both, folded, stretched]
+    nothing = np.full(whole.shape, np.nan)
+    first = (
+        np.select(cases, [np.zeros(whole.shape), found.folded, found.folded, -found.stretched], np.nan),
+        np.select(cases, [np.full(whole.shape, 360.0), found.stretched, 360.0 - found.folded, found.stretched], np.nan),
+    )
+    second = np.where(both, -found.stretched, nothing), np.where(both, -found.folded, nothing)
+    start, end = (np.stack(pair, axis=-1) for pair in zip(first, second, strict=True))
+    turned = np.mod(start + np.where(whole, 0.0, ground_angle)[..., None], 360.0)
+    return turned, turned + (end - start)

@@ -1,0 +1,231 @@
+"""Rows of the inverted slider-crank: which function of the physics gives which of its quantities."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.rows import rounding_error
+from linksweep.mechanisms.rows.bodies import (
+    Body,
+    Source,
+    arm_rows,
+    crank_pin_slope_rows,
+    drive_quantities,
+    drive_torque,
+    on_crank_pin,
+    position_quantities,
+)
+from linksweep.mechanisms.rows.crank import between_rows, pinch_rows, straight_rows
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
+from linksweep.physics import advantage, coulomb, crank_driven, dyad_rpr, inverted_slider_crank, planar
+
+LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
+PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
+JOURNALS = {"A": 2, "B": 2, "D": 4}
+BODIES = (
+    Body(2, "crank", steady=True, ratio=1.0),
+    on_crank_pin(3, "block", "ratio4", "slope4"),
+    Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
+)
+
+
+class Drive(NamedTuple):
+    """A way to drive: its unknown; the rate of what it drives, and that per rate of the crank; the leverage that
+    vanishes where this stands still, and the two lengths whose product it is at most."""
+
+    unknown: Quantity
+    rate: str
+    ratio: Source
+    leverage: tuple[Source, ...] = ()
+
+
+DRIVES = {
+    "crank": Drive(drive_torque("T12", "crank"), "omega2", 1.0),
+    "rocker": Drive(drive_torque("T14", "rocker"), "omega4", "ratio4", ("crank_along", "crank_length", 1.0)),
+    "cylinder": Drive(
+        Quantity("cylinder_force", "N", "force of the cylinder on the block along the line, positive as slide"),
+        "slide_velocity",
+        "ratio_slide",
+        ("slide_leverage", "crank_length", "ground_length"),
+    ),
+}
+
+
+@lru_cache(maxsize=64)
+def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+    """Return the table for a drive, loads of these forms, and a frame line that may be turned."""
+    rows = [
+        *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *_position(),
+        *_rates(),
+        *_forces(drive),
+        *power_rows(DRIVES[drive].unknown.name, DRIVES[drive].rate, BODIES, loads, "friction_power"),
+        Row(planar.product, ("friction_power",), ("friction_force", "slide_velocity")),
+    ]
+    rows += machine_rows(BODIES, PINS, loads) + _transmission()
+    rows += [rounding_error.row(slide_cosine=1.0, pinch_versine=1.0), *arm_rows(2, "R12", "R32"), *_arms()]
+    return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
+
+
+def _arms() -> list[Row | Total]:
+    """From the centres of gravity of block and rocker to their pins, and to the forces of the slide at B."""
+    line = ("r3x", "r3y")
+    return [
+        *arm_rows(3, "R23"),
+        *arm_rows(4, "R14"),
+        Row(inverted_slider_crank.slide_arms, ("normal_arm", "line_arm"), ("DBx", "DBy", "rG4x", "rG4y", *line)),
+        Row(
+            inverted_slider_crank.slide_arms,
+            ("block_normal_arm", "block_line_arm"),
+            (0.0, 0.0, "rG3x", "rG3y", *line),
+        ),
+        Row(inverted_slider_crank.contact_direction, ("contact_x", "contact_y")),
+        Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
+        Row(
+            inverted_slider_crank.contact_arm,
+            ("block_contact_arm",),
+            ("F43n", "direction", "block_normal_arm", "block_line_arm"),
+        ),
+    ]
+
+
+def _position() -> list[Row | Total]:
+    return [
+        Row(inverted_slider_crank.pinch_width, ("pinch_near",)),
+        Row(planar.same, ("pinch_far",), (1.0,)),
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_rest")),
+        Row(inverted_slider_crank.versine, ("pinch_versine",)),
+        Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
+        Row(inverted_slider_crank.slide_cosine, ("slide_cosine",)),
+        Row(inverted_slider_crank.slide_squared, ("slide_squared",)),
+        Row(inverted_slider_crank.slide_leverage, ("slide_leverage",)),
+        Row(inverted_slider_crank.closure_noise, ("noise",)),
+        Row(inverted_slider_crank.assembly, ("assembly",)),
+        Row(dyad_rpr.rpr_close, ("slide", "inverse_slide", "r3x", "r3y")),
+        Row(dyad_rpr.rpr_transmission_angle, ("transmission_angle",)),
+        Row(planar.along, ("r4x", "r4y"), ("rocker_length", "r3x", "r3y")),
+        Row(planar.dot, ("crank_along",), ("r2x", "r2y", "r3x", "r3y")),
+        Row(planar.direction, ("theta4",), ("r3x", "r3y")),
+        Row(planar.same, ("theta3",), ("theta4",)),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
+    ]
+
+
+def _rates() -> list[Row | Total]:
+    return [
+        Row(dyad_rpr.rpr_velocity_ratios, ("ratio4", "ratio_slide")),
+        Row(planar.product, ("omega4",), ("omega2", "ratio4")),
+        Row(planar.same, ("omega3",), ("omega4",)),
+        Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(dyad_rpr.rpr_accelerations, ("alpha4", "slide_acceleration")),
+        Row(planar.same, ("alpha3",), ("alpha4",)),
+    ]
+
+
+def _transmission() -> list[Row | Total]:
+    """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
+    line = ("ratio4", "slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
+    return [
+        *crank_pin_slope_rows(),
+        Row(dyad_rpr.rpr_accelerations, ("slope4", "slope_slide"), ("uBx_slope", "uBy_slope", *line)),
+        Row(planar.same, ("velocity_ratio",), ("ratio4",)),
+        Row(advantage.torque_ratio, ("torque_ratio",)),
+    ]
+
+
+def _forces(drive: str) -> list[Row | Total]:
+    """The contact's forces from the moment equations free of the drive's torque; the rest follows by addition.
+
+    Torque or force of the drive come from virtual work, in which block and rocker turn together.
+    """
+    unknown, _, ratio, leverage = DRIVES[drive]
+    work = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
+    return [
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
+        Row(inverted_slider_crank.slide_direction, ("direction",)),
+        Row(crank_driven.work_on_crank, ("work_of_loads",), work),
+        Row(inverted_slider_crank.work_with_friction, ("work",)),
+        *_contact(drive),
+        Row(planar.opposite, ("T43",), ("N3",)),
+        Row(planar.turned, ("F43x", "F43y"), ("line_force", "F43n", 1.0, "r3x", "r3y")),
+        Row(crank_driven.coupler_balance, ("F32x", "F32y")),
+        Row(crank_driven.rocker_balance, ("F14x", "F14y")),
+        Row(crank_driven.crank_balance, ("F12x", "F12y")),
+        *_driven_ratio(drive),
+        *_drive(drive, unknown.name, "driven_ratio" if leverage else ratio),
+        *_status(drive),
+    ]
+
+
+def _driven_ratio(drive: str) -> list[Row]:
+    """The driven part's rate per rate of the crank, where there is one that can vanish."""
+    _, _, ratio, leverage = DRIVES[drive]
+    return [Row(crank_driven.away_from_dead_centre, ("driven_ratio",), (ratio, *leverage))] if leverage else []
+
+
+def _contact(drive: str) -> list[Row]:
+    """Normal force and friction of the slide: beside a cylinder's force friction changes no other force."""
+    forces = ("F43n", "friction_force", "wedging")
+    if drive == "cylinder":
+        return [
+            Row(inverted_slider_crank.normal_force_on_block, ("F43n",)),
+            Row(coulomb.friction, ("friction_force",), ("F43n", "direction")),
+        ]
+    if drive == "rocker":
+        return [
+            Row(planar.cross, ("crank_across",), ("r2x", "r2y", "r3x", "r3y")),
+            Row(inverted_slider_crank.contact_force_from_crank, forces),
+        ]
+    return [Row(inverted_slider_crank.contact_force, forces)]
+
+
+def _drive(drive: str, unknown: str, ratio: Source) -> list[Row]:
+    """The drive's unknown, and all that acts along the line: friction, or with a cylinder what balances without it."""
+    if drive == "cylinder":
+        return [
+            Row(crank_driven.balancing_drive, ("line_force",), ("work_of_loads", ratio)),
+            Row(inverted_slider_crank.cylinder_force, (unknown,)),
+        ]
+    return [
+        Row(planar.same, ("line_force",), ("friction_force",)),
+        Row(crank_driven.balancing_drive, (unknown,), ("work", ratio)),
+    ]
+
+
+def _status(drive: str) -> list[Row | Total]:
+    """Step by step: does it close, can the drive move it, does friction wedge it, which a cylinder overcomes."""
+    leverage = DRIVES[drive].leverage
+    closed = Row(dyad_rpr.rpr_status, ("closure",))
+    if drive == "cylinder":
+        return [closed, Row(crank_driven.drive_status, ("status",), ("closure", *leverage))]
+    moves = Row(planar.same, ("leverage_status",), ("closure",))
+    if leverage:
+        moves = Row(crank_driven.drive_status, ("leverage_status",), ("closure", *leverage))
+    return [closed, moves, Row(coulomb.jammed_status, ("status",), ("leverage_status", "wedging"))]
+
+
+def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
+    return [
+        Quantity("theta3", "degree", "angle of the block, the rocker's"),
+        Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
+        Quantity("transmission_angle", "degree", "acute angle between the line D-B and the normal force on the rocker"),
+        Quantity("slide", "m", "position of the block along the rocker's line, from the foot of D on it"),
+        Quantity("slide_velocity", "m s-1", "velocity of the block along the rocker's line, relative to the rocker"),
+        Quantity("slide_acceleration", "m s-2", "acceleration of the block along the rocker's line, relative to it"),
+        Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
+        Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
+        *position_quantities("B"),
+        Quantity("friction_force", "N", "friction of the rocker on the block along its line"),
+        Quantity("friction_power", "W", "power of friction in the slide, never positive"),
+        *drive_quantities(DRIVES[drive].unknown, "drive, friction, loads, gravity and inertia"),
+        Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
+        Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
+        *machine_quantities(BODIES, PINS, LINKS, loads),
+    ]

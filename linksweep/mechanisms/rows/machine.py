@@ -1,0 +1,81 @@
+"""Rows and quantities of a whole machine of links, the same for every mechanism: each link, joint and load, and their
+sums."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.mechanisms.rows import rounding_error
+from linksweep.mechanisms.rows.bodies import Body, motion_quantities, pin_force_quantities, pin_force_rows
+from linksweep.mechanisms.rows.load_forms import Form, action_powers, action_quantities, action_rows
+from linksweep.mechanisms.rows.pins import Pins, pin_quantities, pin_rows
+from linksweep.physics import planar, power, reduced_inertia
+
+Bodies = tuple[Body, ...]
+Loads = tuple[Form, ...]
+
+
+def machine_rows(bodies: Bodies, joints: Pins, loads: Loads) -> list[Row | Total]:
+    """All but what closes the linkage and what its drive gives."""
+    rows = [row for body in bodies for row in body.rows()] + action_rows(loads, bodies)
+    for i, j in joints.values():
+        rows += pin_force_rows(i, j)
+    return [*rows, *pin_rows(joints, bodies), *_sums(bodies, loads)]
+
+
+def power_rows(unknown: str, rate: str, bodies: Bodies, loads: Loads, *losses: str) -> list[Row | Total]:
+    """Power of the drive's unknown at the rate of what it drives, and what all powers leave when they are added."""
+    terms = [term for body in bodies for term in body.powers()] + action_powers(loads)
+    return [
+        Row(planar.product, ("power",), (unknown, rate)),
+        Total("power_size", tuple(f"power_size{body.number}" for body in bodies)),
+        Row(power.power_residual, ("power_residual",), ("power_size", "power", *losses, *terms)),
+    ]
+
+
+def machine_quantities(bodies: Bodies, joints: Pins, links: Mapping[int, str], loads: Loads) -> list[Quantity]:
+    """What may be asked of all that; `links` are the roles by number, with the ground."""
+    found = _quantities_of_sums()
+    for body in bodies:
+        found += motion_quantities(body)
+    for joint, (i, j) in joints.items():
+        found += pin_force_quantities(i, j, joint, links)
+    return found + pin_quantities(joints, links) + action_quantities(loads)
+
+
+def _sums(bodies: Bodies, loads: Loads) -> list[Row | Total]:
+    """Of all moving links together: shaking, reduced inertia, powers, and what the drive gives."""
+    sums = {"Fsx": "S{}x", "Fsy": "S{}y", "Ms": "S{}m", "inertia_power": "inertia_power{}"}
+    sums |= {"gravity_power": "gravity_power{}", "reduced_inertia": "reduced_inertia{}"}
+    sums |= {"reduced_inertia_slope": "reduced_inertia_slope{}"}
+    return [
+        *(Total(name, tuple(part.format(body.number) for body in bodies)) for name, part in sums.items()),
+        Total("load_power", tuple(action_powers(loads))),
+        Row(planar.square, ("Fs_squared",), ("Fsx", "Fsy")),
+        Row(planar.root, ("Fs",), ("Fs_squared",)),
+        Row(reduced_inertia.kinetic_energy, ("kinetic_energy",)),
+        Row(planar.opposite, ("reduced_torque",), ("work",)),
+        Row(power.power_fed, ("power_fed",)),
+        Row(power.power_regenerated, ("power_regenerated",)),
+    ]
+
+
+def _quantities_of_sums() -> list[Quantity]:
+    said = "force of the moving links' inertia on the ground (weights and loads not in it)"
+    return [
+        Quantity("Fsx", "N", f"shaking force: {said}, component along x"),
+        Quantity("Fsy", "N", f"shaking force: {said}, component along y"),
+        Quantity("Fs", "N", f"magnitude of the shaking force: {said}", squared="Fs_squared"),
+        Quantity("Ms", "N m", "shaking moment of the moving links' inertia on the ground about A, counter-clockwise"),
+        rounding_error.QUANTITY,
+        Quantity("reduced_inertia", "kg m2", "inertia of all moving links reduced to the crank"),
+        Quantity("reduced_inertia_slope", "kg m2 rad-1", "derivative of the reduced inertia to the crank angle"),
+        Quantity("kinetic_energy", "J", "kinetic energy of all moving links"),
+        Quantity("reduced_torque", "N m", "drive reduced to the crank: its work per radian of the crank"),
+        Quantity("power_fed", "W", "power of the drive where it feeds the mechanism, else 0"),
+        Quantity("power_regenerated", "W", "power that the drive takes back where the mechanism drives it, else 0"),
+        Quantity("inertia_power", "W", "power of all inertia forces, positive when they feed the mechanism"),
+        Quantity("gravity_power", "W", "power of all weights, positive when they feed the mechanism"),
+        Quantity("load_power", "W", "power of all loads, springs and dampers, positive when they feed the mechanism"),
+    ]

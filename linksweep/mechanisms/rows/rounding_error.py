@@ -1,0 +1,34 @@
+"""The rounding error of a sample's pin forces as a quantity, for every machine with a crank."""
+
+from __future__ import annotations
+
+from linksweep.engine.quantity import Quantity, Row
+from linksweep.engine.trace import rounding
+from linksweep.engine.trace.graph import Node
+
+FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
+EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
+"""Numbers that reach the physics as the user gave them; so do lengths. Others, such as cosines, have been rounded."""
+
+
+def row(**closure: str | float) -> Row:
+    """The row that bounds the pin forces' error, of a machine that makes these numbers of its closure, and the angle
+    in its own frame, of cosines in more than double precision; with the units that a cosine has in each."""
+    certain = {"pinch_cos": 1.0, "pinch_cos_rest": 1.0, "pinch_sin": 1.0, **closure}
+    n = len(certain)
+
+    def error_bound(*nodes: Node) -> Node:
+        """Bound on the rounding error of the pin forces' components, relative to the largest of them."""
+        in_units = dict(zip(nodes[:n], nodes[n : 2 * n], strict=True))
+        return rounding.relative_bound(nodes[2 * n :], _is_exact, in_units)
+
+    return Row(error_bound, ("error_bound",), (*certain, *certain.values(), *FORCES))
+
+
+def _is_exact(name: str) -> bool:
+    return name.endswith("_length") or name in EXACT
+
+
+QUANTITY = Quantity(
+    "error_bound", "1", "bound on the rounding error of the sample's pin forces, relative to the largest of them"
+)

@@ -1,0 +1,171 @@
+"""Rows of the slider-crank: which function of the physics gives which of its quantities."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.rows import rounding_error
+from linksweep.mechanisms.rows.bodies import (
+    Body,
+    arm_rows,
+    crank_pin_slope_rows,
+    drive_quantities,
+    drive_torque,
+    on_crank_pin,
+    position_quantities,
+)
+from linksweep.mechanisms.rows.crank import between_rows, pinch_rows, straight_rows
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
+from linksweep.physics import advantage, coulomb, crank_driven, dyad_rrp, planar, slider_crank
+
+LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
+DRIVES = {"crank": "T12", "coupler": "T13"}
+DRIVEN = {"crank": "omega2", "coupler": "omega3"}
+PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
+JOURNALS = {"A": 2, "B": 2, "C": 4}
+"""As in engines: crankshaft and crankpin are the crank's, the gudgeon pin the piston's; the rod has both its bushes."""
+BODIES = (
+    Body(2, "crank", steady=True, ratio=1.0),
+    on_crank_pin(3, "rod", "ratio3", "slope3"),
+    Body(
+        4,
+        "slider",
+        ("vCx", "vCy"),
+        ("aCx", "aCy"),
+        pin_position=("Cx", "Cy"),
+        pin_ratio=("uCx", "uCy"),
+        pin_slope=("uCx_slope", "uCy_slope"),
+    ),
+)
+
+
+@lru_cache(maxsize=64)
+def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
+    """Return the table for a drive, loads of these forms, and a guide that may be turned."""
+    rows = [
+        *(pinch_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
+        *_position(),
+        *_rates(),
+        *_forces(drive),
+        *_status(drive, loads),
+        *power_rows(DRIVES[drive], DRIVEN[drive], BODIES, loads, "friction_power"),
+        Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
+    ]
+    rows += machine_rows(BODIES, PINS, loads) + _transmission()
+    rows += [rounding_error.row(low="crank_length", high="crank_length")]
+    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R34")]
+    return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
+
+
+def _position() -> list[Row | Total]:
+    return [
+        Row(slider_crank.pinch_widths, ("pinch_near", "pinch_far")),
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_rest", "high_cos", "high_cos_rest")),
+        Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
+        Row(slider_crank.closure_factors, ("low", "high")),
+        Row(slider_crank.closure_noise, ("low_noise", "high_noise")),
+        Row(slider_crank.length_noise, ("noise",)),
+        Row(slider_crank.assembly, ("assembly",)),
+        Row(dyad_rrp.rrp_close, ("r3x", "r3y", "rod_along", "inverse_rod_along")),
+        Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
+        Row(slider_crank.slider_position, ("x_slider",)),
+        Row(planar.direction, ("theta3",), ("r3x", "r3y")),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
+    ]
+
+
+def _rates() -> list[Row | Total]:
+    return [
+        Row(dyad_rrp.rrp_velocity_ratios, ("ratio3", "ratio_slider")),
+        Row(planar.product, ("omega3",), ("omega2", "ratio3")),
+        Row(planar.product, ("v_slider",), ("omega2", "ratio_slider")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
+        Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
+        Row(planar.along, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
+        Row(planar.along, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
+    ]
+
+
+def _transmission() -> list[Row | Total]:
+    """Ratios of the slider's velocity and force to the crank's, and how they change with the crank's angle."""
+    rod, guide = ("ratio3", "rod_along", "rod_across", "inverse_rod_along"), ("guide_cos", "guide_sin")
+    return [
+        *crank_pin_slope_rows(),
+        Row(dyad_rrp.rrp_accelerations, ("slope3", "slope_slider"), ("uBx_slope", "uBy_slope", *rod, *guide)),
+        Row(planar.along, ("uCx", "uCy"), ("ratio_slider", *guide)),
+        Row(planar.along, ("uCx_slope", "uCy_slope"), ("slope_slider", *guide)),
+        Row(planar.same, ("velocity_ratio",), ("ratio_slider",)),
+        Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
+    ]
+
+
+def _forces(drive: str) -> list[Row | Total]:
+    """The guide's force from the lever whose moment equation is free of the drive; the rest follows by addition."""
+    lever = {
+        "crank": ("inverse_rod_along", "rod_across", "moment_r3"),
+        "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
+    }[drive]
+    guide = ("guide_cos", "guide_sin")
+    torque = {
+        "crank": Row(planar.opposite, ("T12",), ("work",)),
+        "coupler": Row(slider_crank.torque_on_rod, ("T13",)),
+    }[drive]
+    return [
+        Row(slider_crank.moment_on_rod, ("moment_r3",)),
+        Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
+        Row(slider_crank.friction_direction, ("direction",)),
+        Row(
+            slider_crank.guide_force,
+            ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),
+            (*lever, "Q4x", "Q4y", *guide, "direction"),
+        ),
+        Row(slider_crank.from_guide_axes, ("F14x", "F14y"), ("normal_force", "friction_force", *guide)),
+        Row(slider_crank.from_guide_axes, ("F43x", "F43y"), ("rod_force_across", "rod_force_along", *guide)),
+        Row(crank_driven.coupler_balance, ("F32x", "F32y")),
+        Row(crank_driven.crank_balance, ("F12x", "F12y")),
+        Row(planar.opposite, ("T14",), ("N4",)),
+        Row(slider_crank.work_on_crank, ("work",)),
+        torque,
+        Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
+        Total("friction_rhs", ()),
+    ]
+
+
+def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
+    """Step by step: does it close, can the drive move it, does friction wedge it, have its loads their whole turns."""
+    closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
+    leverage: list[Row | Total] = [Row(planar.same, ("leverage_status",), ("closure",))]
+    if drive == "coupler":
+        leverage = [
+            Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))
+        ]
+    cycle: list[Row | Total] = [Row(planar.same, ("status",), ("jam_status",))]
+    if any(form.full_turns for form in loads):
+        cycle = [Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))]
+    jam = Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
+    return [*closure, *leverage, jam, *cycle]
+
+
+def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
+    return [
+        Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
+        Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
+        Quantity("x_slider", "m", "position of the slider along the guide, from the foot of A on it"),
+        Quantity("v_slider", "m s-1", "velocity of the slider along the guide"),
+        Quantity("a_slider", "m s-2", "acceleration of the slider along the guide"),
+        Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
+        Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
+        Quantity("friction_force", "N", "force of the guide on the slider along it"),
+        Quantity("friction_power", "W", "power of friction on the slider, never positive"),
+        *position_quantities("B", "C"),
+        *drive_quantities(drive_torque(DRIVES[drive], drive), "drive, friction, loads, gravity and inertia"),
+        Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
+        Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
+        *machine_quantities(BODIES, PINS, LINKS, loads),
+    ]

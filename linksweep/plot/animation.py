@@ -1,0 +1,368 @@
+"""The film of a mechanism that turns: the forces in its joints as arrows, and where on their curves they are.
+
+Frames lie at equal steps of time. Where toggles, or the lengths, end a revolution, the mechanism goes to and fro over
+the longest part that there is; a car stops where it leaves the track. Angles that have no result are skipped.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.memory import require_memory
+from linksweep.base.validate import count_problems, refuse, said
+from linksweep.files.netcdf import scene_of
+from linksweep.mechanisms import LoopTrack
+from linksweep.plot import loop_track as loop_plot
+from linksweep.plot.curves import HEADROOM, forces
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.drawings import Drawing, drawing_of
+from linksweep.plot.kit.style import BLACK, BLUE, FORCE_COLORS, GREY, small_type
+from linksweep.plot.machine import ARROW, CURVE, Shape, draw_ground, draw_links, positions, shape_of
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from linksweep.plot.kit.film import Film
+
+SAMPLES = 720  # of the curves, where a scene is given
+SIZE, DPI = (6.0, 6.4), 90  # inches, and pixels to an inch
+ENDS = ("cannot_assemble", "toggle", "no_cycle", "left_track", "stalled")  # statuses beyond which nothing moves
+KNOWN = 24  # frames that the limits of the axes are made for
+OFF_SCALE = 1.2  # of the longest arrow on the scale: arrows of forces beyond it
+NAMED = 0.08  # of the longest arrow: shorter ones have no name
+TINY = 1e-9  # of the largest force: less than that is rounding
+NOTHING = "there are not two angles with a result, side by side: see the status of ls.sweep, and ls.check"
+ROUND = (5.0, 2.0, 1.0)  # what a scale's number begins with
+
+
+class Frame(NamedTuple):
+    """A position of a mechanism: crank angle [degree], where its parts are, the force in each joint (x, y) [N]."""
+
+    angle: float
+    shape: Shape
+    forces: dict[str, np.ndarray]
+
+
+def animate(
+    ds_or_scene: xr.Dataset | Scene | MultiCylinder, frames: int = 72, point: tuple[float, float] | None = None
+) -> Film:
+    """Make a film of a mechanism over its cycle: forces as arrows at the pins, and where they are on their curves.
+
+    Parameters
+    ----------
+    ds_or_scene : Dataset, Scene or MultiCylinder
+        A scene of one design, or a Dataset from `linksweep.sweep` that holds it: of its angles, if they are not a whole
+        cycle.
+    frames : int
+        Count of frames in a cycle, 25 a second.
+    point : tuple of float, optional
+        The point whose curve is drawn, as `mechanism` takes it.
+
+    Returns
+    -------
+    Film
+        In a notebook it shows itself. ``film.save("machine.gif")`` and ``film.save("machine.html")`` write it. Arrows
+        are to one scale, that of the curves below them; where forces grow without bound, they end a little beyond it.
+
+    Raises
+    ------
+    ValueError
+        For more than one design, and when there is no result at two angles or more.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> film = ls.plot.animate(ls.example("press"), frames=24)
+    >>> len(film)
+    24
+    """
+    refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
+    require_memory(f"frames = {said(frames)}", float(frames * math.prod(SIZE) * DPI**2))
+    if isinstance(ds_or_scene, MultiCylinder):
+        from linksweep.plot.cylinder_film import film_of_cylinders  # here: it takes what is below
+
+        refuse([f"point = {said(point)}: must be left out for several cylinders"] if point is not None else [])
+        with small_type():
+            return film_of_cylinders(ds_or_scene.in_memory, frames)
+    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
+    angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
+    with small_type():
+        if isinstance(scene.mechanism, LoopTrack):
+            return _of_loop(scene, angles, frames)
+        return _of_crank(scene, drawing_of(scene.mechanism), angles, frames, point)
+
+
+# -------------------------------------------------------------------------------------------------- which angles
+
+
+def way(cycle: xr.Dataset, rate: xr.DataArray, frames: int, to_and_fro: bool = True) -> np.ndarray:
+    """Angles of the frames [degree], at equal steps of time: of a cycle, or of a part of it where that is not whole.
+
+    The part is the longest, to and fro, or else the first. `rate` is the speed at each angle: where it is negative, the
+    cycle is run through backwards.
+    """
+    words = np.array(cycle["status"].attrs["flag_meanings"].split())
+    angles, status, pace = signals.revolution(cycle, cycle["status"], rate)
+    ended = np.isin(words[status.astype(int)], ENDS)
+    period = period_of(cycle)
+    if period and not ended.any():
+        found = _at_equal_times(angles, pace, frames + 1)[:-1]
+    elif to_and_fro:
+        to = _at_equal_times(*_longest(angles, pace, ended, period), frames // 2 + 1)
+        found = np.concatenate([to, to[-2:0:-1]])
+    else:
+        found = _at_equal_times(*_parts(angles, pace, ended)[0], frames)
+    found = found % period if period else found
+    return found[::-1] if np.nansum(pace) < 0.0 else found
+
+
+def period_of(cycle: xr.Dataset) -> float | None:
+    """The period [degree] whose angles a Dataset has, None where they are no whole cycle."""
+    return signals.full_turn(np.sort(cycle[signals.INDEX].values.astype(float)))
+
+
+def _longest(
+    angles: np.ndarray, pace: np.ndarray, ended: np.ndarray, period: float | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Angles and speeds of the longest part; in a whole cycle it may go on beyond the end."""
+    if period and not ended.all():
+        first = int(np.argmax(ended))
+        angles = np.concatenate([angles[first:-1], angles[:first] + period])
+        pace, ended = (np.concatenate([row[first:-1], row[:first]]) for row in (pace, ended))
+    return max(_parts(angles, pace, ended), key=lambda part: len(part[0]))
+
+
+def _parts(angles: np.ndarray, pace: np.ndarray, ended: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Angles and speeds of each part of two angles or more between those where nothing moves."""
+    edges = np.flatnonzero(np.diff(~ended, prepend=False, append=False)).reshape(-1, 2)
+    parts = [(angles[start:stop], pace[start:stop]) for start, stop in edges if stop - start > 1]
+    refuse([] if parts else [NOTHING])
+    return parts
+
+
+def _at_equal_times(angles: np.ndarray, rate: np.ndarray, count: int) -> np.ndarray:
+    """Angles between the first and the last at equal steps of time; of angle, where it does not move or may not."""
+    pace = np.abs(rate[1:] + rate[:-1])
+    steps = np.diff(angles)
+    if np.isfinite(pace).all() and (pace > 0.0).all():
+        steps = steps / pace
+    time = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.interp(np.linspace(0.0, time[-1], count), time, angles)
+
+
+# ---------------------------------------------------------------------------------------- a mechanism with a crank
+
+
+def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: Any) -> Film:
+    from linksweep.plot.kit.film import Film
+
+    outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
+    cycle = sweep(scene, angles, [*outputs, "omega2"])
+    signals.require_one_design(cycle[name] for name in outputs)
+    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
+    figure, machine, curves = panels()
+    forces(cycle, ax=curves)
+    top = curves.get_ylim()[1] / HEADROOM
+    draw_ground(machine, scene, drawing, shots[0].shape)
+    longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
+    arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
+    fit(machine, drawing, shots, arrows)
+    scale(machine, top, longest)
+    say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
+    follow = follower(curves, list(drawing.forces))
+    moving: list[Artist] = []
+
+    def draw(k: int) -> list[Artist]:
+        shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
+        renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
+        texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
+        return [*moving, *say(shot.angle, texts), *follow(shot.angle, sizes)]
+
+    return Film(figure, draw, len(shots))
+
+
+def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
+    """The frames at these angles, those that have a result."""
+    found = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
+    good = np.flatnonzero(found["status"].values == 0)
+    refuse([] if len(good) > 1 else [NOTHING])
+    places = positions(scene, drawing, angles.tolist())
+    parts = {force: _rows(found, force) for force in drawing.forces}
+    return [
+        Frame(
+            float(angles[k]),
+            shape_of(scene, drawing, places.isel({signals.INDEX: [*range(CURVE), CURVE + k]}), point),
+            {force: rows[:, k] for force, rows in parts.items()},
+        )
+        for k in good
+    ]
+
+
+def _rows(found: xr.Dataset, force: str) -> np.ndarray:
+    """Components (x, y) at every angle, also of a force that does not depend on it."""
+    count = found.sizes[signals.INDEX]
+    return np.array([np.broadcast_to(part.values, count) for part in signals.components(found, force)])
+
+
+def arrows_of(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
+    """Where the arrow of each force begins and ends, (2, xy) [m]."""
+    found = {}
+    for name, force in shot.forces.items():
+        size = float(np.hypot(*force))
+        shown = min(size, OFF_SCALE * top)
+        start = shot.shape.pins[drawing.start_of(name)]
+        found[name] = np.array([start, start + force * (longest / top * shown / (size or 1.0))])
+    return found
+
+
+def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.ndarray], longest: float) -> None:
+    """All that moves."""
+    draw_links(ax, drawing, shape)
+    for name, ends in arrows.items():
+        _arrow(ax, name, ends, NAMED * longest)
+    for name, pin in shape.pins.items():
+        ax.annotate(name, tuple(pin), (6.0, 6.0), **_beside(BLACK), fontweight="bold")
+
+
+def _arrow(ax: Axes, name: str, ends: np.ndarray, named: float) -> None:
+    """The arrow of a force with its name at the tip, outside."""
+    from linksweep.plot.kit.labels import arrow
+
+    length = float(np.hypot(*(ends[1] - ends[0])))
+    if length > 0.0:
+        arrow(ax, ends[0], ends[1], FORCE_COLORS[name])
+    if length > named:
+        x, y = 11.0 * (ends[1] - ends[0]) / length
+        style = _beside(FORCE_COLORS[name]) | {"ha": "center", "va": "center"}
+        ax.annotate(signals.symbol(name), tuple(ends[1]), (x, y), **style)
+
+
+def _beside(color: str) -> dict[str, Any]:
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2.0, alpha=0.7, foreground="white")]
+    return {"textcoords": "offset points", "color": color, "path_effects": halo, "zorder": 3.0, "fontsize": "small"}
+
+
+def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]]) -> None:
+    """Axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
+    moving: list[Artist] = []
+    for shot in shots[:: max(1, len(shots) // KNOWN)]:
+        renewed(ax, moving, partial(draw_links, ax, drawing, shot.shape))
+    renewed(ax, moving, lambda: None)
+    ax.update_datalim(np.concatenate([ends for shot in arrows for ends in shot.values()]))
+    (x0, y0), (x1, y1) = ax.dataLim.get_points()
+    room = 0.06 * max(x1 - x0, y1 - y0)
+    ax.update_datalim([(x0 - room, y0 - 2.5 * room), (x1 + room, y1 + room)])
+    ax.margins(0.0)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+
+
+def scale(ax: Axes, top: float, longest: float) -> None:
+    """How long a round force is, in the lower left corner."""
+    from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
+
+    decade = 10.0 ** np.floor(np.log10(0.7 * top))
+    force = next(digit * decade for digit in ROUND if digit * decade <= 0.7 * top)
+    style: dict[str, Any] = {"frameon": False, "color": GREY, "borderpad": 0.8}
+    ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} N", "lower left", **style))
+
+
+# -------------------------------------------------------------------------------------------------- a car in a loop
+
+
+def _of_loop(scene: Scene, angles: Any, frames: int) -> Film:
+    from linksweep.plot.kit.film import Film
+
+    names, index = ["normal_force", "speed"], {scene.mechanism.index: signals.INDEX}
+    cycle = sweep(scene, angles, names).rename(index)
+    signals.require_one_design(cycle[name] for name in names)
+    at = way(cycle, cycle["speed"], frames, to_and_fro=False)
+    shots = sweep(scene, at, names).rename(index)
+    force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
+    figure, track, curve = panels()
+    loop_plot.draw_track(track, cycle)
+    loop_plot.draw_force(curve, cycle)
+    say = readings(track, "$\\theta$ =", {"normal_force": "$F_N$", "speed": "speed"})
+    follow = follower(curve, ["normal_force"])
+    machine: Any = scene.mechanism
+    radius, largest = float(machine.radius), float(np.nanmax(cycle["normal_force"].values))
+    moving: list[Artist] = []
+
+    def draw(k: int) -> list[Artist]:
+        renewed(track, moving, partial(_car, track, at[k], radius, force[k] / largest))
+        said = {"normal_force": f"{signals.number(force[k])} N", "speed": f"{signals.number(speed[k])} m/s"}
+        return [*moving, *say(at[k], said), *follow(at[k], {"normal_force": force[k]})]
+
+    return Film(figure, draw, len(at))
+
+
+def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
+    loop_plot.draw_car(ax, radius, angle)
+    loop_plot.press(ax, angle, radius * (1.0 + loop_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
+
+
+# ----------------------------------------------------------------------------------------------------- what all share
+
+
+def panels() -> tuple[Figure, Axes, Axes]:
+    """A figure with the machine above and the curves below."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(SIZE, DPI, layout="constrained")
+    upper, lower = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
+    return figure, upper, lower
+
+
+def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, dict[str, str]], list[Artist]]:
+    """A line above the axes: the angle, and the word of each value; what writes the values behind them comes back."""
+    style: dict[str, Any] = {"textcoords": "offset points", "va": "baseline"}
+    places = np.linspace(0.0, 1.0, len(words) + 1, endpoint=False)
+    texts = {}
+    for place, (name, word) in zip(places, {"": angle, **words}.items(), strict=True):
+        style["color"] = FORCE_COLORS.get(name, BLACK)
+        said = ax.annotate(word, (place, 1.0), (0.0, 5.0), xycoords="axes fraction", **style)
+        texts[name] = ax.annotate("", (1.0, 1.0), (4.0, 5.0), xycoords=(said, "axes fraction"), **style)
+
+    def say(angle: float, values: dict[str, str]) -> list[Artist]:
+        for name, text in {"": f"{angle:.1f}°".replace("-", "−"), **values}.items():
+            texts[name].set_text(text)
+        return list(texts.values())
+
+    return say
+
+
+def follower(ax: Axes, names: list[str]) -> Callable[[float, dict[str, float]], list[Artist]]:
+    """An upright line, and a dot on each curve; what moves them comes back."""
+    cursor = ax.axvline(0.0, color=GREY, linewidth=1.0, zorder=1.9)  # below curves, so that labels stay where they are
+    colors = [FORCE_COLORS.get(name, BLUE) for name in names]
+    dots = ax.scatter(np.zeros(len(names)), np.zeros(len(names)), c=colors, s=24.0, zorder=2.8, edgecolors="white")
+
+    def follow(angle: float, sizes: dict[str, float]) -> list[Artist]:
+        cursor.set_xdata([angle, angle])
+        dots.set_offsets([(angle, sizes[name]) for name in names])
+        return [cursor, dots]
+
+    return follow
+
+
+def renewed(ax: Axes, moving: list[Artist], draw: Callable[[], None]) -> None:
+    """Draw again what moves: what was drawn for the last frame goes."""
+    for artist in moving:
+        artist.remove()
+    stays = set(ax.get_children())
+    draw()
+    moving[:] = [artist for artist in ax.get_children() if artist not in stays]

@@ -1,0 +1,115 @@
+"""Before and after balancing: shaking force and moment, torque, and the pin that was loaded most."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.drawings import drawing_of
+from linksweep.plot.kit.style import BLUE, GREY, VERMILION, crank_angles, grid, small_type
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+STYLES: dict[str, dict[str, Any]] = {
+    "before": {"color": BLUE, "linewidth": 3.0, "alpha": 0.45},  # broad: seen where the other lies on it
+    "after": {"color": VERMILION},
+}
+ROUNDING = 1e-9  # N or N m
+SHAKING = ("Fsx", "Fsy", "Ms")
+
+
+def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
+    """Plot two scenes on one page, as before and after balancing.
+
+    Parameters
+    ----------
+    before, after : Scene
+        Of one design each, of the same kind of mechanism.
+    theta2 : int
+        Count of crank angles over the cycle.
+
+    Returns
+    -------
+    matplotlib Figure
+        Four panels: the shaking force's hodograph, shaking moment about A, the drive's torque, and the force in the pin
+        that was loaded most before.
+
+    Raises
+    ------
+    ValueError
+        For mechanisms that there are no plots of, and for more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> scene = ls.example("press")
+    >>> figure = ls.plot.balance(scene, ls.with_counterweights(scene, ls.counterweights(scene, radius=0.06)))
+    >>> [ax.get_title(loc="left") for ax in figure.axes]
+    ['Shaking force', 'Shaking moment about A', 'Drive torque', 'Load of pin C']
+    """
+    import matplotlib.pyplot as plt
+
+    drawing = drawing_of(before.mechanism)
+    drive = before.mechanism.drives[before.drive]
+    pins = [force for force in drawing.forces if drawing.at_pin(force)]
+    cycles = {
+        name: sweep(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in (("before", before), ("after", after))
+    }
+    worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
+    with small_type():
+        figure, panels = plt.subplots(2, 2, figsize=(7.1, 6.0), layout="constrained")
+        _hodograph(panels[0, 0], cycles)
+        _over_angle(panels[0, 1], cycles, "Ms", "Shaking moment about A", "$M_s$ [N m]")
+        kind = signals.drive_kind(drive).capitalize()
+        units = cycles["before"][drive].attrs["units"]
+        _over_angle(panels[1, 0], cycles, drive, kind, f"{signals.symbol(drive)} [{units}]".strip())
+        _over_angle(panels[1, 1], cycles, worst, f"Load of {drawing.said(worst)}", f"{signals.symbol(worst)} [N]")
+    return figure
+
+
+def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
+    """The shaking force's components against each other."""
+    grid(ax)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    ax.axvline(0.0, color=GREY, linewidth=0.8)
+    for name, cycle in cycles.items():
+        _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
+        ax.plot(x, y, label=_said(name, np.hypot(x, y)), **STYLES[name])
+    ax.plot([0.0], [0.0], "+", color="black", markersize=9.0)
+    ax.set_xlabel("$F_{sx}$ [N]")
+    ax.set_ylabel("$F_{sy}$ [N]")
+    ax.set_title("Shaking force", loc="left")
+    _legend(ax)
+
+
+def _over_angle(ax: Axes, cycles: dict[str, xr.Dataset], name: str, title: str, label: str) -> None:
+    grid(ax)
+    for when, cycle in cycles.items():
+        angles, values = signals.revolution(cycle, cycle[name])
+        ax.plot(angles, values, label=_said(when, values), **STYLES[when])
+    crank_angles(ax, angles)
+    ax.set_ylabel(label)
+    ax.set_title(title, loc="left")
+    _legend(ax)
+
+
+def _said(when: str, values: np.ndarray) -> str:
+    """When, and how large: a force that is balanced away leaves its rounding."""
+    largest = float(np.nanmax(np.abs(values)))
+    return f"{when}, up to {signals.number(largest if largest > ROUNDING else 0.0)}"
+
+
+def _legend(ax: Axes) -> None:
+    """Above the curves, in room made for it."""
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + 0.16 * (high - low), auto=True)
+    style: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "handlelength": 1.8, "columnspacing": 1.0}
+    ax.legend(loc="upper center", ncols=2, fontsize="small", **style)

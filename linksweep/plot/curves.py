@@ -1,0 +1,297 @@
+"""Curves of a cycle over the crank angle: forces in the joints and the torque of the drive, their peaks marked.
+
+Angles without a result are a gap in the lines, shaded, with the reason. Where forces grow without bound beside it, the
+axis ends at a usual size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.drawings import Drawing, drawing_of_results
+from linksweep.plot.kit.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SHADE,
+    VERMILION,
+    axes_or_new,
+    crank_angles,
+    grid,
+)
+from linksweep.plot.kit.with_peaks import with_peaks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
+STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
+ROOM = 1.0 / 30.0  # of the angle axis: what an upright word takes
+LETTERS = 50  # of a legend in one line, at the usual spacing
+HEADROOM = 1.3  # of the largest value, for the legend and the labels of peaks
+
+
+class Curve(NamedTuple):
+    """A line of a plot over the revolution."""
+
+    name: str
+    text: str  # in the legend
+    angles: np.ndarray
+    values: np.ndarray
+    style: dict[str, Any]
+    said: str  # at its peak
+
+
+class Mark(NamedTuple):
+    """A peak to be marked on a curve, and what to call it."""
+
+    peak: signals.Peak
+    curve: Curve
+    said: str
+
+
+def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
+    """Plot the magnitudes of forces in the joints [N] over the crank angle [degree], each peak with value and angle.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with magnitudes (F32) or components (F32x, F32y), of one design; of a single force
+        also up to six designs along one dimension, one line each.
+    names : iterable of str, optional
+        The forces, such as ["F32", "F43"]; by default those of all pins, and of the guide, that are in
+        the Dataset.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Angles without a result are a gap in the lines, shaded. Where forces grow without bound beside it, the axis
+        ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
+
+    Raises
+    ------
+    ValueError
+        For forces that the Dataset does not hold, and for more designs than a plot can show.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.forces(["F12", "F32"]).get_ylabel()
+    'pin force [N]'
+    """
+    signals.require_angles(ds)
+    ds = with_peaks(ds)
+    wanted = force_names(ds, names)
+    found = {name: signals.magnitude(ds, name) for name in wanted}
+    if len(wanted) > 1:
+        signals.require_one_design(found.values())
+    curves = _curves(ds, found)
+    peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
+    top = signals.scale([curve.values for curve in curves], peaks)
+    ax = axes_or_new(ax)
+    _draw(ax, curves)
+    ax.set_ylim(0.0, HEADROOM * top or 1.0)
+    units = signals.unit(found[wanted[0]], "N")
+    said = f"{kind_of(drawing_of_results(ds), wanted)} force"
+    said += f" {signals.symbol(wanted[0])}" if len(wanted) == 1 else ""
+    ax.set_ylabel(f"{said} [{units}]")
+    widest = shade_gaps(ax, ds, found[wanted[0]])
+    crank_angles(ax, curves[0].angles)
+    runaway = any(found and found.value > HEADROOM * top for found in peaks)
+    _legend(ax, curves, widest, runaway)
+    marks = [
+        Mark(found, curve, curve.said)
+        for found, curve in zip(peaks, curves, strict=True)
+        if found and found.value > 0.0
+    ]
+    _mark(ax, marks, units)
+    return ax
+
+
+def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Plot the torque of the drive (T12, T13 or T14) [N m] over the crank angle [degree], largest and smallest marked.
+
+    Of a cylinder that drives, its force [N].
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with that of one design, or of up to six along one dimension, one line each.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With gaps as in `forces`.
+
+    Raises
+    ------
+    ValueError
+        Without the drive's torque or force in the Dataset, and for more designs than a plot can show.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.torque().get_ylabel()
+    'drive torque $T_{12}$ [N m]'
+    """
+    signals.require_angles(ds)
+    ds = with_peaks(ds)
+    name = signals.drive_name(ds)
+    units = signals.unit(ds[name], "N m")
+    curves = _curves(ds, {name: ds[name]})
+    extremes = [(curve, _extremes(curve)) for curve in curves]
+    every = [found for _, pair in extremes for found in pair.values()]
+    size = signals.scale([curve.values for curve in curves], every)
+    ax = axes_or_new(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    _draw(ax, curves)
+    _span(ax, every, size)
+    ax.set_ylabel(f"{signals.drive_kind(name)} {signals.symbol(name)}".rstrip() + f" [{units}]")
+    widest = shade_gaps(ax, ds, ds[name])
+    crank_angles(ax, curves[0].angles)
+    if len(curves) > 1:
+        _legend(ax, curves, widest, any(abs(found.value) > size for found in every))
+    _mark(ax, [Mark(found, curve, said) for curve, pair in extremes for said, found in pair.items()], units)
+    return ax
+
+
+def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
+    if names is not None:
+        wanted = [names] if isinstance(names, str) else list(dict.fromkeys(names))
+        if wanted:
+            return wanted
+    forces = drawing_of_results(ds).forces
+    wanted = [name for name in forces if signals.has_pin(ds, name)]
+    if not wanted:
+        raise ValueError(f"the Dataset has no pin force: sweep with outputs=[..., {', '.join(map(repr, forces))}]")
+    return wanted
+
+
+def kind_of(drawing: Drawing, names: Iterable[str]) -> str:
+    """What forces these are: "pin", "guide", "pin and guide"."""
+    return " and ".join(dict.fromkeys("pin" if drawing.at_pin(name) else drawing.joint_of[name] for name in names))
+
+
+def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
+    """The lines to draw: one for each signal, or of a single signal one for each design."""
+    curves: list[Curve] = []
+    joints = drawing_of_results(ds).joint_of
+    for name, signal in found.items():
+        for design, values in signals.designs(signal).items():
+            color, dashes = STYLES[len(curves) % len(STYLES)]
+            text = design or f"{signals.symbol(name)} ({joints.get(name, 'drive')})"
+            style = {"color": color, "linestyle": dashes}
+            said = signals.symbol(name) if len(found) > 1 else ""
+            angles, row = signals.revolution(ds, values)
+            curves.append(Curve(name, text, angles, row, style, said))
+    return curves
+
+
+def _draw(ax: Axes, curves: Sequence[Curve]) -> None:
+    grid(ax)
+    for curve in curves:
+        ax.plot(curve.angles, curve.values, label=curve.text, **curve.style)
+
+
+def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
+    """Limits of a signed signal: zero and what is to be shown, with room for labels."""
+    shown = [float(np.clip(found.value, -size, size)) for found in extremes]
+    low, high = min([0.0, *shown]), max([0.0, *shown])
+    room = 0.18 * ((high - low) or 1.0)
+    ax.set_ylim(low - room, high + room)
+
+
+def _extremes(curve: Curve) -> dict[str, signals.Peak]:
+    high, low = (signals.peak(curve.angles, sign * curve.values) for sign in (1.0, -1.0))
+    if not high or not low or high.value == -low.value:  # a constant has no extremes
+        return {}
+    return {"max": high, "min": low._replace(value=-low.value)}
+
+
+def shade_gaps(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None:
+    """Shade the angles without a result and say why; the widest comes back. Several designs have gaps of their own."""
+    status = ds.get("status", signal)
+    if any(dim != signals.INDEX for dim in status.dims):
+        return None
+    found = signals.gaps(ds, signal)
+    for gap in found:
+        ax.axvspan(gap.start, gap.stop, facecolor=SHADE, linewidth=0.0, zorder=0.4)
+    found.sort(key=lambda gap: gap.start - gap.stop)
+    room, said = ROOM * np.ptp(ds[signals.INDEX].values), set()
+    for gap in found:
+        if gap.width >= room or gap.reason not in said:
+            _reason(ax, gap, room)
+        said.add(gap.reason)
+    return found[0] if found else None
+
+
+def _reason(ax: Axes, gap: signals.Gap, room: float) -> None:
+    """Why there is no result: a word in the gap, or beside it where there is no room [degree] for one."""
+    from linksweep.plot.kit.labels import label
+
+    width, middle = gap.width, 0.5 * (gap.start + gap.stop)
+    if width < room:
+        label(ax, middle, float(np.mean(ax.get_ylim())), (gap.reason, GREY))
+        return
+    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": "small", "color": GREY}
+    style["rotation"] = "horizontal" if width >= 6.0 * room else "vertical"
+    style["bbox"] = {"facecolor": SHADE, "linewidth": 0.0, "pad": 1.0}
+    ax.text(middle, 0.5, gap.reason, transform=ax.get_xaxis_transform(), **style)
+
+
+def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None, runaway: bool) -> None:
+    """In the room above the curves; where a curve runs through that, in the gap beside it, or where there is room."""
+    compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5, "frameon": False}
+    texts = [curve.text for curve in curves]
+    if not runaway:
+        columns = len(curves) if max(map(len, texts)) < 22 else 2
+        tight = {"handlelength": 1.8, "columnspacing": 0.8} if len("".join(texts)) > LETTERS else {}
+        ax.legend(loc="upper center", ncols=columns, borderaxespad=0.2, **compact | tight)
+    elif gap is not None and gap.width > np.ptp(ax.get_xlim()) / 4.0:
+        middle = (0.5 * (gap.start + gap.stop), 0.01)
+        place = {"bbox_to_anchor": middle, "bbox_transform": ax.get_xaxis_transform()}
+        columns = 2 if gap.width > np.ptp(ax.get_xlim()) / 2.2 else 1
+        ax.legend(loc="lower center", ncols=columns, **place, **compact)
+    else:
+        ax.legend(loc="best", ncols=1, **compact)
+
+
+def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
+    """A dot on each peak with its value and angle; an arrowhead at the edge for one that is off the scale.
+
+    Peaks that lie close together, as those of two pins of one link often do, share a label with a line for each.
+    """
+    from linksweep.plot.kit.labels import label
+
+    limits = ax.get_ylim()
+    reach = (0.05 * np.ptp(ax.get_xlim()), 0.1 * np.ptp(limits))
+    groups: list[list[tuple[float, float, Mark]]] = []
+    for mark in sorted(marks, key=lambda mark: -mark.peak.value):
+        x, y = mark.peak.angle, float(np.clip(mark.peak.value, *limits))
+        edge = "^" if mark.peak.value > y else "v"
+        dot = {"color": mark.curve.style["color"], "markersize": 4.5, "clip_on": False}
+        ax.plot([x], [y], edge if y != mark.peak.value else "o", label=f"_peak {mark.curve.name}", **dot)
+        near = (g for g in groups if abs(g[-1][0] - x) < reach[0] and abs(g[-1][1] - y) < reach[1])
+        group = next(near, None)
+        groups.append([(x, y, mark)]) if group is None else group.append((x, y, mark))
+    for group in groups:
+        x, y, first = group[0]
+        heading = [] if y == first.peak.value else [("off scale:", GREY)]
+        label(ax, x, y, *heading, *((_said(mark, units), mark.curve.style["color"]) for *_, mark in group))
+
+
+def _said(mark: Mark, units: str) -> str:
+    text = f"{mark.said} {signals.number(mark.peak.value)} {units} at {signals.angle_text(mark.peak.angle)}"
+    return text.strip()

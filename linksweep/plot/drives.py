@@ -1,0 +1,203 @@
+"""Plots of a drive: its speed with a flywheel, and a motor's torque–speed points beside its curve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.drive.motor import Motor
+from linksweep.base.validate import refuse
+from linksweep.files.netcdf import scene_of
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    SHADE,
+    SKY,
+    VERMILION,
+    axes_or_new,
+    crank_angles,
+    grid,
+    small_type,
+)
+from linksweep.results.sweep import sweep
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ROUNDING = 1e-9  # of the largest torque: the mean of one that does no work
+TICK = 90.0  # degrees of the crank between named points
+
+
+def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Plot the crank's speed over the cycle with a flywheel, its largest and least.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.flywheel`, of one design.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without speed at every angle, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.plot.flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05)).get_ylabel()
+    'crank speed $\\\\omega_2$ [rad/s]'
+    """
+    refuse([] if "speed" in found else ["found has no speed: take what ls.flywheel returns"])
+    signals.require_angles(found)
+    angles, speed = signals.revolution(found, found["speed"])
+    refuse([] if np.isfinite(speed).all() else ["found has no speed at some angle: it stalls, or does not turn fully"])
+    ax = axes_or_new(ax)
+    grid(ax)
+    middle = 0.5 * (np.max(speed) + np.min(speed))
+    ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
+    ax.plot(angles, speed, color=BLUE, label="_speed")
+    _extremes(ax, angles, speed)
+    size, fluctuation = float(found["flywheel_inertia"]), float(found["fluctuation"])
+    ax.set_title(f"flywheel {signals.number(size)} kg m², fluctuation {100.0 * fluctuation:.3g} %", loc="left")
+    crank_angles(ax, angles)
+    ax.margins(y=0.18)
+    ax.set_ylabel("crank speed $\\omega_2$ [rad/s]")
+    return ax
+
+
+def torque_with_flywheel(found: xr.Dataset) -> Figure:
+    """Plot the drive's torque without and with a flywheel, and the speed of the crank with it.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.flywheel`, of one design.
+
+    Returns
+    -------
+    matplotlib Figure
+        Above the torque on the crank that keeps its speed constant, and the constant one that is enough with the
+        flywheel: where that gives more, the crank gains speed. Below that speed, as in `flywheel`.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without speed at every angle, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> figure = ls.plot.torque_with_flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05))
+    >>> [ax.get_ylabel() for ax in figure.axes]
+    ['torque on the crank [N m]', 'crank speed $\\\\omega_2$ [rad/s]']
+    """
+    import matplotlib.pyplot as plt
+
+    with small_type():
+        figure, (above, below) = plt.subplots(2, 1, figsize=(7.1, 5.4), layout="constrained")
+        flywheel(found, below)
+        _torques(above, found)
+    return figure
+
+
+def _torques(ax: Axes, found: xr.Dataset) -> None:
+    """The torque at constant speed around the constant torque, what is given too much and too little shaded."""
+    steady = replace(scene_of(found, whole=False), alpha2=0.0)
+    cycle = sweep(steady, found[signals.INDEX].values, ["reduced_torque"])
+    angles, without = signals.revolution(cycle, cycle["reduced_torque"])
+    constant = float(found["drive_torque"])
+    grid(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    more = (constant - without) * np.sign(float(found["speed"].mean())) > 0.0
+    for where, color, said in ((more, SKY, "gains speed"), (~more, ORANGE, "loses speed")):
+        ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=said)
+    ax.plot(angles, without, color=BLUE, label="without flywheel")
+    size = constant if abs(constant) > ROUNDING * np.max(np.abs(without)) else 0.0
+    said = f"with it, constant: {signals.number(size)} N m"
+    ax.axhline(constant, color=VERMILION, linestyle="--", label=said)
+    crank_angles(ax, angles)
+    ax.margins(y=0.12)
+    ax.set_ylabel("torque on the crank [N m]")
+    ax.legend(fontsize="small", frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2)
+
+
+def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
+    from linksweep.plot.kit.labels import label
+
+    for said, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
+        ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{said}")
+        label(ax, angles[k], speed[k], (f"{said} {speed[k]:#.5g} rad/s", BLUE))
+
+
+def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
+    """Plot the torque that a motor must give over its speed, beside the most that it can.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.motor_load`, of one design.
+    motor : Motor
+        The same.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Where the motor is too weak, the path is red.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without a motor's torque, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> servo = ls.Motor(speeds=(0.0, 300.0, 600.0), torques=(4.0, 4.0, 1.0), inertia=2e-4)
+    >>> found = ls.motor_load(ls.example("press"), servo, ratio=10.0)
+    >>> ls.plot.motor_load(found, servo).get_xlabel()
+    'motor speed [rad/s]'
+    """
+    refuse([] if "motor_torque" in found else ["found has no motor_torque: take what ls.motor_load returns"])
+    signals.require_angles(found)
+    _, speed, torque, margin = signals.revolution(
+        found, found["motor_speed"], found["motor_torque"], found["torque_margin"]
+    )
+    ax = axes_or_new(ax)
+    grid(ax)
+    side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
+    curve = side * np.asarray(motor.speeds, dtype=float), np.asarray(motor.torques, dtype=float)
+    ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can give")
+    ax.plot(np.r_[curve[0], curve[0][::-1]], np.r_[curve[1], -curve[1][::-1]], color=GREY, linewidth=1.0)
+    ax.plot(speed, torque, color=BLUE, linewidth=1.6, label="what the machine takes")
+    if (margin < 0.0).any():
+        ax.plot(speed, np.where(margin < 0.0, torque, np.nan), color=VERMILION, linewidth=2.4, label="too much")
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    _worst(ax, speed, torque, margin)
+    ax.set_xlabel("motor speed [rad/s]")
+    ax.set_ylabel("motor torque [N m]")
+    ax.margins(y=0.12)
+    ax.legend(fontsize="small", frameon=False)
+    return ax
+
+
+def _worst(ax: Axes, speed: np.ndarray, torque: np.ndarray, margin: np.ndarray) -> None:
+    from linksweep.plot.kit.labels import label
+
+    k = int(np.nanargmin(margin))
+    color = VERMILION if margin[k] < 0.0 else BLUE
+    ax.plot([speed[k]], [torque[k]], "o", color=color, markersize=4.5, label="_worst")
+    label(ax, speed[k], torque[k], (f"least margin {signals.number(margin[k])} N m", color))

@@ -1,0 +1,1 @@
+"""Hold what all pictures share: style, labels, signals, drawings of machines, films."""

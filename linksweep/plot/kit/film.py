@@ -1,0 +1,148 @@
+"""A film: frames drawn one after the other on one figure; it shows itself in notebooks and is saved as GIF or HTML."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+from base64 import b64encode
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from io import BytesIO
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from PIL import Image
+
+from linksweep.files.atomic import ending_of, whole
+from linksweep.plot.kit.machine_parts import BAR, EDGE
+from linksweep.plot.kit.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION, small_type
+
+PAUSE = 40  # milliseconds between frames: a GIF counts in hundredths of a second
+INKS = (BLACK, GREY, EDGE, BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE)
+TINTS = (0.2, 0.4, 0.6, 0.8, 1.0)  # of an ink on white paper
+PLAIN = ("#FFFFFF", SHADE, BAR)
+ENDINGS = (".gif", ".html")
+PLAYER = """\
+<div id="NAME" style="display:inline-block;font-family:sans-serif">
+<img alt="film" width="WIDTH" height="HEIGHT" style="display:block">
+<div style="display:flex;gap:6px"><button>Pause</button><input type="range" min="0" value="0" style="flex:1"></div>
+</div>
+<script>
+(function () {
+  const frames = FRAMES, box = document.getElementById("NAME");
+  const [picture, button, slider] = ["img", "button", "input"].map(tag => box.querySelector(tag));
+  let playing = true;
+  const show = k => { slider.value = k; picture.src = "data:image/png;base64," + frames[k]; };
+  const play = on => { playing = on; button.textContent = on ? "Pause" : "Play"; };
+  slider.max = frames.length - 1;
+  slider.oninput = () => { play(false); show(+slider.value); };
+  button.onclick = () => play(!playing);
+  show(0);
+  const clock = setInterval(() => {
+    if (!box.isConnected) clearInterval(clock);
+    else if (playing) show((+slider.value + 1) % frames.length);
+  }, PAUSE);
+})();
+</script>
+"""
+
+
+class Film:
+    """A film. As the last expression of a notebook's cell it shows itself; `save` writes it to a file.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure, not of pyplot
+        With all that stands still.
+    draw : callable
+        Brings the frame of a number from 0 into the figure; returns the artists that differ from frame to frame.
+    count : int
+        Of the frames.
+    """
+
+    def __init__(self, figure: Figure, draw: Callable[[int], Iterable[Artist]], count: int) -> None:
+        self.figure = figure
+        self._draw = draw
+        self._count = count
+        self._canvas = FigureCanvasAgg(figure)
+        for artist in self.show(0):
+            artist.set_visible(False)
+        with small_type():
+            self._canvas.draw()
+            figure.set_layout_engine("none")  # so that the axes stand still
+            for ax in figure.axes:
+                ax.autoscale(False)
+            self._still = self._canvas.copy_from_bbox(figure.bbox)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def show(self, k: int) -> list[Artist]:
+        """Bring frame `k` into the figure; the artists that move come back, the lowest first."""
+        with small_type():
+            moving = list(self._draw(k))
+        for artist in moving:
+            artist.set_visible(True)
+        return sorted(moving, key=Artist.get_zorder)
+
+    def image(self, k: int) -> Image.Image:
+        """Frame `k` as a picture, in full colour."""
+        moving = self.show(k)
+        self._canvas.restore_region(self._still)
+        with small_type():
+            for artist in moving:
+                self.figure.draw_artist(artist)
+        return Image.fromarray(np.array(self._canvas.buffer_rgba())[..., :3])
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Write the film, whole or not at all: a .gif that runs for ever, or a page .html with a slider.
+
+        Raises
+        ------
+        ValueError
+            For another ending.
+        OSError
+            When the folder is missing, cannot be written or is full; what was there before stays.
+        """
+        ending = ending_of(path, ENDINGS)
+        with whole(path) as temporary:
+            if ending == ".html":
+                temporary.write_text(f'<!DOCTYPE html>\n<meta charset="utf-8">\n{self._repr_html_()}', "utf-8")
+            else:
+                first, *rest = self._pictures
+                first.save(temporary, "GIF", save_all=True, append_images=rest, duration=PAUSE, loop=0)
+
+    @cached_property
+    def _pictures(self) -> list[Image.Image]:
+        """All frames in one palette, so that nothing flickers."""
+        palette = _palette()
+        return [self.image(k).quantize(palette=palette, dither=Image.Dither.NONE) for k in range(len(self))]
+
+    def _repr_html_(self) -> str:
+        """A player with all frames in it: nothing is fetched."""
+        width, height = self._pictures[0].size
+        frames = json.dumps([_as_text(picture) for picture in self._pictures])
+        filled = {"NAME": f"film-{secrets.token_hex(6)}", "WIDTH": str(width), "HEIGHT": str(height)}
+        text = PLAYER
+        for word, value in (filled | {"PAUSE": str(PAUSE), "FRAMES": frames}).items():
+            text = text.replace(word, value)
+        return text
+
+
+def _as_text(picture: Image.Image) -> str:
+    file = BytesIO()
+    picture.save(file, "PNG")
+    return b64encode(file.getvalue()).decode("ascii")
+
+
+def _palette() -> Image.Image:
+    """The colours that plots are drawn in, in tints as well, which the edges of lines have."""
+    tints = 1.0 - np.array(TINTS)[:, None, None] * (1.0 - np.array([to_rgb(ink) for ink in INKS]))
+    colours = np.concatenate([[to_rgb(plain) for plain in PLAIN], tints.reshape(-1, 3)])
+    image = Image.new("P", (1, 1))
+    image.putpalette(np.round(255.0 * colours).astype(int).reshape(-1).tolist())
+    return image

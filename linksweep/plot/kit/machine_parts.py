@@ -1,0 +1,97 @@
+"""Parts of a drawn mechanism: supports, guide, bars, a block. All take points in the data's coordinates [m]."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from linksweep.plot.kit.style import GREY, SKY
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BAR, EDGE = "#DCE6EE", "#3F4B55"
+CENTRE_LINE = (0.0, (8.0, 3.0, 1.0, 3.0))
+STROKES = 0.35  # of the block's half side: length of the hatching
+
+
+def supports(ax: Axes, at: np.ndarray) -> None:
+    """A hatched support under each ground pin, the rows of `at`."""
+    from matplotlib.path import Path
+
+    strokes = [[(x, -1.0), (x - 0.25, -1.3)] for x in np.linspace(-0.7, 0.9, 6)]
+    outline = [(0.0, 0.0), (-0.6, -1.0), (0.6, -1.0), (0.0, 0.0)]
+    lines = [outline, [(-0.9, -1.0), (0.9, -1.0)], *strokes]
+    codes = [Path.MOVETO if k == 0 else Path.LINETO for line in lines for k in range(len(line))]
+    support = Path([vertex for line in lines for vertex in line], codes)
+    style: dict[str, Any] = {"markersize": 30.0, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
+    ax.plot(*at.T, linestyle="none", marker=support, label="_ground", **style)
+
+
+def centre_line(ax: Axes, ends: np.ndarray) -> None:
+    ax.plot(*ends.T, color=GREY, linewidth=0.8, linestyle=CENTRE_LINE, zorder=2.0)
+
+
+def crank_circle(ax: Axes, radius: float) -> None:
+    """The circle that pin B runs on."""
+    around = np.radians(np.linspace(0.0, 360.0, 181))
+    circle = radius * np.array([np.cos(around), np.sin(around)])
+    ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label="_crank circle")
+
+
+def rails(ax: Axes, first: np.ndarray, last: np.ndarray, along: np.ndarray, half: float) -> None:
+    """The two sides of a guide, hatched outside, for a block of this half side between its first and last place."""
+    across = np.array([-along[1], along[0]])
+    begin, end = first - 1.2 * half * along, last + 1.2 * half * along
+    count = 1 + int(np.linalg.norm(end - begin) / (STROKES * half))
+    feet = begin + np.linspace(0.0, 1.0, count)[:, None] * (end - begin)
+    for side in (across, -across):
+        edge = np.array([begin, end]) + half * side
+        ax.plot(*edge.T, color=EDGE, linewidth=1.2, zorder=2.1, label="_guide")
+        stroke = STROKES * half * (side - along)
+        hatching = np.stack([feet, feet + stroke, np.full_like(feet, np.nan)], axis=1) + half * side
+        ax.plot(*hatching.reshape(-1, 2).T, color=EDGE, linewidth=0.7, zorder=2.05, label="_hatching")
+
+
+def block(ax: Axes, centre: np.ndarray, along: np.ndarray, half: float) -> None:
+    """A block, as a piston is: about as long as it is wide."""
+    x, y = half * along, 0.92 * half * np.array([-along[1], along[0]])
+    corners = centre + np.array([-x - y, x - y, x + y, y - x, -x - y])
+    ax.fill(*corners.T, facecolor=BAR, zorder=2.16)
+    ax.plot(*corners.T, color=EDGE, linewidth=1.0, zorder=2.17, label="_block")
+
+
+def bar(ax: Axes, number: int, ends: np.ndarray, behind: bool = False) -> None:
+    """A bar from pin to pin; one that a block slides on lies behind it."""
+    for width, color in ((9.0, EDGE), (7.2, BAR)):
+        style: dict[str, Any] = {"color": color, "linewidth": width, "solid_capstyle": "round"}
+        ax.plot(*ends.T, zorder=2.12 if behind else 2.2, label=f"_link {number}", **style)
+
+
+def number_of_bar(ax: Axes, number: int, ends: np.ndarray, covered: np.ndarray) -> None:
+    """The number of a bar, on it where it is farthest from points that something else covers, the rows of `covered`."""
+    places = ends[0] + np.array([0.4, 0.65, 0.15, 0.85])[:, None] * (ends[1] - ends[0])
+    free = np.linalg.norm(places[:, None] - covered, axis=2).min(axis=1)
+    enough = np.flatnonzero(free > 0.14 * np.linalg.norm(ends[1] - ends[0]))
+    number_at(ax, number, places[enough[0] if enough.size else np.argmax(free)])
+
+
+def plate(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
+    """What ties a point to its link."""
+    style: dict[str, Any] = {"facecolor": BAR, "edgecolor": EDGE, "linewidth": 0.8, "alpha": 0.6}
+    ax.fill(*corners.T, zorder=2.11 if behind else 2.15, **style)
+
+
+def pins(ax: Axes, at: np.ndarray) -> None:
+    circles: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": EDGE, "markersize": 6.0, "zorder": 2.45}
+    ax.plot(*at.T, "o", label="_pins", **circles)
+
+
+def point(ax: Axes, at: np.ndarray) -> None:
+    ax.plot(*at, "o", color=SKY, markeredgecolor=EDGE, markersize=4.5, zorder=2.45, label="_point")
+
+
+def number_at(ax: Axes, number: int, at: np.ndarray) -> None:
+    x, y = at
+    ax.text(x, y, str(number), ha="center", va="center", fontsize=6.5, zorder=2.3, color=EDGE)

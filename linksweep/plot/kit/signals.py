@@ -1,0 +1,223 @@
+"""Signals of a cycle as plots take them: one design, sorted by crank angle, closed to a full turn, with its gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.plot.kit.drawings import drawing_of_results, drive_of_results
+from linksweep.scene.grid import whole_turns
+
+INDEX = "theta2"
+WHOLE_TURN = "whole_turn"  # attribute of a cycle whose angles are no even grid, though they go all the way round
+MOST_LINES = 6  # designs that one plot still tells apart
+
+
+class Gap(NamedTuple):
+    """Crank angles [degree] between which there is no result, and why."""
+
+    start: float
+    stop: float
+    reason: str
+
+    @property
+    def width(self) -> float:
+        return self.stop - self.start
+
+
+class Peak(NamedTuple):
+    """Where a signal is largest: crank angle [degree], value, and whether the cycle has a gap or a pole beside it."""
+
+    angle: float
+    value: float
+    beside_gap: bool
+
+
+def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Components x and y of a pin force; of F23 as well where there is only F32."""
+    _known_force(ds, pin)
+    back = f"F{pin[2]}{pin[1]}"
+    for name, sign in ((pin, 1.0), (back, -1.0)):
+        if f"{name}x" in ds and f"{name}y" in ds:
+            return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
+    raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with outputs=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
+
+
+def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
+    """Magnitude of a pin force: the Dataset's own, or from its components."""
+    _known_force(ds, pin)
+    for name in (pin, f"F{pin[2]}{pin[1]}"):
+        if name in ds:
+            return ds[name]
+    x, y = components(ds, pin)
+    return xr.apply_ufunc(np.hypot, x, y, keep_attrs=True)
+
+
+def has_pin(ds: xr.Dataset, pin: str) -> bool:
+    back = f"F{pin[2]}{pin[1]}"
+    return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, back))
+
+
+def _known_force(ds: xr.Dataset, pin: str) -> None:
+    known = drawing_of_results(ds).joint_of
+    if pin not in known:
+        raise ValueError(f"pin = {pin!r}: must be one of {', '.join(known)}")
+
+
+def drive_name(ds: xr.Dataset) -> str:
+    """The torque or force of the drive: the scene says which, for a T14 may be the moment of a guide."""
+    drives, drive = drawing_of_results(ds).drives, drive_of_results(ds)
+    wanted = [drives[drive]] if drive else list(drives.values())
+    for name in wanted:
+        if name in ds:
+            return name
+    raise ValueError(f"the Dataset has no {' nor '.join(wanted)}: sweep with outputs=[..., {wanted[0]!r}]")
+
+
+def unit(signal: xr.DataArray, default: str) -> str:
+    return signal.attrs.get("units", default)
+
+
+def require_angles(ds: xr.Dataset) -> None:
+    drawing_of_results(ds)  # which refuses mechanisms that there are no plots of
+    if INDEX not in ds.dims:
+        raise ValueError("the Dataset has no dimension theta2: plots over the revolution take what ls.sweep returns")
+
+
+def require_one_design(signals: Iterable[xr.DataArray]) -> None:
+    """Raise ValueError where signals have other dims than theta2."""
+    sizes = {dim: n for signal in signals for dim, n in signal.sizes.items() if dim != INDEX}
+    if sizes:
+        said = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
+        choice = ", ".join(f"{dim}=0" for dim in sizes)
+        raise ValueError(
+            f"there are several designs, over {said}: a plot shows one; choose it, such as ds.isel({choice})"
+        )
+
+
+def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
+    """The signal of each design by a label: one, or up to six along one dim. Raises ValueError for more."""
+    extra = [dim for dim in signal.dims if dim != INDEX]
+    if len(extra) != 1 or signal.sizes[extra[0]] > MOST_LINES:
+        require_one_design([signal])
+        return {"": signal}
+    dim = extra[0]
+    labels = signal[dim].values  # positions where the dim has no coordinate
+    units = signal[dim].attrs.get("units", "") if dim in signal.coords else ""
+    return {f"{dim} = {_said(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
+
+
+def _said(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
+    """Angles and signals as arrays: sorted by angle, and a grid of a whole cycle closed by its first sample again."""
+    angles = ds[INDEX].values.astype(float)
+    order = np.argsort(angles, kind="stable")
+    rows = [angles[order], *(_spread(signal, len(angles))[order] for signal in signals)]
+    period = ds.attrs.get(WHOLE_TURN) or full_turn(rows[0])
+    if period is None:
+        return tuple(rows)
+    return (np.append(rows[0], rows[0][0] + period), *(np.append(row, row[0]) for row in rows[1:]))
+
+
+def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
+    """Values at every angle, also of a signal that does not depend on it."""
+    require_one_design([signal])
+    return np.broadcast_to(signal.values.astype(float), (count,))
+
+
+def full_turn(angles: np.ndarray) -> float | None:
+    """Return the whole turns of the crank [degree] that sorted angles divide evenly; None where they divide none."""
+    return whole_turns(angles, 360.0) if len(angles) > 2 else None
+
+
+def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
+    """Where there is no result: by the status, or where that is not in the Dataset by the signal's NaN."""
+    status = ds["status"] if "status" in ds else xr.where(np.isnan(signal), 1, 0)
+    angles, bad = revolution(ds, status)
+    reasons = ds["status"].attrs.get("flag_meanings", "").split() if "status" in ds else []
+    edges = np.flatnonzero(np.diff(bad, prepend=0.0, append=0.0) != 0.0)
+    found = []
+    for start, stop in pairwise(edges.tolist()):
+        if code := int(bad[start]):
+            reason = reasons[code].replace("_", " ") if code < len(reasons) else "no result"
+            found.append(Gap(angles[max(start - 1, 0)], angles[min(stop, len(angles) - 1)], reason))
+    return found
+
+
+def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
+    """The largest sample, or None where there is no result at all."""
+    if np.isnan(values).all():
+        return None
+    k = int(np.nanargmax(values))
+    beside = values[max(k - 1, 0) : k + 2]
+    return Peak(float(angles[k]), float(values[k]), bool(np.isnan(beside).any() or np.isinf(values[k])))
+
+
+def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Components (x, y) of the largest force; of an infinite one, those beside it, which have its direction."""
+    sizes = np.hypot(x, y)
+    k = int(np.nanargmax(sizes))
+    if np.isinf(sizes[k]):
+        beside = [j for j in (k - 1, k + 1) if 0 <= j < len(sizes) and np.isfinite(sizes[j])]
+        k = max(beside, key=lambda j: float(sizes[j]))
+    return np.array([x[k], y[k]])
+
+
+def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
+    """The largest size that a plot of these rows should show.
+
+    Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where that
+    would flatten all the rest, the rest is shown, and what lies beyond is to be marked as off the scale.
+    """
+    largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for row in rows), default=0.0)
+    usual = max((_largest_away_from_gaps(np.abs(row)) for row in rows), default=0.0)
+    runaway = any(found and found.beside_gap and abs(found.value) > 3.0 * usual for found in peaks)
+    return usual if runaway and usual > 0.0 else largest
+
+
+def _largest_away_from_gaps(sizes: np.ndarray) -> float:
+    """The largest of a row without the last fifth of each arc before a gap, where the mechanism nears a toggle."""
+    there = np.isfinite(sizes)
+    edges = np.flatnonzero(np.diff(there, prepend=False, append=False)).tolist()
+    kept = [0.0]
+    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        near = (stop - start + 4) // 5
+        arc = sizes[start + near * (start > 0) : stop - near * (stop < len(sizes))]
+        kept.append(float(arc.max(initial=0.0)))
+    return max(kept)
+
+
+def number(value: float) -> str:
+    """Four significant digits, as one writes them."""
+    if value == 0.0:
+        return "0"
+    if np.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    if not 1e-3 <= abs(value) < 1e7:
+        return f"{value:.3e}".replace("-", "−")
+    return (
+        np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
+        .rstrip(".")
+        .replace("-", "−")
+    )
+
+
+def angle_text(angle: float) -> str:
+    return f"{round(angle, 2):.5g}°".replace("-", "−")
+
+
+def symbol(name: str) -> str:
+    """F32 as one writes it; nothing for a name in words."""
+    return f"${name[0]}_{{{name[1:]}}}$" if name[1:].isdigit() else ""
+
+
+def drive_kind(name: str) -> str:
+    """What a drive gives: "drive torque", or what a name in words says, "cylinder force"."""
+    return "drive torque" if symbol(name) else name.replace("_", " ")

@@ -1,0 +1,105 @@
+"""A cycle as it is drawn: with samples of its own where its scene's exact peaks are, so that these are marked.
+
+Peaks lie between samples, and of a jump a sample has one side at most. A cycle of one design holds its scene; so the
+angles of the exact peaks of all pins and of the drive are added to it, with one just before and one just behind each.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import xarray as xr
+
+from linksweep.files.netcdf import scene_of
+from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn
+from linksweep.results.compute import angles_missing
+from linksweep.results.peak_search.paths import Part
+from linksweep.results.peaks import peaks, peaks_of_part
+from linksweep.results.sweep import sweep
+from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.scene import Scene
+
+ASIDE = 1e-7
+"""Degrees beside a peak, where its one-sided limit is told in all the digits that a plot shows."""
+SHAKING = ("Fsx", "Fsy")
+EQUAL = 1e-9
+"""Of its largest value: how far a sample may be from that of the scene; else the numbers are not the scene's."""
+
+
+def with_peaks(ds: xr.Dataset) -> xr.Dataset:
+    """Return a cycle, or a part of it, with samples at its exact peaks; itself where it is altered, or of designs."""
+    if {*ds.dims} != {INDEX} or WHOLE_TURN in ds.attrs:
+        return ds
+    try:
+        scene = scene_of(ds)
+    except ValueError:  # it has lost its scene, or some of it
+        return ds
+    angles = ds[INDEX].values.astype(float)
+    if len(angles) < 2 or design_labels(scene) or angles_missing(scene):
+        return ds
+    turn = full_turn(np.sort(angles))
+    ends = float(angles.min()), float(angles.min() + turn if turn else angles.max())
+    part = None if ends[1] - ends[0] >= scene.period else ends
+    found = _peaks(scene, tuple(name for name in ["Fs"] if {*SHAKING} <= {*ds.variables}), part)
+    new = np.setdiff1d(_around(found, ends, scene.period), angles)
+    names = [str(name) for name in ds.data_vars if name in scene.table.quantity]
+    if not len(new) or not names:
+        return ds
+    own = ds[[*names, *(["status"] if "status" in ds else [])]]
+    more = _samples(scene, own, new)
+    if more is None:
+        return ds
+    bare = [part.reset_coords(drop=True) for part in (own, more)]
+    joined = xr.concat([part.broadcast_like(part[INDEX]) for part in bare], INDEX).sortby(INDEX)
+    labels = {name: label for name, label in ds.coords.items() if not label.dims}
+    _raise_to_infinity(joined, found, scene.period)
+    if "status" in joined:
+        joined = joined.isel({INDEX: (joined["status"] == 0).values | np.isin(joined[INDEX], angles)})
+    return joined.assign_coords(labels).assign_attrs({**ds.attrs, WHOLE_TURN: turn or 0.0})
+
+
+def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | None:
+    """Return the same variables at other angles; None where one that is there is not the scene's, but was altered."""
+    k = int(np.argmax((own["status"] == 0).values)) if "status" in own else 0
+    names = [str(name) for name in own.data_vars]
+    more = sweep(scene, np.append(own[INDEX].values[k], angles), names)[names]
+    if not _equal(own.isel({INDEX: k}, missing_dims="ignore"), more.isel({INDEX: 0}, missing_dims="ignore")):
+        return None
+    return more.isel({INDEX: slice(1, None)}, missing_dims="ignore")
+
+
+def _raise_to_infinity(ds: xr.Dataset, found: xr.Dataset, period: float) -> None:
+    """Make infinite what is largest beside an infinite peak: it has an angle, and its size no meaning."""
+    for name in (str(name) for name in found.data_vars if f"{name}_at" in found and np.isinf(found[name])):
+        stem, sign = name.rpartition("_")[0], float(np.sign(found[name]))
+        parts = [ds[part] for part in ([stem] if stem in ds else [f"{stem}x", f"{stem}y"]) if part in ds]
+        away = np.mod(ds[INDEX].values - float(found[f"{name}_at"]) + 0.5 * period, period) - 0.5 * period
+        if not parts:
+            continue
+        size = np.nan_to_num(np.hypot(*(part.values for part in parts)) if len(parts) == 2 else sign * parts[0].values)
+        k = int(np.argmax(np.where(np.abs(away) < 2.0 * ASIDE, size, -np.inf)))
+        for part in parts:
+            part.values[k] = np.copysign(np.inf, part.values[k])
+        if "status" in ds:
+            ds["status"].values[k] = 0
+
+
+def _around(found: xr.Dataset, ends: Part, period: float) -> np.ndarray:
+    """Angles [degree] of peaks, and beside them, between two ends and in the period that begins with the first."""
+    names = [str(name) for name in found.data_vars if str(name).endswith("_at")]
+    at = np.array([float(found[name]) for name in names])
+    around = (at[np.isfinite(at), None] + np.array([-ASIDE, 0.0, ASIDE])).ravel()
+    away = np.mod(around - ends[0], period)
+    return ends[0] + away[away <= ends[1] - ends[0]]
+
+
+def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
+    size = max((float(abs(one[name]).max()) for name in one.data_vars), default=0.0)
+    return all(abs(float(one[name]) - float(other[name])) <= EQUAL * size for name in one.data_vars)
+
+
+@lru_cache(maxsize=8)
+def _peaks(scene: Scene, more: tuple[str, ...], part: Part | None) -> xr.Dataset:
+    names = [*scene.mechanism.peak_quantities(scene.drive), *more]
+    return peaks(scene, names) if part is None else peaks_of_part(scene, names, part)

@@ -1,0 +1,160 @@
+"""Plots of why a pin is loaded: the shares of each source over the revolution, and the peak over the crank's speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.pins.speed_limit import speed_limit
+from linksweep.base.conversion import all_to_float64
+from linksweep.base.validate import name_problems, refuse
+from linksweep.plot.curves import shade_gaps
+from linksweep.plot.kit import signals, style
+from linksweep.plot.kit.style import BLUE, GREY, VERMILION, axes_or_new, crank_angles, grid
+from linksweep.results.peaks import peaks
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLORS = (BLUE, style.ORANGE, style.GREEN, style.SKY, VERMILION, style.PURPLE, "#F0E442")
+ROOM = 1.3  # of the largest value, for the legend
+HATCHES = ("", "///", "\\\\\\", "...")
+
+
+def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = None) -> Axes:
+    """Plot what loads a pin over the revolution: the shares of its sources stacked, their sum as a line.
+
+    Parameters
+    ----------
+    shares : Dataset
+        From `linksweep.breakdown`, of one design.
+    name : str, optional
+        The force or torque; by default the first in it.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Shares that load are stacked upwards from 0, those that relieve (or turn backwards) downwards. Where they grow
+        without bound beside angles that have no result, the axis ends at a usual size.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without sources, an unknown name, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.plot.breakdown(ls.breakdown(ls.example("press"), "F32")).get_ylabel()
+    'share in $F_{32}$ [N]'
+    """
+    known = [str(key) for key, item in shares.data_vars.items() if "source" in item.dims]
+    refuse([] if known else ["shares has no sources: take what ls.breakdown returns"])
+    name = known[0] if name is None else name
+    refuse(name_problems("name", name, known))
+    signals.require_one_design([shares[name].isel(source=0)])
+    signals.require_angles(shares)
+    ax = axes_or_new(ax)
+    grid(ax)
+    rows = [(str(s), signals.revolution(shares, shares[name].sel(source=s))) for s in shares["source"].values]
+    rows = [(source, row) for source, row in rows if np.nanmax(np.abs(row[1]), initial=0.0) > 0.0]
+    bases: dict[float, Any] = {1.0: 0.0, -1.0: 0.0}
+    for k, (source, (angles, values)) in enumerate(rows):
+        look: dict[str, Any] = {"color": COLORS[k % len(COLORS)], "hatch": HATCHES[k // len(COLORS) % len(HATCHES)]}
+        for sign, base in bases.items():
+            top = base + np.where(values * sign > 0.0, values, 0.0)
+            ax.fill_between(angles, base, top, **look, linewidth=0.0, label=source if sign > 0.0 else None, alpha=0.85)
+            bases[sign] = top
+    angles, whole = signals.revolution(shares, shares[name].sum("source", skipna=False))
+    ax.plot(angles, whole, color=style.BLACK, linewidth=1.6, label="sum")
+    ax.axhline(0.0, color=GREY, linewidth=0.8)
+    crank_angles(ax, angles)
+    _usual_size(ax, angles, whole, {sign: np.asarray(base) for sign, base in bases.items()})
+    shade_gaps(ax, shares, shares[name].sum("source", skipna=False))
+    ax.set_ylabel(f"share in {signals.symbol(name) or name} [{signals.unit(shares[name], 'N')}]")
+    ax.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return ax
+
+
+def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[float, np.ndarray]) -> None:
+    """Limits for what is usual, where the sum runs off beside a gap."""
+    size = np.abs(whole)
+    largest = signals.peak(angles, size)
+    shown = signals.scale([size], [largest])
+    if largest is None or largest.value <= shown:
+        return
+    tops = [float(np.max(np.abs(stack[size <= shown]), initial=0.0)) for stack in stacks.values()]
+    ax.set_ylim(-1.1 * tops[1], 1.1 * tops[0])
+    said = f"off scale: up to {signals.number(largest.value)} at {signals.angle_text(largest.angle)}"
+    ax.set_title(said, loc="left", fontsize="small", color=GREY)
+
+
+def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, ax: Axes | None = None) -> Axes:
+    """Plot the exact peak of a force or torque over the speed of the crank, with the highest speed that keeps a limit.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of one design; friction and dampers are allowed where no limit is given.
+    of : str
+        A pin force, or the drive's torque: of a signed quantity, the largest magnitude.
+    speeds : array of speeds
+        [rad/s], in place of the scene's omega2.
+    below : float, optional
+        The limit [N or N m].
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With the peak at rest as a dashed line: what weight and loads alone make.
+
+    Raises
+    ------
+    ValueError
+        As `linksweep.peaks` and `linksweep.speed_limit` do.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.plot.over_speed(ls.example("press"), "F32", speeds=[10, 20, 30, 40, 50], below=500.0).get_xlabel()
+    'crank speed $\\\\omega_2$ [rad/s]'
+    """
+    values = np.asarray(all_to_float64(speeds, "angular_velocity"), dtype=float)
+    omega2 = xr.DataArray(values, dims="omega2")
+    at_rest = replace(scene, omega2=0.0)
+    name = f"{of}_peak"
+    found = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
+    refuse([] if np.isfinite(found).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
+    rest = float(peaks(at_rest, of=[of])[name])
+    limit = None if below is None else float(speed_limit(scene, of, below).omega2_limit)
+    ax = axes_or_new(ax)
+    grid(ax)
+    symbol, units = signals.symbol(of) or of, signals.unit(found, "N")
+    ax.plot(omega2.values, found.values, color=BLUE, label=f"peak of {symbol}")
+    ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
+    ax.set_xlim(float(omega2.min()), float(omega2.max()))
+    ax.set_ylim(0.0, ROOM * max(float(found.max()), below or 0.0) or 1.0)
+    if limit is not None:
+        _mark_limit(ax, limit, float(below or 0.0), units)
+    ax.set_xlabel("crank speed $\\omega_2$ [rad/s]")
+    ax.set_ylabel(f"largest {symbol} in the cycle [{units}]")
+    ax.legend(fontsize="small", frameon=False, loc="upper left")
+    return ax
+
+
+def _mark_limit(ax: Axes, limit: float, below: float, units: str) -> None:
+    from linksweep.plot.kit.labels import label
+
+    said = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {limit:.5g} rad/s")
+    ax.axhline(below, color=VERMILION, linewidth=1.0, label=f"limit, {signals.number(below)} {units}: kept {said}")
+    if ax.get_xlim()[0] <= limit <= ax.get_xlim()[1]:
+        ax.plot([limit], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
+        label(ax, limit, below, (f"{limit:.5g} rad/s = {limit * 30.0 / np.pi:.5g} rpm", VERMILION))

@@ -1,0 +1,229 @@
+"""The bearing load diagram: the locus that a pin's force draws over a revolution."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.pins.bearings import FRAMES
+from linksweep.base.validate import choice_problems, refuse
+from linksweep.files.netcdf import scene_of
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.drawings import Drawing, drawing_of_results
+from linksweep.plot.kit.style import BLUE, FORCE_COLORS, GREY, VERMILION, axes_or_new, grid, small_type
+from linksweep.plot.kit.with_peaks import with_peaks
+from linksweep.results.sweep import sweep
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+TICK = 30.0  # degrees of the crank between marks on the locus
+LABELLED = 90.0  # degrees between marks with a number
+BEYOND = 1.1  # of the largest load shown: loads larger than that are off the scale
+
+
+def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | None = None) -> Axes:
+    """Plot the bearing load diagram of a pin: the force's components [N] against each other over a revolution.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the components of the force (F32x, F32y), of one design.
+    pin : str
+        The force, as "Fij": of link i on link j.
+    frame : {"ground", "journal", "bearing"}
+        Axes of the components: "ground", or those of the link that has the "journal" or the "bearing", that turn with
+        it (x along its line of pins, of a slider along its guide); "link" is link j. Which link has the journal
+        `linksweep.bearings` tells; where links slide on each other, j counts as it.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With equal scales; dots on the locus every 30 degrees of the crank, an arrow from the origin to the peak.
+
+    Raises
+    ------
+    ValueError
+        For a force that is not in the Dataset, an unknown frame, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.sweep(ls.example("press")).linksweep.bearing("F32", frame="link").get_xlabel()
+    '$F_{32}$ along the crank, A→B [N]'
+    """
+    refuse(choice_problems("frame", frame, (*FRAMES, "link")))
+    signals.require_angles(ds)
+    ds = with_peaks(ds)
+    angles, x, y = _locus(ds, pin, frame)
+    drawing = drawing_of_results(ds)
+    link = drawing.link_of(pin, frame)
+    ax = axes_or_new(ax, figsize=(5.6, 5.2))
+    size = np.hypot(x, y)
+    largest = signals.peak(angles, size)
+    shown = signals.scale([size], [largest])
+    _cross(ax)
+    ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
+    units = signals.unit(signals.components(ds, pin)[0], "N")
+    tip = np.zeros(2)
+    if largest and largest.value > 0.0:
+        tip = _peak(ax, pin, largest, signals.tip(x, y), units, shown)
+    _ticks(ax, angles, x, y, shown)
+    near = size <= BEYOND * shown
+    _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
+    ax.set_xlabel(f"{_axis(drawing, pin, link, 'x')} [{units}]")
+    ax.set_ylabel(f"{_axis(drawing, pin, link, 'y')} [{units}]")
+    return ax
+
+
+def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
+    """Plot the bearing load diagrams of all pins in one figure, each like `bearing` in a panel of its own.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the components of the pin forces, of one design.
+    frame : {"ground", "journal", "bearing"}
+        As `bearing` takes it.
+
+    Returns
+    -------
+    matplotlib Figure
+        7.1 inches wide, two panels in a row; scales differ from pin to pin. Of three pins, a fourth panel has all to
+        one scale.
+
+    Raises
+    ------
+    ValueError
+        For an unknown frame, more than one design, and without any pin's components in the Dataset.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> figure = ls.sweep(ls.example("press")).linksweep.bearings("journal")
+    >>> [ax.get_title(loc="left") for ax in figure.axes][0]
+    'Load of pin A: $F_{12}$'
+    """
+    import matplotlib.pyplot as plt
+
+    refuse(choice_problems("frame", frame, FRAMES))
+    drawing, ds = drawing_of_results(ds), with_peaks(ds)
+    forces = [force for force in drawing.forces if drawing.at_pin(force) and signals.has_pin(ds, force)]
+    refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
+    rows = (len(forces) + 1) // 2
+    with small_type():
+        figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
+        for force, panel in zip(forces, panels.flat, strict=False):
+            bearing(ds, force, frame, panel)
+            panel.set_title(f"Load of {drawing.said(force)}: {signals.symbol(force)}", loc="left")
+        if len(forces) % 2:
+            _to_one_scale(panels[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
+    return figure
+
+
+def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ...]]) -> None:
+    """The loci of all pins side by side, so that they can be compared."""
+    sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
+    shown = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
+    _cross(ax)
+    for force, (_, x, y) in loci.items():
+        ax.plot(
+            x, y, color=FORCE_COLORS[force], label=f"{signals.symbol(force)} ({drawing_of_results(ds).said(force)})"
+        )
+    near = [np.hypot(x, y) <= BEYOND * shown for _, x, y in loci.values()]
+    _limits(
+        ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))
+    )
+    ax.set_title("All to one scale [N]", loc="left")
+    ax.legend(fontsize="small", frameon=False)
+
+
+def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
+    """Crank angles [degree] and the components of a force in the axes of a frame."""
+    angles, x, y = signals.revolution(ds, *signals.components(ds, pin))
+    drawing = drawing_of_results(ds)
+    link = drawing.link_of(pin, frame)
+    if link != 1:
+        x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
+    return angles, x, y
+
+
+def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Components of the same force in axes turned by an angle, a variable of the sweep or a parameter."""
+    if name not in ds:
+        scene = scene_of(ds, whole=False)
+        standing = getattr(scene.mechanism, name, None)
+        given = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
+        ds = ds.assign({name: given[name]})
+    angle = np.radians(signals.revolution(ds, ds[name])[1])
+    cos, sin = np.cos(angle), np.sin(angle)
+    return cos * x + sin * y, cos * y - sin * x
+
+
+def _axis(drawing: Drawing, pin: str, link: int, axis: str) -> str:
+    force = signals.symbol(pin)
+    if link == 1:
+        return f"{force[:-2]}{axis}}}$, ground axes"
+    frame = drawing.frames[link]
+    return f"{force} along the {frame.along}" if axis == "x" else f"{force} across the {frame.across}"
+
+
+def _cross(ax: Axes) -> None:
+    """Equal scales, with a cross through the origin."""
+    from matplotlib.ticker import MaxNLocator
+
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))  # room for numbers of five digits
+    grid(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    ax.plot([0.0], [0.0], "+", color="black", markersize=11.0, markeredgewidth=1.6, zorder=2.6, label="_origin")
+
+
+def _limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
+    """Limits around these points and the origin, which equal scales may still widen."""
+    for values, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
+        low, high = np.min(values, initial=0.0), np.max(values, initial=0.0)
+        room = 0.16 * ((high - low) or 1.0)
+        set_limits(low - room, high + room, auto=True)
+
+
+def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: float) -> None:
+    """Dots on the locus at round crank angles, some with the angle beside them."""
+    from linksweep.plot.kit.labels import label
+
+    at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
+    closed = (x[0], y[0]) == (x[-1], y[-1])
+    at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
+    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
+    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * shown)
+    at, points = at[there], points[:, there]
+    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
+    named = at % LABELLED == 0.0
+    if named.sum() < 3:
+        named[:] = True
+    for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):
+        label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
+
+
+def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> np.ndarray:
+    """An arrow from the origin to the largest load, with value and angles; where it was drawn to comes back."""
+    from linksweep.plot.kit.labels import arrow, label
+
+    beyond = largest.value > BEYOND * shown
+    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
+    direction = np.degrees(np.arctan2(force[1], force[0]))
+    lines = (
+        f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}",
+        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
+        f"direction {direction:.1f}°".replace("-", "−"),
+    )
+    arrow(ax, np.zeros(2), tip, VERMILION)
+    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {pin}")
+    label(ax, *tip, *((line, VERMILION) for line in lines))
+    return tip

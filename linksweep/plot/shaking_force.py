@@ -1,0 +1,168 @@
+"""Plots of shaking: the hodograph of a force vector, and the orders of signals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import refuse
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, axes_or_new, grid
+from linksweep.plot.kit.with_peaks import with_peaks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
+ENDING = "_amplitude"
+TICK = 30.0  # degrees of the crank between dots
+BEYOND = 1.1  # of the largest force shown: forces larger than that are off the scale
+LABELLED = 90.0  # degrees between dots with a number
+
+
+def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
+    """Plot the path of a vector's tip over the revolution: of the shaking force [N], or of a pin force.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `linksweep.sweep`, with the components (Fsx, Fsy) of one design.
+    name : str
+        The vector, its components without x and y.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With equal scales, a dot every 30 degrees of the crank, and an arrow to the largest.
+
+    Raises
+    ------
+    ValueError
+        For components that are not in the Dataset, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.plot.hodograph(ls.sweep(ls.example("press"), outputs=["Fsx", "Fsy"])).get_xlabel()
+    'shaking force $F_{sx}$ [N]'
+    """
+    signals.require_angles(ds)
+    missing = [part for part in (f"{name}x", f"{name}y") if part not in ds]
+    refuse([f"ds has no {part}: sweep with outputs=[..., {part!r}]" for part in missing])
+    ds = with_peaks(ds)
+    angles, x, y = signals.revolution(ds, ds[f"{name}x"], ds[f"{name}y"])
+    ax = axes_or_new(ax, figsize=(5.6, 5.2))
+    ax.set_aspect("equal", adjustable="datalim")
+    grid(ax)
+    for line in (ax.axhline, ax.axvline):
+        line(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    size = np.hypot(x, y)
+    largest = signals.peak(angles, size)
+    shown = signals.scale([size], [largest])
+    near = [np.where(size <= BEYOND * shown, part, np.nan) for part in (x, y)]
+    ax.plot(*near, color=BLUE, label=f"_path {name}")
+    _dots(ax, angles, *near)
+    if largest and largest.value > 0.0:
+        _largest(ax, name, largest, signals.tip(x, y), shown, signals.unit(ds[f"{name}x"], "N"))
+    ax.margins(0.14)
+    for axis, said in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
+        words = "shaking force " if name == "Fs" else "force "
+        said(f"{words}$F_{{{name[1:]}{axis}}}$ [{signals.unit(ds[name + axis], 'N')}]")
+    return ax
+
+
+def _dots(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
+    from linksweep.plot.kit.labels import label
+
+    at = np.arange(np.ceil(angles[0] / TICK) * TICK, min(angles[-1], angles[0] + 359.0) + 1e-9, TICK)
+    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
+    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_dots")
+    for angle, point in zip(at, points.T, strict=True):
+        if angle % LABELLED == 0.0 and np.isfinite(point).all():
+            said = "$\\theta_2$ = " if angle == 0.0 else ""
+            label(ax, *point, (said + signals.angle_text(angle), BLUE))
+
+
+def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, shown: float, units: str) -> None:
+    from linksweep.plot.kit.labels import arrow, label
+
+    beyond = peak.value > BEYOND * shown
+    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
+    arrow(ax, np.zeros(2), tip, VERMILION)
+    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")
+    lines = (
+        f"$F_{{{name[1:]}}}$ = {signals.number(peak.value)} {units}",
+        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(peak.angle)}",
+    )
+    label(ax, *tip, *((line, VERMILION) for line in lines))
+
+
+def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
+    """Plot the amplitudes of orders as bars, those of several signals side by side.
+
+    Parameters
+    ----------
+    found : Dataset
+        From `linksweep.orders`, of one design.
+    names : iterable of str, optional
+        The signals; by default all in it. They must have one unit.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Order 0 is the mean. The legend says the largest order of each signal.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without orders, unknown signals, several units or designs, and more than five signals.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> found = ls.orders(ls.sweep(ls.example("engine"), outputs=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
+    >>> ls.plot.orders(found).get_ylabel()
+    'amplitude [N]'
+    """
+    known = [str(key).removesuffix(ENDING) for key in found.data_vars if str(key).endswith(ENDING)]
+    wanted = known if names is None else [names] if isinstance(names, str) else list(names)
+    refuse([f"names: there are no orders of {name}; there are {', '.join(known)}" for name in {*wanted} - {*known}])
+    chosen = [found[name + ENDING] for name in wanted]
+    units = {amplitude.attrs["units"] for amplitude in chosen}
+    several = "must share one unit: plot each alone"
+    refuse([f"names = {wanted}: {several}"] if len(units) > 1 else [])
+    refuse([] if 0 < len(wanted) <= len(COLORS) else [f"names: one to {len(COLORS)} signals, not {len(wanted)}"])
+    refuse([f"{a.name} is over {a.dims}: plot one design, as found.isel(...)" for a in chosen if a.ndim > 1])
+    from matplotlib.ticker import MaxNLocator
+
+    ax = axes_or_new(ax)
+    grid(ax)
+    order = found["order"].values
+    step = order[1] - order[0] if len(order) > 1 else 1.0
+    width = 0.8 * step / len(wanted)
+    for k, (name, amplitude) in enumerate(zip(wanted, chosen, strict=True)):
+        place = order + (k - 0.5 * (len(wanted) - 1)) * width
+        ax.bar(place, amplitude.values, width, color=COLORS[k], label=_said(name, amplitude))
+    ax.xaxis.set_major_locator(MaxNLocator(16, integer=True))
+    ax.set_xlabel("order [turns per turn of the crank]")
+    ax.set_ylabel(f"amplitude [{units.pop()}]")
+    ax.margins(y=0.12)
+    ax.set_ylim(bottom=0.0)
+    ax.legend(fontsize="small", frameon=False)
+    return ax
+
+
+def _said(name: str, amplitude: xr.DataArray) -> str:
+    """A signal, and its largest order."""
+    text = f"$F_{{{name[1:]}}}$" if name[0] == "F" else signals.symbol(name) or name.replace("_", " ")
+    if not np.nansum(amplitude.values) > 0.0:
+        return text
+    largest = amplitude.isel(order=int(np.nanargmax(amplitude.values)))
+    return f"{text}, largest {signals.number(float(largest))} {amplitude.units} at order {float(largest.order):g}"

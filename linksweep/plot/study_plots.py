@@ -1,0 +1,298 @@
+"""Plots of a study's designs: two results against each other with the Pareto front, and parallel coordinates.
+
+Of very many designs some are drawn, chosen by chance, the same ones each time; the legend says how many. Those that
+are marked, the front and the best, are found among all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.design.pareto import front as front_of
+from linksweep.base.validate import count_problems, refuse
+from linksweep.plot.kit.designs import (
+    ROUND,
+    Column,
+    Designs,
+    by_chance,
+    color_bar,
+    designs_of,
+    levels,
+    many_sizes,
+    norm,
+    require_study,
+    span,
+    variable_problems,
+    whole,
+)
+from linksweep.plot.kit.style import BLACK, BLUE, VERMILION, axes_or_new, grid
+from linksweep.results.compute import requested
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+DOTS = 20_000  # of a scatter: more are one blot
+LINES = 1500  # of parallel coordinates
+MOST_AXES = 12
+ROOM = 0.04  # of an axis, beyond its scale
+
+
+def scatter(
+    ds: xr.Dataset,
+    x: str,
+    y: str,
+    color: str | None = None,
+    maximize: Iterable[str] = (),
+    front: bool = True,
+    ax: Axes | None = None,
+) -> Axes:
+    """Plot two results, or parameters, of every design against each other, with the Pareto front of the two.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Over designs, as from `linksweep.peaks`.
+    x, y : str
+        Names in it, such as "F32_peak", "T12_peak", "coupler.length".
+    color : str, optional
+        A third one, shown by colour.
+    maximize : iterable of str
+        Those of x and y of which more is better; of the others less is.
+    front : bool
+        Whether to draw the front: designs that no other beats in both, as `linksweep.pareto` finds them. What is as
+        good as any of them lies on or beyond the steps.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With the designs that are ok, be it over part of a revolution; of more than 20 000 so many, chosen by chance.
+        A few designs far from the rest are off the scale.
+
+    Raises
+    ------
+    ValueError
+        For unknown names, and where no design is ok.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> made = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}, n=64)
+    >>> ax = ls.plot.scatter(ls.peaks(made, of=["F32", "T12"]), "F32_peak", "T12_peak")
+    >>> ax.get_xlabel(), ax.get_ylabel()
+    ('$F_{32}$ peak [N]', '$T_{12}$ peak [N m]')
+    """
+    require_study(ds)
+    better = requested("maximize", maximize)
+    given = {"x": x, "y": y} | ({} if color is None else {"color": color})
+    found = [problem for path, name in given.items() for problem in variable_problems(ds, path, name)]
+    refuse(found + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
+    designs = designs_of(ds, given.values())
+    best = _front(designs, (x, y), better) if front else np.array([], dtype=int)
+    shown = by_chance(designs.number, DOTS, best)
+    across, up = designs.columns[x], designs.columns[y]
+    ax = axes_or_new(ax)
+    grid(ax)
+    _dots(ax, across.values[shown], up.values[shown], designs, shown, color)
+    if front:
+        steps: dict[str, Any] = {
+            "color": VERMILION,
+            "drawstyle": "steps-post",
+            "linewidth": 1.2,
+            "marker": "o",
+            "markersize": 3.5,
+        }
+        text = f"Pareto front: {whole(len(best))} design{'s' * (len(best) > 1)}"
+        ax.plot(across.values[best], up.values[best], label=text, zorder=2.5, **steps)
+    _scale(ax, "x", across, best)
+    _scale(ax, "y", up, best)
+    legend = _legend(ax)
+    legend.legend_handles[0].set_sizes([20.0])
+    return ax
+
+
+def _dots(ax: Axes, x: np.ndarray, y: np.ndarray, designs: Designs, shown: np.ndarray, color: str | None) -> None:
+    size = float(np.clip(400.0 / np.sqrt(len(shown)), 2.0, 20.0))
+    dots: dict[str, Any] = {"s": size, "linewidths": 0.0, "rasterized": True, "label": designs.counted(len(shown))}
+    if color is None:
+        ax.scatter(x, y, color=BLUE, alpha=0.6, **dots)
+        return
+    third = designs.columns[color]
+    limits = span(third.values)
+    cloud = ax.scatter(x, y, c=third.values[shown], norm=norm(limits), cmap="viridis", **dots)
+    color_bar(ax, cloud, third, limits)
+
+
+def _front(designs: Designs, names: tuple[str, str], better: list[str]) -> np.ndarray:
+    """Positions of the designs on the front, the best in the first of the two first."""
+    costs = [designs.columns[name].values * (-1.0 if name in better else 1.0) for name in names]
+    return front_of(np.stack(costs, axis=-1))
+
+
+def _scale(ax: Axes, which: str, found: Column, keep: np.ndarray) -> None:
+    """Scale and label of the axis x or y, on which the designs to be kept are seen in any case."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = span(found.values)
+    kept = found.values[keep]
+    low, high = min([low, *kept]), max([high, *kept])
+    if many_sizes((low, high)):
+        room = (high / low) ** ROOM
+        ax.set(**{f"{which}scale": "log", f"{which}lim": (low / room, high * room)})
+        axis = getattr(ax, f"{which}axis")
+        axis.set_major_locator(LogLocator(subs=ROUND))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    else:
+        room = ROOM * (high - low) or 0.5
+        ax.set(**{f"{which}lim": (low - room, high + room)})
+    ax.set(**{f"{which}label": found.text})
+    if found.words:
+        ax.set(**{f"{which}ticks": range(len(found.words)), f"{which}ticklabels": found.words})
+
+
+def parallel_coordinates(
+    ds: xr.Dataset,
+    names: Iterable[str] | None = None,
+    color: str | None = None,
+    maximize: bool = False,
+    best: int = 5,
+    ax: Axes | None = None,
+) -> Axes:
+    """Plot designs as lines from parameter to parameter to result, coloured by an objective, the best few marked.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Over designs, as from `linksweep.peaks`.
+    names : iterable of str, optional
+        What the axes show, from left to right; by default the parameters that vary, then the peaks.
+    color : str, optional
+        The objective; by default the last of the names.
+    maximize : bool
+        Whether the largest objective is the best; by default the least is.
+    best : int
+        How many of the best designs to mark.
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        With the designs that are ok, be it over part of a revolution; of more than 1500 so many, chosen by chance,
+        better ones on top. Where a few designs lie far from the rest, their lines leave the axis at an arrow.
+
+    Raises
+    ------
+    ValueError
+        For unknown names, fewer than two or more than twelve of them, and where no design is ok.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> made = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}, n=64)
+    >>> ax = ls.plot.parallel_coordinates(ls.peaks(made, of=["F32", "T12"]))
+    >>> [tick.get_text() for tick in ax.get_xticklabels()][-1]
+    '$T_{12}$ peak\\n[N m]'
+    """
+    require_study(ds)
+    wanted = _axis_names(ds) if names is None else requested("names", names)
+    refuse(_problems(ds, wanted, color, best))
+    designs = designs_of(ds, wanted if color is None else [*wanted, color])
+    objective = designs.columns[wanted[-1] if color is None else color]
+    order = np.argsort(-objective.values if maximize else objective.values, kind="stable")
+    shown = by_chance(designs.number, LINES, order[:best])
+    shown = shown[np.argsort(-np.argsort(order)[shown])]  # better ones on top
+    axes = [designs.columns[name] for name in wanted]
+    points = np.stack([_fractions(item) for item in axes], axis=-1)
+    ax = axes_or_new(ax, figsize=(max(6.4, 1.25 * len(wanted) + 1.4), 4.4))
+    _lines(ax, points[shown], objective, shown, designs.counted(len(shown)))
+    if best:
+        _mark(ax, points[order[:best]], f"best: {designs.said(order[:best])}")
+    for place, item in enumerate(axes):
+        _axis(ax, place, item)
+    ax.set_xticks(range(len(axes)), [item.text.replace(" [", "\n[") for item in axes])
+    ax.tick_params(axis="x", length=0.0)
+    ax.set(xlim=(-0.3, len(axes) - 0.7), ylim=(-1.2 * ROOM, 1.0 + 1.2 * ROOM), yticks=[])
+    ax.spines[:].set_visible(False)
+    _legend(ax)
+    return ax
+
+
+def _problems(ds: xr.Dataset, wanted: list[str], color: Any, best: Any) -> list[str]:
+    found = [problem for name in wanted for problem in variable_problems(ds, "names", name)]
+    found += [] if color is None else variable_problems(ds, "color", color)
+    if not 2 <= len(wanted) <= MOST_AXES:
+        found.append(f"names: there are {len(wanted)}, {wanted}; must be from 2 to {MOST_AXES}")
+    return found + ([] if best == 0 else count_problems("best", best))
+
+
+def _axis_names(ds: xr.Dataset) -> list[str]:
+    """The parameters that vary, labels of dims only where no parameter says more, and the peaks."""
+    labels = [str(name) for name in ds.dims if name in ds.coords and ds[name].dtype.kind not in "iu"]
+    parameters = [str(name) for name, item in ds.coords.items() if item.dims and name not in ds.dims]
+    said = {ds[name].values.tobytes() for name in parameters}
+    labels = [name for name in labels if ds[name].values.tobytes() not in said]
+    return [*labels, *parameters, *(str(name) for name in ds.data_vars if str(name).endswith("_peak"))]
+
+
+def _limits(item: Column) -> tuple[float, float]:
+    low, high = span(item.values)
+    return (low, high) if low < high else (low - 0.5, high + 0.5)
+
+
+def _fractions(item: Column, values: np.ndarray | None = None) -> np.ndarray:
+    """Heights on an axis that runs from 0 to 1; what is off its scale, just beyond the end."""
+    limits, values = _limits(item), item.values if values is None else values
+    low, high = np.log(limits) if many_sizes(limits) else limits
+    values = np.log(np.maximum(values, limits[0] / 2.0)) if many_sizes(limits) else values
+    return np.clip((values - low) / (high - low), -ROOM, 1.0 + ROOM)
+
+
+def _lines(ax: Axes, points: np.ndarray, objective: Column, shown: np.ndarray, said: str) -> None:
+    """A line for each design, coloured by the objective."""
+    from matplotlib.collections import LineCollection
+
+    limits = span(objective.values)
+    places = np.broadcast_to(np.arange(points.shape[1]), points.shape)
+    alpha = float(np.clip(30.0 / np.sqrt(len(shown)), 0.25, 0.9))
+    style: dict[str, Any] = {"linewidths": 0.8, "alpha": alpha, "rasterized": True, "label": said, "zorder": 1.5}
+    lines = LineCollection(list(np.stack([places, points], axis=-1)), norm=norm(limits), cmap="viridis", **style)
+    lines.set_array(objective.values[shown])
+    ax.add_collection(lines, autolim=False)
+    color_bar(ax, lines, objective, limits)
+
+
+def _mark(ax: Axes, points: np.ndarray, said: str) -> None:
+    """The best, as lines that stand out; the legend tells which they are."""
+    for k, row in enumerate(points):
+        ax.plot(row, color=VERMILION, linewidth=1.5, zorder=2.2, label=f"_best {k + 1}" if k else said)
+
+
+def _axis(ax: Axes, place: int, item: Column) -> None:
+    """An upright axis with its numbers, and an arrow where lines go off its scale."""
+    from matplotlib.patheffects import withStroke
+
+    halo: list[Any] = [withStroke(linewidth=2.5, foreground=ax.get_facecolor())]
+    ticks = np.arange(len(item.words)) if item.words else levels(_limits(item))
+    heights = _fractions(item, ticks)
+    ax.plot([place, place], [0.0, 1.0], color=BLACK, linewidth=0.9, zorder=2.4)
+    ax.plot(np.full(len(ticks), place), heights, "_", color=BLACK, markersize=6.0, zorder=2.4)
+    style: dict[str, Any] = {"va": "center", "fontsize": "small", "zorder": 2.6, "path_effects": halo}
+    for tick, height in zip(ticks, heights, strict=True):
+        text = item.words[round(tick)] if item.words else f"{tick:g}".replace("-", "−")
+        ax.annotate(text, (place, height), (5.0, 0.0), textcoords="offset points", **style)
+    for end, marker, off in ((0.0, "v", item.values < _limits(item)[0]), (1.0, "^", item.values > _limits(item)[1])):
+        if off.any():
+            ax.plot([place], [end], marker, color=BLACK, markersize=5.0, zorder=2.4, label=f"_beyond {item.name}")
+
+
+def _legend(ax: Axes) -> Any:
+    """Above the axes, where there are no designs."""
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
+    return ax.legend(ncols=1, fontsize="small", frameon=False, **place)

@@ -1,0 +1,1 @@
+"""Write the report of a scene on two sides of A4."""

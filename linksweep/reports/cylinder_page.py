@@ -1,0 +1,143 @@
+"""What a report tells of an engine of several cylinders: how they stand, peaks, drive, mains, figures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep import plot
+from linksweep.analysis.balance.orders import orders
+from linksweep.analysis.drive.duty import duty, turning_problems
+from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.analysis.pins.bearings import bearings
+from linksweep.base.validate import refuse
+from linksweep.reports import inputs as page_inputs
+from linksweep.reports import tables as page_tables
+from linksweep.reports.figures import ORDERS, SIZE, SQUARE, Picture, pictures
+from linksweep.reports.markup import NONE, Markup, angle, joined, number, section, symbol, table, tag, tiny
+from linksweep.reports.results_of_page import FLUCTUATIONS
+from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
+from linksweep.results.peaks import peaks
+from linksweep.scene.designs.choose import design_labels
+
+SIGNS = "Angles and torques count counter-clockwise, from x; z points towards the viewer."
+HINGED = "The crankshaft is taken as hinged at every main bearing (lever rule)."
+CANCELLED = 10.0
+"""Of its bound: a peak below is the rounding of what cancels."""
+PINS = ("F12", "F32", "F43")
+
+
+def parts_of(machine: MultiCylinder) -> dict[str, Any]:
+    """Return the parts of the page of an engine of one design."""
+    engine = machine.engine
+    refuse(["engine: has several designs, and a report shows one; give one"] * bool(design_labels(engine)))
+    refuse(turning_problems(engine))
+    found = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS])
+    refuse([] if int(found["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
+    mains = bearings(machine) if machine.mains else None
+    return {
+        "kind": f"{len(machine.crank_angles)} cylinders",
+        "warnings": "",
+        "machine": section("One cylinder", page_inputs.links(engine), page_inputs.loads(engine)),
+        "left": joined(
+            section("Cylinders", _cylinders(machine, found)),
+            section("Peaks of all together", _peaks(machine, found)),
+        ),
+        "right": joined(
+            section("Motion", page_inputs.settings(engine)),
+            section("Drive", _drive(machine)),
+            section("Main bearings", _mains(mains), tag("p", HINGED, class_="note")) if mains is not None else Markup(),
+        ),
+        "figures": pictures(_figures(machine, mains)),
+        "more": "",
+        "signs": SIGNS,
+        "scene": engine.to_toml(),
+    }
+
+
+def _signals() -> list[str]:
+    return [name for name in SHAKING if name not in ("Fsx", "Fsy")]
+
+
+def _cylinders(machine: MultiCylinder, found: xr.Dataset) -> Markup:
+    header = ("", "crank ahead", "bank", "place", *(symbol(name) for name in PINS))
+    standing = zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True)
+    rows = [
+        (
+            str(k + 1),
+            angle(ahead),
+            angle(bank),
+            number(1e3 * z, "mm"),
+            *(number(float(found[f"{name}_peak"][k]), "N") for name in PINS),
+        )
+        for k, (ahead, bank, z) in enumerate(standing)
+    ]
+    return table(header, rows, class_="numbers")
+
+
+def _peaks(machine: MultiCylinder, found: xr.Dataset) -> Markup:
+    rows: list[tuple[Any, ...]] = []
+    for name in _signals():
+        quantity, bound = machine.quantity[name], float(found[f"{name}_bound"])
+        unit = page_tables.UNITS.get(quantity.units, quantity.units)
+        ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in found else {"_peak": ""}
+        what = quantity.long_name.split(",")[0].split(" of all")[0].split(" of the drive")[0]
+        for end, words in ends.items():
+            value, at = float(found[name + end]), float(found[f"{name}{end}_at"])
+            known = abs(value) > CANCELLED * bound
+            shown = (number(value if known else 0.0, unit), angle(at) if known else NONE, tiny(bound))
+            rows.append((symbol(name), tag("span", what + words, title=quantity.long_name), *shown))
+    return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
+
+
+def _drive(machine: MultiCylinder) -> Markup:
+    work = duty(machine)
+    wanted = xr.DataArray(np.array(FLUCTUATIONS), dims="wanted")
+    size = flywheel(machine, wanted)["flywheel_inertia"]
+    rows = [
+        ("mean torque", number(float(work["effort_mean"]), "N m")),
+        ("mean power", number(float(work["power_mean"]), "W")),
+    ]
+    rows += [(said, number(float(work[name]), "J")) for name, said in page_tables.WORKS.items()]
+    rows += [(f"flywheel for δ = {d:g}", number(float(J), "kg m²")) for d, J in zip(FLUCTUATIONS, size, strict=True)]
+    return table((), rows, class_="numbers")
+
+
+def _mains(found: xr.Dataset) -> Markup:
+    header = ("", "place", "largest load", "at θ₂", "equivalent load")
+    rows = [
+        (
+            str(name),
+            number(1e3 * float(one["main_position"]), "mm"),
+            number(float(one["F_peak"]), "N"),
+            angle(float(one["F_peak_at"])),
+            number(float(one["equivalent_load"]), "N"),
+        )
+        for name in found["main"].values
+        for one in [found.sel(main=name)]
+    ]
+    return table(header, rows, class_="numbers")
+
+
+def _figures(machine: MultiCylinder, mains: xr.Dataset | None) -> Iterator[Picture]:
+    cycle = machine.sweep()
+    yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [cycle["T12"]], "torque [N m]"))
+    if mains is not None:
+        loads = [mains["F"].sel(main=name) for name in mains["main"].values]
+        yield Picture("Loads of the main bearings", SIZE, partial(_over_angle, loads, "force [N]"))
+    yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(cycle, ax=ax))
+    harmonics = orders(cycle, ["Fsx", "Fsy"], n=ORDERS)
+    yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(harmonics, ax=ax))
+
+
+def _over_angle(signals: list[xr.DataArray], label: str, ax: Any) -> None:
+    for signal in signals:
+        ax.plot(signal["theta2"], signal, label=str(signal.coords["main"].item()) if "main" in signal.coords else None)
+    ax.set(xlabel="crank angle θ₂ [°]", ylabel=label)
+    ax.margins(x=0.0)
+    if len(signals) > 1:
+        ax.legend(fontsize="small", ncols=3)

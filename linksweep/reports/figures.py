@@ -1,0 +1,148 @@
+"""The figures of a report, drawn for half the width of an A4 page, as pictures that stand in the page itself."""
+
+from __future__ import annotations
+
+import io
+from base64 import b64encode
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from linksweep import plot
+from linksweep.analysis.balance.orders import orders
+from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.drawings import Drawing, drawing_of
+from linksweep.reports.markup import Markup, symbol, tag
+from linksweep.reports.results_of_page import STEPS, Results
+from linksweep.results.sweep import sweep
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LOOK: list[Any] = [
+    "default",
+    {"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3, "svg.hashsalt": "linksweep"},
+]
+"""Matplotlib's own settings, whatever the user's are, and those of this page."""
+SIZE, SQUARE = (3.55, 2.45), (3.55, 3.1)  # inches
+ORDERS = 6
+
+
+class Picture(NamedTuple):
+    """A panel: its title, its size [inches], and what draws it into axes."""
+
+    title: str
+    size: tuple[float, float]
+    draw: Callable[[Axes], Any]
+
+
+def of_the_cycle(results: Results) -> Markup:
+    """The mechanism where a pin is loaded most, pin forces, the drive, and why that pin is loaded."""
+    if results.loop:
+        return _wide("The track and its force on the car", plot.loop, results) if results.moves else Markup()
+    return pictures(_of_cycle(results)) if results.moves else Markup()
+
+
+def of_bearings_and_shaking(results: Results) -> Markup:
+    """Load diagrams of all pins, and the path and the orders of the shaking force."""
+    if results.loop or not results.moves:
+        return Markup()
+    return pictures([*_of_bearings(results), *_of_shaking(results)])
+
+
+def _of_cycle(results: Results) -> Iterator[Picture]:
+    ds, drawing = results.cycle, drawing_of(results.scene.mechanism)
+    force, where = worst(results, drawing)
+    bounded = np.isfinite(results.peaks[f"{force}_peak"])
+    what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
+    title = f"{what} θ₂ = {where:.1f}°"
+    yield Picture(title, SIZE, lambda ax: plot.mechanism(results.scene, where, ax, forces=True))
+    yield Picture("Forces in the joints", SIZE, lambda ax: plot.forces(ds, ax=ax))
+    kind = signals.drive_kind(signals.drive_name(ds)).capitalize()
+    yield Picture(kind, SIZE, lambda ax: plot.torque(ds, ax))
+    if not bounded:  # there, it is the nearness of the toggle that loads the pin
+        return
+    shares = breakdown(results.scene, force, results.cycle[signals.INDEX].values[::STEPS])
+    title = f"Where the load of {drawing.said(force)} comes from: {symbol(force)}"
+    yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax)))
+
+
+def _of_bearings(results: Results) -> Iterator[Picture]:
+    ds, drawing = results.cycle, drawing_of(results.scene.mechanism)
+    for force in filter(drawing.at_pin, drawing.forces):
+        title = f"Load of {drawing.said(force)}: {symbol(force)}"
+        yield Picture(title, SQUARE, partial(plot.bearing, ds, force, "ground"))
+
+
+def _of_shaking(results: Results) -> Iterator[Picture]:
+    if float(results.peaks["Fs_peak"]) == 0.0:
+        return
+    ds = results.cycle.isel({signals.INDEX: slice(STEPS * int(results.inertia_period))})
+    yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(ds, ax=ax))
+    if results.whole:
+        found = orders(ds, ["Fsx", "Fsy"], n=ORDERS)
+        yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(found, ax=ax))
+
+
+def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
+    """The pin force that is largest, and its crank angle [degree]: the exact one where that has a position to draw."""
+    found = results.peaks
+    pins = [name for name in drawing.forces if drawing.at_pin(name)]
+    force = max(pins, key=lambda name: float(found[f"{name}_peak"]))
+    at = float(found[f"{force}_peak_at"])
+    if np.isfinite(found[f"{force}_peak"]) and int(sweep(results.scene, [at], ["status"])["status"][0]) == 0:
+        return force, at
+    largest = {
+        name: signals.peak(*signals.revolution(results.cycle, signals.magnitude(results.cycle, name))) for name in pins
+    }
+    force = max(pins, key=lambda name: largest[name].value)  # type: ignore[union-attr]
+    return force, largest[force].angle  # type: ignore[union-attr]
+
+
+def _legend_below(ax: Axes) -> None:
+    """The legend below the axes, where it takes no width."""
+    legend, entries = ax.get_legend(), ax.get_legend_handles_labels()
+    if legend is not None:
+        legend.remove()
+    ax.figure.legend(*entries, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+
+
+def pictures(panels: Iterable[Picture]) -> Markup:
+    from matplotlib import style
+
+    with style.context(LOOK):
+        return tag("div", *(_drawn(picture) for picture in panels), class_="figures")
+
+
+def _drawn(picture: Picture) -> Markup:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=picture.size, layout="constrained")
+    ax = figure.add_subplot()
+    picture.draw(ax)
+    ax.set_title(picture.title, loc="left")
+    return _image(figure, picture.title)
+
+
+def _wide(title: str, draw: Callable[[Any], Figure], results: Results) -> Markup:
+    """A figure that brings its own panels."""
+    import matplotlib.pyplot as plt
+    from matplotlib import style
+
+    with style.context(LOOK):
+        figure = draw(results.cycle)
+        made = _image(figure, title)
+        plt.close(figure)
+    return tag("div", made, class_="wide")
+
+
+def _image(figure: Figure, title: str) -> Markup:
+    """The figure as SVG within the page, the same to the byte for the same results."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": None})
+    data = b64encode(drawn.getvalue()).decode("ascii")
+    return tag("img", src=f"data:image/svg+xml;base64,{data}", alt=title)

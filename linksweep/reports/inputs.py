@@ -1,0 +1,215 @@
+"""What a scene is, as a person writes it down: its links in a table, its motion and its loads in words.
+
+Lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in bar. What changes over the
+revolution is told by its least and its greatest value.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from linksweep.base.validate import UNITS
+from linksweep.mechanisms import LoopTrack
+from linksweep.mechanisms.links import Bar, Disk
+from linksweep.reports.markup import Markup, symbol, table, with_unit, written
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.loads.load import Load
+from linksweep.scene.scene import Scene
+
+SHOWN = {
+    "length": ("mm", 1e3),
+    "angle": ("°", 1.0),
+    "angular_velocity": ("rpm", 30.0 / np.pi),
+    "pressure": ("bar", 1e-5),
+    "spring_rate": ("N/mm", 1e-3),
+    "dimensionless": ("", 1.0),
+}
+"""Unit, and how many of it make the scene's own unit; other kinds of number are shown in that."""
+LEFT_OUT = ("length", "angle")
+"""Kinds of which a mechanism's own default, no offset and no turn, need not be said."""
+LONG = 10.0  # m: from here on a length is shown in m
+NAMES = {"FourBar": "Four-bar", "SliderCrank": "Slider-crank", "LoopTrack": "Car in a loop"}
+NAMES |= {"InvertedSliderCrank": "Inverted slider-crank"}
+SAMPLES = 720  # angles at which what changes over the revolution is looked at
+
+
+def kind_of(scene: Scene) -> str:
+    """What machine it is, in words."""
+    return NAMES[type(scene.mechanism).__name__]
+
+
+def links(scene: Scene) -> Markup:
+    """The table of a mechanism's links: how long and how heavy, and where the centre of gravity is."""
+    mechanism: Any = scene.mechanism
+    header = ["link", "length", "mass", "inertia", "centre of gravity", "made as"]
+    rows = [_link(mechanism, body.role, body.number) for body in mechanism.bodies]
+    if not any(row[-1] for row in rows):
+        header, rows = header[:-1], [row[:-1] for row in rows]
+    return table(header, rows, class_="links") if rows else Markup()
+
+
+def loads(scene: Scene) -> Markup:
+    """The table of what acts on it, each load in words."""
+    pairs = zip(_sampled(scene).loads, scene.loads, strict=True)
+    rows = [(f"load {k}", _load(load) + _followed(given)) for k, (load, given) in enumerate(pairs, 1)]
+    return table((), rows, class_="settings") if rows else Markup()
+
+
+def settings(scene: Scene) -> Markup:
+    """The table of the mechanism's other numbers, its drive, its speed and gravity."""
+    rows = [*_of_mechanism(scene.mechanism), *_of_motion(_sampled(scene)), ("gravity", _gravity(*scene.gravity))]
+    return table((), rows, class_="settings")
+
+
+def _sampled(scene: Scene) -> Scene:
+    """The scene with what changes over the revolution at so many angles."""
+    return scene.at(crank_grid(SAMPLES, scene.period, scene.mechanism.index))
+
+
+def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
+    """A row of the table; a slider or a block has its numbers in the mechanism itself."""
+    link = getattr(mechanism, role, None)
+    owner, prefix = (mechanism, f"{role}_") if link is None else (link, "")
+    values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
+    sizes = ("" if value is None else quantity(value, kind) for kind, value in values.items())
+    distance, angle = (getattr(owner, f"{prefix}cg_{word}") for word in ("distance", "angle"))
+    cg = "on its first pin" if distance == 0.0 else f"{quantity(distance, 'length')} at {quantity(angle, 'angle')}"
+    return f"{number} {role}", *sizes, cg, _made(link)
+
+
+def _made(link: Any) -> str:
+    if isinstance(link, Bar):
+        size = f"bar {_number(link.width, 1e3)} × {quantity(link.thickness, 'length')}"
+    elif isinstance(link, Disk):
+        size = f"disk ⌀ {_number(2.0 * link.radius, 1e3)} × {quantity(link.thickness, 'length')}"
+    else:
+        return ""
+    return f"{size}, {quantity(link.density, 'density')}"
+
+
+def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
+    """Its numbers that no link has, and its branch."""
+    bodies = tuple(f"{body.role}_" for body in mechanism.bodies)
+    for item in fields(mechanism):
+        value = getattr(mechanism, item.name)
+        kind = item.metadata["rule"].kind if "rule" in item.metadata else ""
+        if kind and not item.name.startswith(bodies) and not (kind in LEFT_OUT and value == item.default):
+            yield _said(item.name), quantity(value, kind)
+        elif isinstance(value, str):
+            yield item.name, value
+
+
+def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
+    """What drives it, and how fast."""
+    if isinstance(sampled.mechanism, LoopTrack):
+        where = "at every position" if sampled.profile == "constant" else "at the bottom, then by work and energy"
+        yield "speed", f"{quantity(sampled.speed, 'velocity')} {where}"
+        yield "thrust", quantity(sampled.thrust, "force")
+        return
+    unknown = sampled.mechanism.drives[sampled.drive]
+    yield "drive", f"{sampled.drive}; sought: {symbol(unknown)}"
+    yield "speed of the crank", _speed(sampled.omega2)
+    alpha2 = sampled.motion["alpha2"]
+    if np.any(np.not_equal(alpha2, 0.0)):
+        yield "its acceleration", quantity(alpha2, "angular_acceleration")
+    turns = round(sampled.period / sampled.mechanism.period)
+    if turns > 1:
+        yield "cycle", f"{turns} turns of the crank"
+
+
+def _speed(omega2: Any) -> str:
+    clockwise = np.mean(omega2) < 0.0
+    size = -omega2 if clockwise else omega2
+    way = "clockwise" if clockwise else "counter-clockwise"
+    return f"{quantity(size, 'angular_velocity')} ({_number(size)} rad/s) {way}"
+
+
+def _gravity(x: float, y: float) -> str:
+    size = quantity(float(np.hypot(x, y)), "acceleration")
+    if x == 0.0:
+        return "none" if y == 0.0 else f"{size} {'down' if y < 0.0 else 'up'}"
+    return f"{size} at {quantity(float(np.degrees(np.arctan2(y, x))), 'angle')} to x"
+
+
+def _load(load: Any) -> str:
+    """A load in words: a force or torque as a sentence, anything else by its numbers' names."""
+    if not isinstance(load, Load):
+        return _in_words(load)
+    said = []
+    if load.force is not None:
+        start = "its centre of gravity" if load.origin == "cg" else "its first pin"
+        at = f"{quantity(load.at[0], 'length')} at {quantity(load.at[1], 'angle')} from {start}"
+        axes = "" if load.frame == "ground" else ", in its own axes"
+        said.append(f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {at}")
+    if load.torque is not None:
+        said.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
+    return "; ".join(said + _breaks(load.breaks))
+
+
+def _followed(load: Any) -> str:
+    """The position that a load follows, and the way on which it acts."""
+    if getattr(load, "over", None) is None:
+        return ""
+    return f", over {load.over}" + (f", while {load.while_}" if load.while_ else "")
+
+
+def _breaks(angles: tuple[float, ...]) -> list[str]:
+    """Angles at which a load jumps, kinks or is narrow."""
+    return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
+
+
+def _in_words(part: Any) -> str:
+    """A dataclass by its name and its numbers: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
+    said = []
+    for item in fields(part):
+        value = getattr(part, item.name)
+        if is_dataclass(value):
+            said.append(f"{_said(item.name)}: {_in_words(value)}")
+        elif "rule" in item.metadata:
+            said += [] if value is None else [f"{_said(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
+        elif item.name == "breaks":
+            said += _breaks(value)
+        elif value is None:
+            continue
+        else:
+            said.append(f"{_said(item.name)} {_end(value) if isinstance(value, tuple) else value}")
+    kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
+    return f"{kind} ({', '.join(said)})"
+
+
+def _end(end: tuple[str, Any, Any]) -> str:
+    """Where a spring is fixed: a point of the ground, or of a link in its polar coordinates."""
+    link, first, second = end
+    if link == "ground":
+        return f"ground at ({quantity(first, 'length')}, {quantity(second, 'length')})"
+    return f"{link}, {quantity(first, 'length')} at {quantity(second, 'angle')} from its first pin"
+
+
+def _said(name: str) -> str:
+    return name.strip("_").replace("_", " ")
+
+
+def quantity(value: Any, kind: str) -> str:
+    """A number of a scene in the unit in which it is shown; of what changes over the revolution the extremes."""
+    unit, factor = SHOWN.get(kind, (UNITS[kind].replace("^2", "²").replace("^3", "³"), 1.0))
+    if kind == "length" and np.max(np.abs(value)) >= LONG:
+        unit, factor = "m", 1.0
+    return with_unit(_number(value, factor), unit)
+
+
+def _number(value: Any, factor: float = 1.0) -> str:
+    low, high = (written(_short(float(extreme(value)) * factor)) for extreme in (np.min, np.max))
+    return low if low == high else f"{low} to {high}"
+
+
+def _short(value: float) -> str:
+    """Five significant digits, small numbers with a power of ten, without zeros that say nothing."""
+    if value == 0.0 or 1e-3 <= abs(value) < 1e7:
+        return f"{value:.{max(5, len(f'{abs(value):.0f}'))}g}"
+    digits, _, power = f"{value:.4e}".partition("e")
+    return f"{digits.rstrip('0').rstrip('.')}e{power}"

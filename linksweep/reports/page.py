@@ -1,0 +1,157 @@
+"""report(scene, "report.html"): all that matters about one machine on a page to print, in a file that stands alone.
+
+The template is `page.html`. Inputs, checks, tables and figures are pieces of their own: `page_inputs`, `page_checks`,
+`page_tables`, `page_figures`. There is no date in the page, and the figures are drawn with matplotlib's own settings
+whatever the user's are, so that the same scene gives the same file, byte for byte.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from importlib.resources import files
+from string import Template
+from typing import Any
+
+import xarray as xr
+
+from linksweep.base.validate import Rule, pair_problems, refuse
+from linksweep.files.atomic import ending_of
+from linksweep.files.netcdf import write_text
+from linksweep.reports import checks as page_checks
+from linksweep.reports import figures as page_figures
+from linksweep.reports import inputs as page_inputs
+from linksweep.reports import tables as page_tables
+from linksweep.reports.cylinder_page import parts_of
+from linksweep.reports.inputs import quantity
+from linksweep.reports.markup import Markup, joined, safe, section, tag
+from linksweep.reports.results_of_page import Range, Results, results_of
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.file.toml import write_scene
+from linksweep.scene.scene import Scene
+from linksweep.studies.scene_at import scene_at
+
+ENDINGS = (".html", ".htm")
+ADVICE = ": a report is a page, which a browser prints, to PDF as well"
+EXACTNESS = "Peaks are exact; the bound says how much higher one could be."
+SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
+
+
+def report(
+    scene: Scene | xr.Dataset | MultiCylinder,
+    path: str | os.PathLike,
+    title: str | None = None,
+    theta2: tuple[float, float] | None = None,
+) -> None:
+    """Write a report of one machine: inputs, checks, peaks, drive, geometry, shaking and figures, to print on A4.
+
+    Parameters
+    ----------
+    scene : Scene of one design, or a Dataset of linksweep that holds one; or a MultiCylinder of one design
+    path : the file, "report.html"; it needs no other file and no network. One that exists is replaced only once the
+        new one is complete
+    title : its heading; by default the kind of mechanism
+    theta2 : (first, last) crank angle [degree] of a machine that moves over part of a turn, as a tipper does: checks,
+        figures and peaks are then of this part
+
+    Raises
+    ------
+    ValueError
+        For a scene over designs: choose one with `linksweep.scene_at`, or of a Dataset with isel; and for another
+        ending than .html, or angles that are none.
+    OSError
+        When the folder is missing or cannot be written.
+
+    Notes
+    -----
+    Lengths stand in mm, speeds of a crank in rpm; all else as in the results. Every number of the tables stands in full
+    in the `value` of its element. Peaks are those of `linksweep.peaks`, with their bounds; checks those of
+    `linksweep.check`, and the balance of power and the rounding error of a sweep. The file holds the scene as well.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "report.html")
+    ...     ls.report(ls.example("loop"), path, title="Rocket car")
+    ...     "<h1>Rocket car</h1>" in path.read_text(encoding="utf-8")
+    True
+    """
+    ending_of(path, ENDINGS, ADVICE)
+    if isinstance(scene, MultiCylinder):
+        refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
+        return write_text(page_of_cylinders(scene.in_memory, title), path)
+    one = scene if isinstance(scene, Scene) else scene_at(scene)
+    refuse(_design_problems(one) + _part_problems(theta2, one.period))
+    text = page(one, title, theta2)
+    write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
+
+
+def page(scene: Scene, title: str | None = None, part: Range | None = None) -> str:
+    """The report as HTML."""
+    results = results_of(scene, part)
+    kind = page_inputs.kind_of(scene)
+    between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
+    parts = {
+        "title": title or kind,
+        "kind": kind + between,
+        "version": version("linksweep"),
+        "warnings": page_checks.warnings(results),
+        "machine": section("Machine", page_inputs.links(scene), page_inputs.loads(scene)),
+        "left": joined(*_left(results)),
+        "right": joined(*_right(results)),
+        "figures": page_figures.of_the_cycle(results),
+        "more": page_figures.of_bearings_and_shaking(results),
+        "signs": SIGNS if results.scene.mechanism.bodies else "",
+        "scene": write_scene(scene),
+    }
+    return _filled(parts)
+
+
+def page_of_cylinders(machine: MultiCylinder, title: str | None) -> str:
+    """Return the report of an engine of several cylinders as HTML."""
+    parts = parts_of(machine)
+    return _filled({**parts, "title": title or "Engine", "version": version("linksweep")})
+
+
+def _filled(parts: Mapping[str, Any]) -> str:
+    template = Template((files(__package__) / "page.html").read_text(encoding="utf-8"))
+    return template.substitute({name: safe(part) for name, part in parts.items()})
+
+
+def _left(results: Results) -> Iterator[Markup]:
+    yield section("Machine" if results.loop else "Motion", page_inputs.settings(results.scene))
+    yield section("Peaks", page_tables.peaks(results), tag("p", EXACTNESS, class_="note"))
+    yield section("Geometry", page_tables.geometry(results))
+
+
+def _right(results: Results) -> Iterator[Markup]:
+    yield section("Checks", page_checks.checks(results))
+    yield section("Drive", page_tables.drive(results))
+    yield section("Motion" if results.loop else "Shaking, by the inertia of the links", page_tables.shaking(results))
+
+
+def _part_problems(part: Any, period: float) -> list[str]:
+    if part is None:
+        return []
+    found = pair_problems("theta2", part, (Rule("angle"), Rule("angle")), "(first, last) crank angle in degrees")
+    if found:
+        return found
+    first, last = part
+    bounds = f"must be the first and the last angle, at most {period:g} degrees on"
+    return [] if first < last <= first + period else [f"theta2 = ({first:g}, {last:g}): {bounds}"]
+
+
+def _design_problems(scene: Scene) -> list[str]:
+    labels = design_labels(scene)
+    if not labels:
+        return []
+    said = ", ".join(f"{dim} ({len(values)})" for dim, values in labels.items())
+    choice = ", ".join(f"{dim!r}: {values[0].item()!r}" for dim, values in labels.items())
+    return [
+        f"the scene is over several designs, {said}, and a report shows one: choose it, "
+        f"ls.report(ls.scene_at(scene, {{{choice}}}), ...), or of a Dataset with isel"
+    ]

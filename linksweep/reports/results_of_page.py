@@ -1,0 +1,127 @@
+"""What a report tells of a scene, computed once: its cycle, its peaks, and whatever of the rest applies to it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.design.geometry import geometry
+from linksweep.analysis.drive.duty import duty, steady_problems, turning_problems
+from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.mechanisms import LoopTrack
+from linksweep.results.check import check
+from linksweep.results.peaks import peaks, peaks_of_part
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+STEPS = 10  # samples in a degree
+SHAKING = ("Fs", "Ms")
+OF_LINKAGE = (*SHAKING, "power", "transmission_angle")
+OF_CAR = ("a_total", "speed")
+FLUCTUATIONS = (0.02, 0.1)
+
+Range = tuple[float, float]
+"""First and last crank angle [degree] of a machine that moves over part of a turn."""
+
+
+class Results(NamedTuple):
+    """Datasets of one design; None for what does not apply to its mechanism, or to how it moves."""
+
+    scene: Scene
+    part: Range | None
+    cycle: xr.Dataset
+    peaks: xr.Dataset
+    check: xr.Dataset
+    geometry: xr.Dataset | None = None
+    duty: xr.Dataset | None = None
+    flywheel: xr.Dataset | None = None
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """What is sought at each angle: pin forces, torques, the force of a track."""
+        return self.scene.mechanism.peak_quantities(self.scene.drive)
+
+    @property
+    def loop(self) -> bool:
+        return isinstance(self.scene.mechanism, LoopTrack)
+
+    @property
+    def inertia_period(self) -> float:
+        """After which what inertia alone makes repeats itself [degree]: a turn, unless the crank's speed takes two."""
+        index = self.scene.mechanism.index
+        over = {*self.scene.functions, *(path for path, array in self.scene.arrays.items() if index in array.dims)}
+        return self.scene.period if over & {"omega2", "alpha2"} else self.scene.mechanism.period
+
+    @property
+    def moves(self) -> bool:
+        """Whether there is any result at all."""
+        return bool((self.cycle["status"] == 0).any())
+
+    @property
+    def sound(self) -> bool:
+        """Whether there is one wherever it is to move."""
+        return int(self.peaks["status"]) == 0 if self.part is None else bool((self.cycle["status"] == 0).all())
+
+    @property
+    def whole(self) -> bool:
+        """Whether that is all the way round."""
+        return self.sound and self.part is None
+
+    def reaches(self, angle: float) -> bool:
+        """Whether it comes to this crank angle [degree] on its way."""
+        return self.part is None or (angle - self.part[0]) % 360.0 <= self.part[1] - self.part[0]
+
+
+def results_of(scene: Scene, part: Range | None = None) -> Results:
+    """All that the report shows of a scene of one design."""
+    theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
+    loop = isinstance(scene.mechanism, LoopTrack)
+    cycle = sweep(scene, theta2, None if loop else _outputs(scene))
+    worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
+    found = Results(scene, part, cycle, worst, check(scene))
+    if loop or part is not None:
+        return found
+    found = found._replace(geometry=geometry(scene))
+    if turning_problems(scene) or not found.whole:
+        return found
+    return found._replace(duty=duty(scene), flywheel=None if steady_problems(scene) else _flywheel(scene))
+
+
+def _angles(first: float, last: float) -> np.ndarray:
+    return np.linspace(first, last, round((last - first) * STEPS) + 1)
+
+
+def _outputs(scene: Scene) -> tuple[str, ...]:
+    """What is drawn and checked."""
+    mechanism = scene.mechanism
+    drawn = (*mechanism.kinematics(), *mechanism.dynamics(scene.drive), "Fsx", "Fsy")
+    return (*drawn, "power_residual", "error_bound")
+
+
+def _sought(scene: Scene) -> tuple[str, ...]:
+    return scene.mechanism.peak_quantities(scene.drive)
+
+
+def _peaks_of(scene: Scene) -> list[str]:
+    return [*_sought(scene), *(f"{name}_bound" for name in _sought(scene)), *_others(scene)]
+
+
+def _others(scene: Scene) -> tuple[str, ...]:
+    return OF_CAR if isinstance(scene.mechanism, LoopTrack) else OF_LINKAGE
+
+
+def _exact(scene: Scene) -> xr.Dataset:
+    """Exact peaks, with the bounds of what is sought; of a whole revolution means as well."""
+    found = peaks(scene, _peaks_of(scene))
+    if int(found["status"]):
+        return found
+    shaking = [name for name in SHAKING if name in _others(scene)]
+    averages = [f"{name}_{kind}" for name in (*_sought(scene), *shaking) for kind in ("mean", "rms")]
+    return found.assign(peaks(scene, averages).data_vars)
+
+
+def _flywheel(scene: Scene) -> xr.Dataset:
+    wanted: Any = np.array(FLUCTUATIONS)
+    return flywheel(scene, xr.DataArray(wanted, {"wanted": wanted}, "wanted"))

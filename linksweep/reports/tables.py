@@ -1,0 +1,146 @@
+"""The tables of a report: peaks, what the drive gives, how it moves, how it shakes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
+from linksweep.reports.results_of_page import Results
+
+NOISE = 1e-12  # of what it is the mean of: what is left of a sum that cancels
+UNITS = {"degree": "°", "1": "", "m s-1": "m/s", "m s-2": "m/s²", "kg m2": "kg m²"}
+WORKS = {
+    "work_fed": "work fed in a cycle",
+    "work_regenerated": "work taken back or braked",
+    "work_of_loads": "work of the loads",
+    "work_of_friction": "work of friction",
+}
+SHAKEN = {"Fs": "N", "Ms": "N m"}
+
+
+def peaks(results: Results) -> Markup:
+    """The worst of each pin force and of the drive, and where; how sure that is; of a whole revolution the mean."""
+    more = [kind for kind in ("bound", "mean", "rms") if f"{results.forces[0]}_{kind}" in results.peaks]
+    header = ("", "", "peak", f"at {'θ' if results.loop else 'θ₂'}", *more)
+    rows = [row for name in results.forces for row in _peak(results, name, more)]
+    return table(header, rows, class_="peaks")
+
+
+def _peak(results: Results, name: str, more: list[str]) -> Iterator[tuple[Any, ...]]:
+    """A row for a magnitude; of a signed quantity one for its largest and one for its least value."""
+    found, quantity = results.peaks, results.scene.table.quantity[name]
+    size, unit = float(found[f"{name}_peak"]), UNITS.get(quantity.units, quantity.units)
+    rest = [_summary(size, kind, float(found[f"{name}_{kind}"]), unit) for kind in more]
+    ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in found else {"_peak": ""}
+    for ending, said in ends.items():
+        value, spot = float(found[name + ending]), float(found[f"{name}{ending}_at"])
+        what = tag("span", _where(results, name) + said, title=quantity.long_name)
+        yield symbol(name), what, _of(size, value, unit), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
+
+
+def _summary(size: float, kind: str, value: float, unit: str) -> str:
+    if kind == "bound":
+        return tiny(value) if np.isfinite(size) else NONE
+    return _of(size, value, unit)
+
+
+def _where(results: Results, name: str) -> str:
+    """Of which joint a force is, and of which link on which: "pin B: coupler on crank"; else what it is."""
+    said = results.scene.table.quantity[name].long_name
+    if name in results.scene.mechanism.drives.values():
+        return f"drive of the {results.scene.drive}"
+    pair, at_pin, pin = said.partition(" at pin ")
+    if not at_pin:
+        return said.split(" on the ")[0].split(" about ")[0]
+    here, there = (part.partition("(")[2].partition(")")[0] for part in pair.split(" on link "))
+    return f"{'pin ' if len(pin) == 1 else ''}{pin}: {here} on {there}"
+
+
+def drive(results: Results) -> Markup:
+    """Power; of a crank that comes round, work; and of one that turns steadily, its flywheel."""
+    if results.loop:
+        return Markup()
+    ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))
+    works = [] if results.duty is None else _works(results.duty, float(results.peaks["power_peak"]))
+    return table((), [("power", ends), *works, *_flywheel(results.flywheel)], class_="numbers")
+
+
+def _works(found: xr.Dataset, most: float) -> list[tuple[Any, ...]]:
+    turned = float(abs(found["work_fed"]) + abs(found["work_regenerated"]))
+    works = [(title, _of(turned, float(found[name]), "J")) for name, title in WORKS.items() if name in found]
+    return [("mean power", _of(most, float(found["power_mean"]), "W")), *works]
+
+
+def _flywheel(found: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
+    for one in found["wanted"].values if found is not None else ():
+        size = float(found["flywheel_inertia"].sel(wanted=one))  # type: ignore[index]
+        if np.isfinite(size):
+            yield joined(f"flywheel for {100.0 * one:g} % fluctuation"), number(size, "kg m²")
+
+
+def geometry(results: Results) -> Markup:
+    """How far it moves, how evenly, and where it turns round; empty where nothing of it swings or slides."""
+    found, rows = results.geometry, []
+    if found is None:
+        return Markup()
+    if "swing" in found:
+        rows.append(("swing of the rocker", angle(float(found["swing"]), 2)))
+    if "stroke" in found:
+        rows.append(("stroke of the slider", number(1e3 * float(found["stroke"]), "mm")))
+    rows.append(("time ratio", number(float(found["time_ratio"]))))
+    turns = [float(one) for one in _reversals(results) if np.isfinite(one)]
+    if turns:
+        rows.append(
+            ("turns round at", joined(*(joined(", " if k else "", angle(one, 2)) for k, one in enumerate(turns))))
+        )
+    return table((), _there(rows), class_="numbers") if _there(rows) else Markup()
+
+
+def _reversals(results: Results) -> Iterable[float]:
+    """Crank angles at which it turns round, on its own branch."""
+    found: xr.DataArray = results.geometry["reversal_angle"]  # type: ignore[index]
+    branch = results.scene.mechanism.branch  # type: ignore[union-attr]
+    labels = found[found.dims[0]].values
+    own = [label for label in labels if str(label).startswith(branch)] or list(labels)
+    return found.sel({found.dims[0]: own}).values
+
+
+def shaking(results: Results) -> Markup:
+    """The force and the moment of the links' inertia on the ground; of a car in a loop, its speed and acceleration."""
+    found = results.peaks
+    if results.loop:
+        return table((), _of_car(found), class_="numbers")
+    at = float(found["Fs_peak_at"])
+    at = at % results.inertia_period if results.part is None else at
+    force = joined(number(float(found["Fs_peak"]), "N"), " at ", angle(at))
+    moment = joined(number(float(found["Ms_min"])), " to ", number(float(found["Ms_max"]), "N m"))
+    rows = {"Fs": ("force", force), "Ms": ("moment about A", moment)}
+    return table((), (_with_rms(results, name, row) for name, row in rows.items()), class_="numbers")
+
+
+def _with_rms(results: Results, name: str, row: tuple[str, Markup]) -> tuple[str, Markup]:
+    """Of a whole revolution, the root mean square as well."""
+    if not results.whole:
+        return row
+    rms = _of(float(results.peaks[f"{name}_peak"]), float(results.peaks[f"{name}_rms"]), SHAKEN[name])
+    return row[0], joined(row[1], ", rms ", rms)
+
+
+def _of_car(found: xr.Dataset) -> list[tuple[Any, ...]]:
+    speed = joined(number(float(found["speed_min"]), "m/s"), " to ", number(float(found["speed_max"]), "m/s"))
+    total = joined(number(float(found["a_total_peak"]), "m/s²"), " at ", angle(float(found["a_total_peak_at"])))
+    return [("speed", speed), ("largest acceleration", total)]
+
+
+def _of(size: float, value: float, unit: str) -> Markup:
+    """A number that is nought where it is but what rounding leaves of terms of this size."""
+    return number(value, unit, "0" if abs(value) <= NOISE * size else "")
+
+
+def _there(rows: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+    """Without those that have no number."""
+    return [row for row in rows if row[1] != NONE]

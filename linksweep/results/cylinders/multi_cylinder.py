@@ -1,0 +1,267 @@
+"""MultiCylinder: an engine of several cylinders on one crankshaft, each a slider-crank like the first.
+
+Equations and source: `linksweep.results.cylinders.cylinder_sums`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.conversion import to_float64
+from linksweep.base.degrees import cos_sin
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import Rule, is_array, name_problems, number_problems, refuse, said
+from linksweep.engine.quantity import Quantity
+from linksweep.mechanisms import SliderCrank
+from linksweep.results.compute import requested
+from linksweep.results.cylinders.cylinder_sums import (
+    QUANTITIES,
+    Made,
+    Sum,
+    Throw,
+    main_quantities,
+    makers,
+    sources_of,
+    together,
+)
+from linksweep.results.dataset import index_coordinate, origin_attributes
+from linksweep.results.sweep import sweep
+from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+ANGLE, LENGTH = Rule("angle"), Rule("length")
+SHAKING = ("T12", "Fsx", "Fsy", "Fs", "Ms", "Msx", "Msy")
+
+
+@dataclass(frozen=True, eq=False)
+class MultiCylinder(ByContent):
+    """An engine, pump or compressor of several equal cylinders on one crankshaft.
+
+    Parameters
+    ----------
+    engine : Scene of a SliderCrank: one cylinder, with the crank's throw, its share of the crankshaft and its loads,
+        driven by the crank at a constant omega2
+    crank_angles : of each cylinder's crank, ahead of theta2 [degree]; over two turns in a four-stroke engine, where
+        they also say where in its cycle each cylinder is: [0, 540, 180, 360]
+    bank_angles : of each cylinder, turned from the engine's guide [degree]; none by default
+    positions : of each cylinder along the crankshaft [m], z pointing towards the viewer; all 0 by default
+    main_positions : of the main bearings along the crankshaft [m], in order, with every cylinder between two of them;
+        by default halfway between neighbouring throws, and as far outside the first and the last
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter that is not allowed.
+
+    Notes
+    -----
+    Loads turn with their cylinder; gravity does not. Equations and source: `linksweep.results.cylinders.cylinder_sums`.
+
+    Examples
+    --------
+    An inline four: what is left is the second order, and it goes up and down.
+
+    >>> import linksweep as ls
+    >>> four = ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360], positions=[-0.15, -0.05, 0.05, 0.15])
+    >>> ls.orders(four.sweep(), "Fsy", n=4).Fsy_amplitude.round(3).sel(order=[1, 2, 3]).values.tolist()
+    [0.0, 3276.256, 0.0]
+
+    A 90° V-twin on one throw, with a counterweight for the rotating and half of the reciprocating mass: no first order.
+
+    >>> engine = ls.example("engine")
+    >>> throw = ls.with_counterweights(engine, ls.counterweights(engine, radius=0.05, fraction=0.5))
+    >>> twin = ls.MultiCylinder(throw, crank_angles=[0, 0], bank_angles=[45, -45])
+    >>> ls.orders(twin.sweep(), ["Fsx", "Fsy"], n=2).sel(order=1).Fsx_amplitude.round(6).item()
+    0.0
+    """
+
+    engine: Scene
+    crank_angles: tuple[float, ...]
+    bank_angles: tuple[float, ...] = ()
+    positions: tuple[float, ...] = ()
+    main_positions: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        refuse(_engine_problems(self.engine))
+        given = {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}
+        for word, rule in given.items():
+            refuse(self._take(word, rule))
+        refuse(self._take_mains())
+
+    def _take(self, word: str, rule: Rule) -> list[str]:
+        """Numbers of the cylinders as a tuple, one for each."""
+        value: Any = getattr(self, word)
+        if _no_list(value):
+            return [f"{word} = {said(value)}: must be a list of numbers, one for each cylinder"]
+        numbers = tuple(to_float64(number, rule.kind) for number in value)
+        if word != "crank_angles":
+            numbers = numbers or (0.0,) * len(self.crank_angles)
+        object.__setattr__(self, word, numbers)
+        found = [] if numbers else [f"{word} is empty: give one for each cylinder"]
+        if len(numbers) != len(self.crank_angles):
+            found.append(
+                f"{word} has {len(numbers)} numbers: must have one for each of {len(self.crank_angles)} cylinders"
+            )
+        return found + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
+
+    def _take_mains(self) -> list[str]:
+        """Take the places of the main bearings; what is wrong with them."""
+        value: Any = self.main_positions
+        if _no_list(value):
+            return [f"main_positions = {said(value)}: must be a list of numbers, one for each main bearing"]
+        places = tuple(to_float64(number, LENGTH.kind) for number in value)
+        object.__setattr__(self, "main_positions", places)
+        found = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
+        if found or not places:
+            return found
+        if len(places) < 2 or not np.all(np.diff(places) > 0.0):
+            return [f"main_positions = {said(list(places))}: must be two places or more, in order along the crankshaft"]
+        return [
+            f"positions[{k}] = {z:g} m: must lie between the first and the last main bearing, at {places[0]:g} m and "
+            f"{places[-1]:g} m"
+            for k, z in enumerate(self.positions, 1)
+            if not places[0] <= z <= places[-1]
+        ]
+
+    @cached_property
+    def quantity(self) -> Mapping[str, Quantity]:
+        """All quantities of the whole engine, by name."""
+        return {quantity.name: quantity for quantity in (*QUANTITIES, *main_quantities(len(self.mains)))}
+
+    @cached_property
+    def makers(self) -> Mapping[str, Sum | Made]:
+        """How each of them is made of the cylinders' own."""
+        return makers(len(self.mains))
+
+    @property
+    def in_memory(self) -> MultiCylinder:
+        """The same engine, its numbers computed where they are lazy."""
+        return replace(self, engine=in_memory(self.engine))
+
+    @property
+    def pin_forces(self) -> tuple[str, ...]:
+        """Magnitudes of the forces in the pins of one cylinder, which its bank leaves alone."""
+        return tuple(f"F{i}{j}" for a, b in self.engine.mechanism.pins.values() for i, j in ((a, b), (b, a)))
+
+    @property
+    def period(self) -> float:
+        """Of the whole cycle [degree]."""
+        return self.engine.period
+
+    @cached_property
+    def mains(self) -> tuple[float, ...]:
+        """Places of the main bearings along the crankshaft [m], in order; none where nothing says where they are."""
+        return self.main_positions or _halfway(sorted({*self.positions}))
+
+    @cached_property
+    def throws(self) -> tuple[Throw, ...]:
+        """How each cylinder stands in the engine."""
+        standing = zip(self.crank_angles, self.bank_angles, self.positions, strict=True)
+        return tuple(Throw(ahead - bank, cos_sin(bank), z, _shares(z, self.mains)) for ahead, bank, z in standing)
+
+    @cached_property
+    def cylinders(self) -> tuple[Scene, ...]:
+        """The scene of each cylinder, in axes that turn with it: all differ by the direction of gravity alone."""
+        gx, gy = self.engine.gravity
+        banks = [throw.bank for throw in self.throws]
+        turned = {
+            (cos, sin): replace(self.engine, gravity=(cos * gx + sin * gy, cos * gy - sin * gx)) for cos, sin in banks
+        }
+        return tuple(turned[bank] for bank in banks)
+
+    def sweep(self, theta2: Any = 720, threads: int | None = None, outputs: Iterable[str] | None = None) -> xr.Dataset:
+        """Torque, shaking force and moments of all cylinders together over the cycle.
+
+        Parameters
+        ----------
+        theta2 : count of crank angles, or angles [degree], as `linksweep.sweep` takes them
+        threads : at most so many (default: all cores)
+        outputs : names of the variables wanted. Default: T12, the shaking force and its moments. Others are `power`,
+            `reduced_torque`, `reduced_inertia`, `F_main1`, `F_main1x` … and the like
+
+        Returns
+        -------
+        Dataset over (design dims…, theta2): T12 [N m]; Fsx, Fsy, Fs [N]; Ms, Msx, Msy [N m]; status, the worst of all
+        cylinders. `linksweep.orders` takes it.
+
+        Raises
+        ------
+        ValueError
+            For angles that are no angles, and unknown names.
+        """
+        names = list(SHAKING) if outputs is None else requested("outputs", outputs)
+        refuse([problem for name in names for problem in name_problems("outputs", name, [*self.quantity, "status"])])
+        grid = crank_grid(theta2, self.period)
+        wanted = dict.fromkeys((*names, "status"))
+        sources = sources_of(wanted, self.makers)
+        cycles = [
+            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), sources, threads=threads))
+            for scene, throw in zip(self.cylinders, self.throws, strict=True)
+        ]
+        found = together(wanted, self.makers, self.throws, cycles)
+        status = found.pop("status").assign_attrs(cycles[0]["status"].attrs)
+        labelled = {name: self._labelled(name, values.where(status == 0)) for name, values in found.items()}
+        command = f"linksweep.MultiCylinder(...).sweep(theta2={said(theta2)})"
+        ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
+        return ds.assign_coords(index_coordinate(self.engine, grid))
+
+    def _labelled(self, name: str, values: xr.DataArray) -> xr.DataArray:
+        return values.assign_attrs(units=self.quantity[name].units, long_name=self.quantity[name].long_name)
+
+
+def _bare(cycle: xr.Dataset) -> xr.Dataset:
+    """Return a cylinder's cycle without its own angles."""
+    return cycle.drop_vars([name for name, array in cycle.coords.items() if "theta2" in array.dims])
+
+
+def _halfway(throws: list[float]) -> tuple[float, ...]:
+    """Return places halfway between throws, and as far outside; none for one throw."""
+    if len(throws) < 2:
+        return ()
+    between = [0.5 * (a + b) for a, b in pairwise(throws)]
+    return (2.0 * throws[0] - between[0], *between, 2.0 * throws[-1] - between[-1])
+
+
+def _shares(z: float, mains: tuple[float, ...]) -> tuple[float, ...]:
+    """Return what each main carries of a force at z, by the lever rule in the bay where it lies."""
+    weights = np.zeros(len(mains))
+    if len(mains):
+        right = min(max(int(np.searchsorted(mains, z)), 1), len(mains) - 1)
+        bay = mains[right] - mains[right - 1]
+        weights[right - 1], weights[right] = (mains[right] - z) / bay, (z - mains[right - 1]) / bay
+    return tuple(map(float, weights))
+
+
+def one_cylinder(machine: Scene | MultiCylinder) -> Scene:
+    """Return the scene of a machine's cylinder, or of a machine of one mechanism itself."""
+    return machine.engine if isinstance(machine, MultiCylinder) else machine
+
+
+def _engine_problems(engine: Any) -> list[str]:
+    if not isinstance(engine, Scene) or not isinstance(engine.mechanism, SliderCrank):
+        return [f"engine is a {type(engine).__name__}: must be a Scene of a SliderCrank"]
+    moving = [word for word in ("omega2", "alpha2") if _over_angle(getattr(engine, word))]
+    found = [f"engine.{word} = {said(getattr(engine, word))}: must be the same at every crank angle" for word in moving]
+    wrong = f'engine.drive = "{engine.drive}": must be "crank", which all cylinders share'
+    return found + ([wrong] if engine.drive != "crank" else [])
+
+
+def _no_list(value: Any) -> bool:
+    return is_array(value) or isinstance(value, str) or not isinstance(value, Iterable)
+
+
+def _over_angle(value: Any) -> bool:
+    return (callable(value) and not is_array(value)) or "theta2" in getattr(value, "dims", ())
+
+
+def _plain_problems(path: str, number: Any, rule: Rule) -> list[str]:
+    array = [f"{path} has dims: must be a number"] if is_array(number) and number.dims else []
+    return array or number_problems(path, number, rule)

@@ -1,0 +1,1 @@
+"""Bring functions and arrays to the angles, or positions, at which a scene is looked at."""

@@ -1,0 +1,233 @@
+"""What changes over the revolution: functions and DataArrays of theta2, brought to the angles of a sweep."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import Rule, is_quantity, number_problems, refuse
+from linksweep.engine.run import Grid
+from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
+
+Curves = dict[str, PeriodicCurve]
+"""The curves through a scene's arrays over theta2, by path: each is made when it is first needed."""
+
+LARGEST = 1e290
+"""Values from here on are not interpolated."""
+CLOSEST = 1e-9
+"""Degrees between two angles of an array, at least: they must still differ a period later."""
+TURNS = range(1, 13)
+"""After how many turns of the crank a function may come round."""
+WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
+"""Places in a turn at which a function's turns are compared; it may jump at the first."""
+
+
+def turns_of_function(function: Any, turn: float) -> int | None:
+    """Return after how many turns of the crank a function of theta2 comes round; None where after none of `TURNS`.
+
+    Then it repeats; or keeps its first value, as np.interp does beyond its data; or has its first value there. One that
+    fails, or is not finite, passes for a turn: what is wrong with it is said when it is swept.
+    """
+    angles = turn * (np.arange(2 * max(TURNS))[:, None] + WITHIN)
+    try:
+        with np.errstate(all="ignore"):
+            returned = function(angles.ravel())
+            values = np.broadcast_to(np.asarray(getattr(returned, "magnitude", returned), dtype=float), angles.size)
+    except Exception:
+        return 1
+    values = values.reshape(angles.shape)
+    near = 1e-9 * np.max(np.abs(values[: max(TURNS)]))
+
+    def same(some: np.ndarray, others: np.ndarray) -> bool:
+        return bool((np.abs(some - others) <= near).all())
+
+    first, within = values[0, 0], values[:, 1:]
+    tests: tuple[Callable[[int], bool], ...] = (
+        lambda n: same(within[n:], within[:-n]),
+        lambda n: same(values[n:], first),
+        lambda n: same(values[n, 0], first),
+    )
+    return next((n for test in tests for n in TURNS if test(n)), None) if np.isfinite(values).all() else 1
+
+
+def turning_problems(path: str, function: Any, turn: float) -> list[str]:
+    """Return what is wrong with a function of theta2 that does not come round, such as one of radians."""
+    if turns_of_function(function, turn):
+        return []
+    angles = turn * np.arange(3)
+    gives = ", ".join(f"{value:.6g} at {angle:g}" for value, angle in zip(function(angles), angles, strict=True))
+    return [
+        f"{path}: the function gives {gives} degrees: it must come round after some turns, at most {max(TURNS)}; "
+        "theta2 is in degrees, "
+        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for what starts anew"
+    ]
+
+
+def period_of_function(function: Any, turn: float) -> float:
+    """Return the period [degree] of a function of theta2."""
+    return turn * (turns_of_function(function, turn) or 1)
+
+
+def period_of(value: Any, shortest: float) -> float:
+    """Return the period [degree] of a DataArray over theta2: as many turns as its angles span."""
+    if "theta2" not in value.coords:
+        return shortest  # its values are those of the sweep's own angles
+    return shortest * max(np.ceil(np.ptp(value["theta2"].values) / shortest), 1.0)
+
+
+def at_angles(
+    path: str,
+    value: Any,
+    rule: Rule,
+    grid: Grid,
+    period: float,
+    interpolation: str | None = None,
+    curves: Curves | None = None,
+) -> Any:
+    """A function or DataArray of theta2 as a DataArray over the grid's angles; any other number as it is.
+
+    At angles that a DataArray does not hold it is interpolated (by a periodic cubic spline, unless `interpolation` says
+    otherwise), over as many turns of `period` degrees as its angles span; at angles that it holds, or that are whole
+    periods from them, its values come back to the bit. Its curve is kept in `curves`.
+
+    Raises
+    ------
+    ValueError
+        For values of the wrong shape or not finite, and for an array that cannot be brought to these angles.
+
+    Warns
+    -----
+    OvershootWarning
+        Where a spline leaves its data's range, when its curve is made.
+    """
+    if callable(value) and not hasattr(value, "dims"):
+        return called(path, value, rule, grid.angles)
+    if "theta2" not in getattr(value, "dims", ()):
+        return value
+    if "theta2" not in value.coords:
+        return _as_it_stands(path, value, grid)
+    known = value["theta2"].values
+    if len(known) == len(grid.angles) and np.array_equal(known, grid.angles):
+        return value
+    place = {angle: k for k, angle in enumerate(known)}
+    if all(angle in place for angle in grid.angles):
+        return value.isel(theta2=[place[angle] for angle in grid.angles])
+    curves = {} if curves is None else curves
+    if path not in curves:
+        curves[path] = curve_of(path, value, period, interpolation)
+        _warn_of_overshoot(path, curves[path].overshoot)
+    return over_grid(curves[path](grid.angles), value, grid)
+
+
+def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
+    """Values of a function of theta2 [degree] at these angles. Raises ValueError as `at_angles`."""
+    try:
+        returned = function(angles.copy())
+        values = np.asarray(getattr(returned, "magnitude", returned))
+    except Exception as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        raise ValueError(
+            f"{path}: the function failed on an array of theta2 in degrees ({said}); "
+            f"write it with numpy, as in lambda theta2: 5 * np.cos(np.radians(theta2))"
+        ) from error
+    if is_quantity(returned):
+        raise ValueError(f"{path}: the function returned a quantity in {returned.units}; it must return {rule.number}")
+    if values.shape not in ((), angles.shape):
+        raise ValueError(
+            f"{path}: the function returned shape {values.shape} for {len(angles)} angles; "
+            f"it must return {rule.number} for each angle"
+        )
+    sampled = xr.DataArray(np.broadcast_to(values, angles.shape), {"theta2": angles}, "theta2")
+    refuse([f"{problem}; its function returned it" for problem in number_problems(path, sampled, rule)])
+    return sampled.astype(float)
+
+
+def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
+    if value.sizes["theta2"] != len(grid.angles):
+        raise ValueError(
+            f"{path} has {value.sizes['theta2']} values over theta2 but no theta2 coordinate, and the sweep has "
+            f'{len(grid.angles)} angles: give it its angles with coords={{"theta2": degrees}}'
+        )
+    return value
+
+
+def curve_of(path: str, value: xr.DataArray, period: float, interpolation: str | None = None) -> PeriodicCurve:
+    """Return the curve through an array over theta2. Raises ValueError where its angles do not go all the way round."""
+    known, values = knots(value)
+    period, interpolation = period_of(value, period), interpolation or CUBIC
+    refuse(_slope_problems(path, known, values) or period_problems(path, known, values, period, interpolation))
+    last = -1 if known[-1] - known[0] == period else None  # repeats the first
+    return PeriodicCurve(known[:last], values[:last], period, interpolation)
+
+
+def _slope_problems(path: str, known: np.ndarray, values: np.ndarray) -> list[str]:
+    """Return why the slopes between values at angles in order would not be numbers."""
+    largest, closest = float(np.max(np.abs(values))), float(np.min(np.diff(known), initial=np.inf))
+    if largest >= LARGEST:
+        return [f"{path} holds {largest:.15g}: is interpolated, so it must be below {LARGEST:g}"]
+    return [f"{path}: two of its angles are {closest:g} degrees apart; give one"] if closest < CLOSEST else []
+
+
+def overshoot_of(value: xr.DataArray, period: float) -> float | None:
+    """Return how far the spline through an array leaves its range; None for angles that do not go all the way round."""
+    try:
+        return curve_of("", value, period).overshoot
+    except ValueError:
+        return None
+
+
+def _warn_of_overshoot(path: str, overshoot: float) -> None:
+    if overshoot <= RINGING:
+        return
+    instead = 'give its load interpolation = "pchip" (or "linear", "step"), or give it at more angles'
+    instead = instead if path.startswith("loads") else "give it at more angles, or as a function"
+    text = f"{path}: the spline through its values leaves their range by {100.0 * overshoot:.2g} % of it; {instead}"
+    warnings.warn(text, OvershootWarning, stacklevel=2)
+
+
+def corners(value: Any, interpolation: str | None) -> tuple[float, ...]:
+    """Return the angles [degree] at which an array over theta2 jumps (interpolation "step") or bends ("linear")."""
+    if interpolation not in ("step", "linear") or "theta2" not in getattr(value, "coords", ()):
+        return ()
+    known, values = knots(value)
+    jumps = (values != np.roll(values, 1, axis=0)).reshape(len(known), -1).any(axis=1)
+    return tuple(known[jumps if interpolation == "step" else jumps | np.roll(jumps, -1)].tolist())
+
+
+def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    """Angles [degree] of an array over theta2 in order, and its values with theta2 as their first axis."""
+    order = np.argsort(value["theta2"].values, kind="stable")
+    known = value["theta2"].values[order].astype(float)
+    return known, np.moveaxis(value.values.astype(float), value.dims.index("theta2"), 0)[order]
+
+
+def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
+    """Values at the grid's angles, theta2 as their first axis, with the other dims of an array."""
+    others = [dim for dim in like.dims if dim != "theta2"]
+    labels = {dim: like[dim].variable for dim in others if dim in like.coords}
+    return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
+
+
+def period_problems(
+    path: str, known: np.ndarray, values: np.ndarray, period: float, interpolation: str = CUBIC
+) -> list[str]:
+    """Why values at angles in order cannot be joined to a periodic curve. A step may hold for as long as it likes."""
+    said = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
+    span, steps = known[-1] - known[0], interpolation == "step"
+    least = 2 if steps else 3
+    if len(known) < least + (span == period) or span > period:
+        angles = f"{least} different angles within one period of {period:g} degrees"
+        return [f"{said} cannot be joined; give at least {angles}"]
+    if span == period and not np.array_equal(values[0], values[-1]):
+        return [
+            f"{path}: its values at {known[0]:g} and {known[-1]:g} degrees differ, but they are the same position; "
+            f"make them equal or leave one out"
+        ]
+    gap = np.diff(known, append=known[0] + period).max()
+    if gap > 0.5 * period and not steps:
+        return [f"{said} leave {gap:g} of {period:g} degrees open; give values all the way round"]
+    return []

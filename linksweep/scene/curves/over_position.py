@@ -1,0 +1,102 @@
+"""Loads over the position of a link: tables over `position`, and functions of it, brought to positions.
+
+Between its positions a table goes straight, or as the load's interpolation says; before the first and after the last
+one their values hold.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import Rule, is_array, number_problems, refuse, said
+from linksweep.scene.curves.interpolation import curve_through
+
+POSITION = "position"
+KINDS = ("linear", "pchip", "step")
+"""Interpolations of a table over positions, the default first."""
+
+
+def is_table(value: Any) -> bool:
+    return is_array(value) and POSITION in value.dims
+
+
+def is_function(value: Any) -> bool:
+    return callable(value) and not is_array(value)
+
+
+def table_problems(path: str, value: Any) -> list[str]:
+    """Return what is wrong with a number of a load that follows a position."""
+    if is_array(value) and "theta2" in value.dims:
+        return [f'{path} depends on theta2, but the load on a position: give it dims="{POSITION}", or leave out over']
+    if not is_table(value):
+        return []
+    if value.dims != (POSITION,) or POSITION not in value.coords:
+        shape = f'dims {value.dims}: must be over its positions alone, xarray.DataArray(values, {{"{POSITION}": [...]}}'
+        return [f'{path} has {shape}, "{POSITION}")']
+    places = value[POSITION].values
+    if places.dtype.kind not in "fiu" or not np.isfinite(places).all() or np.unique(places).size < max(2, places.size):
+        return [f"{path} has {POSITION} = {said(places.tolist())}: must hold two or more different finite numbers"]
+    return []
+
+
+def at_positions(
+    path: str, value: Any, rule: Rule, positions: xr.DataArray, kind: str, interpolation: str | None
+) -> Any:
+    """Return a table or function of positions at some of them, over their dims; any other number as it is.
+
+    Angles (`kind`) are taken by whole turns to the table's middle; a function has them in (-180, 180].
+
+    Raises
+    ------
+    ValueError
+        For a function that fails, or returns what is no number for each position.
+    """
+    if is_table(value):
+        known, values = _sorted(value)
+        middle = 0.5 * (known[0] + known[-1])
+        near = positions.values
+        near = middle + np.mod(near - middle + 180.0, 360.0) - 180.0 if kind == "angle" else near
+        return positions.copy(data=_looked_up(known, values, near, interpolation or KINDS[0]))
+    return _called(path, value, rule, positions) if is_function(value) else value
+
+
+def corners(value: Any, interpolation: str | None) -> list[float]:
+    """Return the positions at which a table jumps or bends; beyond its ends a value holds."""
+    if not is_table(value):
+        return []
+    known, values = _sorted(value)
+    jumps = np.append(False, np.diff(values) != 0.0)
+    if interpolation == "pchip":
+        return known[[0, -1]].tolist()
+    return known[jumps].tolist() if interpolation == "step" else known.tolist()
+
+
+def _sorted(table: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    ordered = table.sortby(POSITION)
+    return ordered[POSITION].values.astype(float), ordered.values.astype(float)
+
+
+def _looked_up(known: np.ndarray, values: np.ndarray, positions: np.ndarray, interpolation: str) -> np.ndarray:
+    held = np.clip(positions, known[0], known[-1])
+    if interpolation == "step":  # the last value holds, too
+        known, values = np.append(known, known[-1] + 1.0), np.append(values, values[-1])
+    return curve_through(interpolation, known, values)(held)
+
+
+def _called(path: str, function: Any, rule: Rule, positions: xr.DataArray) -> xr.DataArray:
+    known = np.isfinite(positions.values)
+    try:
+        values = np.broadcast_to(np.asarray(function(positions.values[known])), known.sum())
+    except Exception as error:
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        raise ValueError(
+            f"{path}: the function failed on an array of positions ({text}); "
+            f"write it with numpy, as in lambda x: np.where(x < 0.012, -5000.0, 0.0)"
+        ) from error
+    refuse(number_problems(path, xr.DataArray(values, dims=POSITION), rule))
+    found = np.full(known.shape, np.nan)
+    found[known] = values
+    return positions.copy(data=found)

@@ -1,0 +1,1 @@
+"""Draw designs from distributions, and choose some of them."""

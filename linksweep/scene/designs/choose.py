@@ -1,0 +1,74 @@
+"""One design out of a scene over many: by the labels of its dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import did_you_mean, refuse, said
+from linksweep.scene.parameters import replaced
+from linksweep.scene.scene import Scene
+
+
+def chosen(scene: Scene, where: Mapping[str, Any]) -> Scene:
+    """The scene at one label of each dimension named; what then has no dims left is a plain number.
+
+    Raises ValueError for an unknown dimension or label, and where the scene of plain numbers is refused.
+    """
+    labels = design_labels(scene)
+    at = places(where, labels)
+    values = {path: _number(array.isel(at, missing_dims="ignore")) for path, array in scene.arrays.items()}
+    if "branch" in at:
+        values["branch"] = str(labels["branch"][at["branch"]])
+    return replaced(scene, values)
+
+
+def design_labels(scene: Scene) -> dict[str, np.ndarray]:
+    """The labels of a scene's design dims; positions, from 0, where a dim has none."""
+    sizes = {str(dim): n for array in scene.arrays.values() for dim, n in array.sizes.items()}
+    sizes.pop(scene.mechanism.index, None)
+    return {dim: np.arange(n) for dim, n in sizes.items()} | {dim: item.values for dim, item in scene.labels.items()}
+
+
+def places(where: Mapping[str, Any], labels: Mapping[str, np.ndarray]) -> dict[str, int]:
+    """Positions of one label of each dimension named."""
+    at, problems = {}, []
+    for dim, label in where.items():
+        try:
+            at[dim] = _place(label, labels[dim])
+        except KeyError:
+            there = f"; there are {', '.join(labels)}" if labels else ""
+            problems.append(f"{dim}: no dimension of the designs is named so{did_you_mean(dim, labels) or there}")
+        except ValueError as error:
+            problems.append(f"{dim} = {error}")
+    refuse(problems)
+    return at
+
+
+def _place(label: Any, labels: np.ndarray) -> int:
+    """Position of a label: where it is exactly, or for a number to twelve digits."""
+    wanted = np.asarray(getattr(label, "values", label))
+    if wanted.ndim or isinstance(label, slice):
+        raise ValueError(f"{said(label)}: must be one label")
+    numeric = wanted.dtype.kind in "fiu" and labels.dtype.kind in "fiu"
+    found = np.flatnonzero(labels == wanted)
+    if numeric and not found.size:
+        found = np.flatnonzero(np.isclose(labels, wanted, rtol=1e-12, atol=0.0))
+    if found.size == 1:
+        return int(found[0])
+    said_label = said(wanted.item())
+    if found.size:
+        raise ValueError(f"{said_label}: {found.size} designs have this label; give them labels of their own")
+    nearest = (
+        f"nearest is {labels[np.argmin(abs(labels - wanted))]}"
+        if numeric
+        else f"first is {said(labels[:1].tolist()[0])}"
+    )
+    raise ValueError(f"{said_label}: must be one of its {labels.size} labels, of which the {nearest}")
+
+
+def _number(array: xr.DataArray) -> Any:
+    return array.reset_coords(drop=True) if array.dims else float(array)

@@ -1,0 +1,122 @@
+"""sample(scene, {...}, n): a scene over n designs, drawn evenly or by chance from what its parameters may be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.memory import require_memory
+from linksweep.base.validate import choice_problems, count_problems, name_problems, refuse, said
+from linksweep.scene.designs.distributions import spread_of
+from linksweep.scene.parameters import free, replaced
+from linksweep.scene.scene import Scene
+
+METHODS = ("sobol", "halton", "latin_hypercube", "random")
+FINEST = 2.0**-31
+"""Half of the finest step of scipy's Sobol points: 0 and 1, where a normal is infinite, are kept off by it."""
+
+
+def sample(
+    scene: Scene,
+    parameters: Mapping[str, Any],
+    n: int,
+    method: str = "sobol",
+    seed: int | None = 0,
+    dim: str = "design",
+) -> Scene:
+    """A scene over n designs, drawn from what its parameters may be.
+
+    Parameters
+    ----------
+    scene : Scene; parameters that are not named stay as they are, also those with dims of their own
+    parameters : what each may be, by its path ("coupler.length", "gravity[2]", "loads[1].force[1]", "omega2"):
+        a range (low, high), evenly; a list of values, each as likely as the others; `Normal(mean, deviation)`;
+        `Tolerance(lower, upper)` around the scene's own value; or any frozen distribution of scipy.stats.
+        Numbers are in the parameter's unit, or text with a unit: ("8 cm", "12 cm")
+    n : how many designs
+    method : "sobol", "halton" and "latin_hypercube" fill the space more evenly than "random" does (scipy.stats.qmc,
+        scrambled). Sobol points are at their best where n is a power of two; any n will do
+    seed : the same seed gives the same designs, to the bit; None gives others each time
+    dim : name of the dimension of the designs, which they are numbered along from 0
+
+    Returns
+    -------
+    Scene whose sampled parameters are DataArrays over `dim`, each independent of the others.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter that is unknown or whose range is none, and for values that the scene refuses,
+        with how many of the n there are.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> may_be = {"coupler.length": ("20 cm", "24 cm"), "crank.length": ls.Normal(deviation=1e-4), "omega2": [20, 30]}
+    >>> made = ls.sample(ls.example("press"), may_be, n=1024)
+    >>> dict(ls.peaks(made, of=["F32"]).F32_peak.sizes)
+    {'design': 1024}
+    """
+    refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
+    own = free(scene)
+    refuse(_problems(scene, parameters, n, method, seed, dim, own))
+    require_memory(f"n = {said(n)}", 2.0 * 8.0 * n * len(parameters))
+    points = _points(method, len(parameters), int(n), seed)
+    values, problems = {}, []
+    for levels, (path, given) in zip(points, parameters.items(), strict=True):
+        try:
+            values[path] = _drawn(given, levels, dim, *own[path])
+        except ValueError as error:
+            problems.append(f"{path}: {error}")
+    refuse(problems)
+    try:
+        return replaced(scene, values)
+    except ValueError as error:
+        raise ValueError("\n".join(_advised(line, parameters) for line in str(error).split("\n"))) from None
+
+
+def _drawn(given: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
+    spread = spread_of(given)
+    if spread.around and (own is None or (callable(own) and not hasattr(own, "dims"))):
+        raise ValueError(f"{said(given)} is around the scene's own value, {said(own)}: give it a number")
+    drawn = xr.DataArray(spread.at(levels, kind), {dim: np.arange(len(levels))}, dim)
+    return own + drawn if spread.around else drawn
+
+
+def _problems(scene: Scene, parameters: Any, n: Any, method: Any, seed: Any, dim: Any, own: Mapping) -> list[str]:
+    if not isinstance(parameters, Mapping) or not parameters:
+        return [f'parameters = {said(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}']
+    found = [problem for path in parameters for problem in name_problems("parameters", path, own)]
+    found += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
+    found += choice_problems("method", method, METHODS)
+    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
+    if seed is not None and not (whole and seed >= 0):
+        found.append(f"seed = {said(seed)}: must be a whole number, 0 or more, or None")
+    taken = {dim for array in scene.arrays.values() for dim in array.dims}
+    if dim in taken | {scene.mechanism.index, *scene.mechanism.coordinates()}:
+        found.append(f'dim = {said(dim)}: the scene has this dimension already; give another name, as dim="other"')
+    return found
+
+
+def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:
+    """Points of the unit cube, one row a dimension."""
+    random = np.random.default_rng(seed)
+    if method == "random":
+        points = random.random((n, dims))
+    else:
+        from scipy.stats import qmc  # here: it is slow to import
+
+        engines = {"sobol": qmc.Sobol, "halton": qmc.Halton, "latin_hypercube": qmc.LatinHypercube}
+        engine = engines[method](dims, seed=random)
+        # scipy draws Sobol points by powers of two, or warns; the first n of more are the same points
+        points = engine.random_base2((n - 1).bit_length())[:n] if method == "sobol" else engine.random(n)
+    return np.clip(points.T, FINEST, 1.0 - FINEST)
+
+
+def _advised(line: str, parameters: Mapping[str, Any]) -> str:
+    """What the scene says of a value that was drawn, with what to do about it."""
+    drawn = any(line.startswith((f"{path} =", f"{path} holds")) for path in parameters)
+    return f"{line}; or draw from a range (low, high), or from ls.Normal(..., within=3)" if drawn else line

@@ -1,0 +1,201 @@
+"""A column of a CSV file as a DataArray over theta2: an indicator diagram, a measured torque.
+
+::
+
+    theta2,P
+    0,11.2
+    5,12.9
+    ...
+
+The first line names the columns; the first column is theta2 [degree], in rising order, over one turn (360) or
+several. The last row may close the cycle by repeating the first. In a scene file the column stands in place of a
+number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column`
+may be left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes
+on between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
+The first column of a load over a position is `position` [m] or [degree], in rising order.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import did_you_mean, name_problems, refuse
+from linksweep.scene.curves.interpolation import interpolation_attribute
+from linksweep.scene.file.text_file import text_of
+from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
+
+KEYS = ("csv", "column", "unit", "interpolation")
+LONGEST_CELL = 1000
+"""Characters that a cell may have."""
+MOST_SHOWN = 5
+"""Bad cells of a file that a message lists one by one."""
+
+
+class Row(NamedTuple):
+    line: int
+    cells: list[str]
+
+
+class Sample(NamedTuple):
+    line: int
+    angle: float
+    value: float
+
+
+def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
+    """Read the inline table that stands in place of a number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``.
+
+    Parameters
+    ----------
+    table : dict
+        `csv`, the file; `column`, its name in the first line; `unit` of its values; their `interpolation`.
+    kind : str
+        What is measured: a key of `KINDS`.
+    folder : Path
+        What the file's place is relative to.
+
+    Returns
+    -------
+    DataArray
+        Values [`KINDS[kind].unit`] over theta2 [degree], or position; the interpolation among its attributes.
+
+    Raises
+    ------
+    ValueError
+        One problem a line, each starting with its key in the table; those of the file with its name and line.
+    """
+    listed = f"; a CSV column has {', '.join(KEYS)}"
+    refuse([f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
+    unit, attributes = _unit(table, kind), interpolation_attribute(table)
+    if not isinstance(table["csv"], str) or not table["csv"].isprintable():
+        raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
+    name, rows = table["csv"], _rows(table["csv"], folder)
+    samples = _samples(name, rows, _column(table, rows[0].cells))
+    over = rows[0].cells[0]
+    refuse(_order_problems(name, samples, over))
+    if over == "theta2":
+        refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
+    angles = np.array([sample.angle for sample in samples])
+    values = [_in_si(name, sample, kind, unit) for sample in samples]
+    return xr.DataArray(values, {over: angles}, over, attrs=attributes)
+
+
+def _unit(table: dict[str, Any], kind: str) -> str | None:
+    try:
+        return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
+    except ValueError as error:
+        raise ValueError(f"unit = {shown(table['unit'])}: {error}") from None
+
+
+def _rows(name: str, folder: Path) -> list[Row]:
+    """The lines of the file that hold something, with their numbers."""
+    text = text_of(folder / name, f"csv: {name}", ".csv", f" in {folder}", "; give its place from there")
+    header = next((line for line in text.splitlines() if line.strip()), "")
+    delimiter = max(",;\t", key=header.count)
+    reader = csv.reader(text.splitlines(), delimiter=delimiter)
+    rows = []
+    try:
+        for cells in reader:
+            row = Row(reader.line_num, [cell.strip() for cell in cells])
+            if max(map(len, row.cells), default=0) > LONGEST_CELL:
+                raise ValueError(f"csv: {name}:{row.line}: a cell has more than {LONGEST_CELL} characters")
+            rows += [row] * any(row.cells)
+    except csv.Error as error:
+        raise ValueError(f"csv: {name}:{reader.line_num}: cannot be read as CSV: {error}") from None
+    refuse(_header_problems(name, rows))
+    return rows
+
+
+def _header_problems(name: str, rows: list[Row]) -> list[str]:
+    """Why the first line does not name the columns; the file may be another, of which no word is told."""
+    line, cells = rows[0] if rows else (1, [])
+    if cells[:1] in (["theta2"], ["position"]) and len(cells) > 1:
+        return []
+    known = [cell for cell in cells if "theta" in cell.lower()]
+    there = f"its columns are {', '.join(map(shown, cells))}: " if known else ""
+    must = "the first line must name the columns, the first of them theta2 (in degrees) or position, as in theta2,P"
+    return [f"csv: {name}:{line}: {there}{must}"]
+
+
+def _column(table: dict[str, Any], header: list[str]) -> int:
+    """Place of the column asked for."""
+    if "column" not in table:
+        listed = ", ".join(header[1:])
+        refuse([] if len(header) == 2 else [f"csv: column is missing; write column = one of {listed}"])
+        return 1
+    refuse(name_problems("column", table["column"], header[1:]))
+    return header.index(table["column"])
+
+
+def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:
+    header, *body = rows
+    found, samples = [], []
+    for line, cells in body:
+        if len(cells) != len(header.cells):
+            found.append(f"csv: {name}:{line}: has {len(cells)} cells, but the first line names {len(header.cells)}")
+            continue
+        angle, value = _number(cells[0]), _number(cells[column])
+        for k, number in {0: angle, column: value}.items():
+            if not math.isfinite(number):
+                comma = ", with a decimal point" if "," in cells[k] else ""
+                found.append(f"csv: {name}:{line}: {header.cells[k]} = {shown(cells[k])}: must be a number{comma}")
+        samples.append(Sample(line, angle, value))
+    more = [f"csv: {name}: and {len(found) - MOST_SHOWN} more lines like these"] if len(found) > MOST_SHOWN else []
+    refuse(found[:MOST_SHOWN] + more)
+    return samples
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
+
+
+def _in_si(name: str, sample: Sample, kind: str, unit: str | None) -> float:
+    try:
+        return quantity(sample.value, kind, unit)
+    except ValueError as error:
+        raise ValueError(f"csv: {name}:{sample.line}: {error}") from None
+
+
+def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
+    """Return whether the angles, or positions, rise."""
+    rises = np.diff([sample.angle for sample in samples])
+    if len(rises) < 1:
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 2"]
+    if not (rises > 0.0).all():
+        k = int(np.argmin(rises > 0.0))
+        twice = (
+            "stands twice: give each angle once" if rises[k] == 0.0 else "is less than the one before: sort the rows"
+        )
+        return [f"csv: {name}:{samples[k + 1].line}: {over} = {samples[k + 1].angle:.15g} {twice}"]
+    return []
+
+
+def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
+    """Return whether angles go all the way round, in one turn or several; steps hold as long as they like."""
+    if len(samples) < 4 and not steps:
+        return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
+    angles = np.array([sample.angle for sample in samples])
+    rises = np.diff(angles)
+    span = float(angles[-1] - angles[0])
+    period = 360.0 * max(np.ceil(span / 360.0), 1.0)
+    open_ = period - span > 1.5 * rises.max() or rises.max() > 180.0
+    if span > period or (open_ and not steps):
+        return [
+            f"csv: {name}: its angles run from {angles[0]:.15g} to {angles[-1]:.15g} degrees, steps at most "
+            f"{rises.max():.6g}: they must go round whole turns (360, 720, …)"
+        ]
+    if span == period and samples[0].value != samples[-1].value:
+        return [
+            f"csv: {name}:{samples[-1].line}: its values at {angles[0]:.15g} and {angles[-1]:.15g} degrees differ, but "
+            f"they are the same position; make them equal or leave one out"
+        ]
+    return []

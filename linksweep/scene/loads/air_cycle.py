@@ -1,0 +1,221 @@
+"""Ideal air-standard cycles: the pressure in a cylinder over the crank angle, from the slider-crank's own volume.
+
+With x the slider's distance from top dead centre and r the compression ratio, V/Vc = 1 + (r − 1)·x/stroke. Then
+
+    compression  p = p1·(r·Vc/V)^γ                      from bottom dead centre, p1 the intake pressure
+    combustion   up to p3 at top dead centre (Otto), or at p3 = p1·r^γ until V = cutoff·Vc (Diesel)
+    expansion    p = p3·(cutoff·Vc/V)^γ                 to bottom dead centre, where it blows down to p1
+    exhaust and intake at p1                            a further revolution, in four strokes
+
+Combustion at top dead centre and blow-down at bottom dead centre take no time: there the pressure jumps, and the
+sample at that very angle has the value after the jump.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.conversion import all_to_float64
+from linksweep.base.degrees import cos_sin
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import Number, as_float, is_lazy, parameter, problems, said
+from linksweep.mechanisms import SliderCrank
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN
+from linksweep.scene.dimensions import dims_of
+from linksweep.scene.parameters import along, bare, numbers
+
+ATMOSPHERE = 101325.0
+
+
+@dataclass(frozen=True, eq=False)
+class OttoCycle(ByContent):
+    """Ideal Otto cycle: isentropic compression and expansion, all the heat at top dead centre.
+
+    Parameters
+    ----------
+    compression_ratio : largest over least volume [1]
+    peak_pressure : right after combustion [Pa]
+    intake_pressure : of intake and exhaust, absolute [Pa]
+    gamma : ratio of the specific heats [1]
+    strokes : 4 (the cycle takes 720 degrees) or 2 (360)
+
+    Numbers may be DataArrays of design dims; a ValueError of the scene that takes it says what is wrong with them. It
+    fires at the top dead centre of the first revolution, where the crank points along the guide to the head. A crank
+    with omega2 < 0 runs through the same strokes, clockwise.
+
+    Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> engine = ls.SliderCrank(ls.Link(0.04, 1, 0), ls.Link(0.14, 1, 0), slider_mass=0.5)
+    >>> cycle = ls.OttoCycle(compression_ratio=8.0, peak_pressure=5e6)
+    >>> cycle.pressure(engine, [0.0, 180.0, 540.0]).values.round().tolist()
+    [5000000.0, 101325.0, 101325.0]
+    """
+
+    compression_ratio: Number = parameter("dimensionless", above=1.0)
+    peak_pressure: Number = parameter("pressure", above=0.0)
+    intake_pressure: Number = parameter("pressure", ATMOSPHERE, above=0.0)
+    gamma: Number = parameter("dimensionless", 1.4, above=1.0)
+    strokes: int = 4
+
+    @property
+    def period(self) -> float:
+        return 180.0 * float(self.strokes)
+
+    def problems(self, path: str) -> list[str]:
+        found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = found or _compression_problems(path, self)
+        end = "" if found else _below(self.peak_pressure, _compressed(self))
+        return found or ([f"{path}.peak_pressure = {end}"] if end else [])
+
+    def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
+        """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
+        return _labelled(self, engine, theta2, turning)
+
+    @property
+    def combustion(self) -> tuple[Number, Number]:
+        """Pressure after it [Pa], and how far it lasts: volume over the least."""
+        return self.peak_pressure, 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class DieselCycle(ByContent):
+    """Ideal Diesel cycle: isentropic compression and expansion, heat at constant pressure until the cutoff.
+
+    Parameters
+    ----------
+    compression_ratio : largest over least volume [1]
+    cutoff_ratio : volume at the end of combustion over the least [1], at most the compression ratio
+    peak_pressure : during combustion [Pa]; default: that at the end of compression. Where given it is larger, and part
+        of the heat comes at constant volume (mixed, or Seiliger cycle).
+    intake_pressure, gamma, strokes : as `OttoCycle`
+
+    It fires, and its numbers are checked, as those of an `OttoCycle`. Source: textbook air-standard analysis.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> engine = ls.SliderCrank(ls.Link(0.04, 1, 0), ls.Link(0.14, 1, 0), slider_mass=0.5)
+    >>> cycle = ls.DieselCycle(compression_ratio=18.0, cutoff_ratio=2.0, intake_pressure=1e5)
+    >>> cycle.pressure(engine, [0.0, 10.0]).values.round().tolist()
+    [5719809.0, 5719809.0]
+    """
+
+    compression_ratio: Number = parameter("dimensionless", above=1.0)
+    cutoff_ratio: Number = parameter("dimensionless", above=1.0)
+    peak_pressure: Number | None = parameter("pressure", None, above=0.0)
+    intake_pressure: Number = parameter("pressure", ATMOSPHERE, above=0.0)
+    gamma: Number = parameter("dimensionless", 1.4, above=1.0)
+    strokes: int = 4
+
+    @property
+    def period(self) -> float:
+        return 180.0 * float(self.strokes)
+
+    def problems(self, path: str) -> list[str]:
+        found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = found or _compression_problems(path, self)
+        over = False if found else self.cutoff_ratio > self.compression_ratio
+        if not is_lazy(over) and np.any(over):
+            largest = float(np.max(self.cutoff_ratio))
+            found.append(f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it")
+        end = "" if found or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
+        return found or ([f"{path}.peak_pressure = {end}"] if end else [])
+
+    def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
+        """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
+        return _labelled(self, engine, theta2, turning)
+
+    @property
+    def combustion(self) -> tuple[Number, Number]:
+        """Pressure during it [Pa], and how far it lasts: volume over the least."""
+        return _compressed(self) if self.peak_pressure is None else self.peak_pressure, self.cutoff_ratio
+
+
+Cycle = OttoCycle | DieselCycle
+
+
+def pressure_over(cycle: Cycle, engine: SliderCrank, angles: np.ndarray, turning: Number) -> xr.Variable:
+    """Pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
+
+    NaN for designs whose crank does not turn fully. The module's equations.
+    """
+    lengths = engine.slide_angle, engine.offset, engine.crank.length, engine.rod.length
+    given = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
+    dims = (*(dim for dim in dims_of((turning, *lengths, *given)) if dim != "theta2"), "theta2")
+    cycle, engine, turning = along(cycle, dims), along(engine, dims), along(turning, dims)
+    (peak, cutoff), (top, bottom) = cycle.combustion, engine.dead_centres()
+    opened = np.where(engine.turns_fully, _opened(engine, angles), np.nan)
+    turned, bottom = np.mod(turning * (angles - top), cycle.period), np.mod(turning * (bottom - top), 360.0)
+    volume = 1.0 + (cycle.compression_ratio - 1.0) * opened  # over the least
+    expansion = peak * np.minimum(1.0, cutoff / volume) ** cycle.gamma
+    compression = cycle.intake_pressure * (cycle.compression_ratio / volume) ** cycle.gamma
+    opens = bottom + (360.0 if cycle.strokes == 4 else 0.0)  # from blow-down to here the valves are open
+    later = np.where(turned < opens, cycle.intake_pressure, compression)
+    later = np.where(np.isnan(opened), np.nan, later)
+    return xr.Variable(dims, np.where(turned < bottom, expansion, later))
+
+
+def _opened(engine: SliderCrank, angles: np.ndarray) -> np.ndarray:
+    """The slider's distance from top dead centre over its stroke."""
+    a, b, e = engine.crank.length, engine.rod.length, engine.offset
+    sign, (cos, sin) = BRANCH_SIGN[engine.branch], cos_sin(angles - engine.slide_angle)
+    with np.errstate(all="ignore"):
+        reach, least = np.sqrt((a + b) * (a + b) - e * e), np.sqrt((b - a) * (b - a) - e * e)
+        opened = (reach - sign * a * cos - np.sqrt(b * b - (e - a * sin) ** 2)) / (reach - least)
+    return np.clip(opened, 0.0, 1.0)
+
+
+def _labelled(cycle: Cycle, engine: SliderCrank, theta2: Any, turning: Number) -> xr.DataArray:
+    """Pressure over crank angles [degree], with all labels."""
+    angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
+    pressure = pressure_over(cycle, engine, angles, turning)
+    arrays = [number for owner in (cycle, engine) for _, number, _ in numbers(owner)] + [turning]
+    labels = {
+        dim: array[dim].variable
+        for array in arrays
+        if isinstance(array, xr.DataArray)
+        for dim in array.dims
+        if dim in array.coords and dim in pressure.dims
+    }
+    return xr.DataArray(pressure, labels | {"theta2": angles})
+
+
+def _compressed(cycle: Cycle) -> Number:
+    """Pressure at the end of compression [Pa]."""
+    try:
+        with np.errstate(over="ignore"):
+            return cycle.intake_pressure * cycle.compression_ratio**cycle.gamma
+    except OverflowError:
+        return np.inf
+
+
+def _compression_problems(path: str, cycle: Cycle) -> list[str]:
+    """Return why the compression can't be computed."""
+    compressed = _compressed(cycle)
+    if is_lazy(compressed) or np.isfinite(compressed).all():
+        return []
+    largest = f"{float(np.max(cycle.compression_ratio)):.15g}"
+    return [f"{path}.compression_ratio = {largest}: compresses to more than 1.8e308 Pa; reduce it, or gamma"]
+
+
+def _below(peak: Number, compressed: Number) -> str:
+    """What is wrong with a peak pressure that compression alone exceeds."""
+    peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
+    if is_lazy(peak) or is_lazy(compressed) or not (short := (peak < compressed).values).any():
+        return ""
+    k = int(np.argmax(short))
+    least = f"{compressed.values.reshape(-1)[k]:.6g} Pa"
+    return f"{peak.values.reshape(-1)[k]:.15g} Pa: must be at least {least}, what compression alone gives"
+
+
+def _stroke_problems(path: str, strokes: object) -> list[str]:
+    if as_float(strokes) in (2.0, 4.0):
+        return []
+    return [f"{path}.strokes = {said(strokes)}: must be 4 or 2"]

@@ -1,0 +1,56 @@
+"""Loads whose numbers may change over the revolution: how arrays go on between their angles, and where they jump."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linksweep.base.validate import (
+    Number,
+    Rule,
+    choice_problems,
+    is_array,
+    plain_numbers_problems,
+    said,
+)
+from linksweep.mechanisms import Mechanism
+from linksweep.scene.curves.interpolation import INTERPOLATIONS
+from linksweep.scene.curves.over_angle import corners
+from linksweep.scene.loads.action import Action
+
+BREAK = Rule("angle")
+
+
+class ChangingLoad(Action):
+    """A load with an `interpolation`, by default that of its arrays, attrs["interpolation"]; and with `breaks`."""
+
+    interpolation: str | None
+    breaks: tuple[float, ...]
+
+    @property
+    def changing(self) -> tuple[Any, ...]:
+        """Those of its numbers that may change over the revolution."""
+        raise NotImplementedError
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.interpolation is None:
+            object.__setattr__(self, "interpolation", next(iter(self._of_arrays()), None))
+
+    def changing_problems(self, path: str) -> list[str]:
+        """Return what is wrong with the breaks and the interpolation of a load at this path."""
+        found = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
+        if self.interpolation is None:
+            return found
+        found += choice_problems(f"{path}.interpolation", self.interpolation, INTERPOLATIONS)
+        others = [f"one is {said(other)}" for other in self._of_arrays() if other != self.interpolation]
+        others += ["one is a function" for number in self.changing if callable(number) and not is_array(number)]
+        kind = f"{path}.interpolation = {said(self.interpolation)}: is that of all its arrays, but"
+        return found + [f"{kind} {other}; give that a load of its own" for other in others[:1]]
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Return the breaks, and the crank angles [degree] at which its arrays jump, or bend."""
+        return (*self.breaks, *(angle for array in self.changing for angle in corners(array, self.interpolation)))
+
+    def _of_arrays(self) -> list[Any]:
+        attributes = (getattr(number, "attrs", {}) for number in self.changing)
+        return [own["interpolation"] for own in attributes if "interpolation" in own]

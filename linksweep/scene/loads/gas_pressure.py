@@ -1,0 +1,126 @@
+"""Gas pressure on the slider of a slider-crank: what an engine, a pump or a compressor has in its cylinder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast
+
+import numpy as np
+
+from linksweep.base.validate import Number, Rule, overflow_problems, parameter, problems
+from linksweep.mechanisms import Mechanism, SliderCrank
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN
+from linksweep.mechanisms.rows.load_forms import LoadForm
+from linksweep.scene.loads.action import Revolution, with_sound
+from linksweep.scene.loads.air_cycle import ATMOSPHERE, Cycle, pressure_over
+from linksweep.scene.loads.changing_load import ChangingLoad
+
+PRESSURE = Rule("pressure", over_angle=True)
+
+
+@dataclass(frozen=True, eq=False)
+class GasPressure(ChangingLoad):
+    """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
+
+    Parameters
+    ----------
+    bore : diameter of the cylinder [m]
+    pressure : in the cylinder, absolute [Pa]: a number, a DataArray, a function of theta2 [degree], or an `OttoCycle`
+        or `DieselCycle`, which need no data
+    crankcase : pressure on the other side of the piston, absolute [Pa]
+    breaks : angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`
+    interpolation : of DataArrays over theta2, as that of a `Load`
+
+    The force acts at C along the guide, (p − crankcase)·π·bore²/4. The head is where the rod reaches farthest: ahead
+    of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
+    direction; with branch "crossed" the head is behind, and pressure pushes it forward.
+
+    A DataArray over theta2 that spans two turns makes the scene's period 720, and so does a cycle of four strokes.
+
+    In a study, a design whose crank does not turn fully has no ideal cycle: none of its samples is ok (status
+    `no_cycle` where it can be assembled), and its forces are NaN.
+
+    Raises
+    ------
+    ValueError
+        By the scene that takes it: for a mechanism without such a cylinder, branch="both", numbers out of bounds,
+        and a cycle in an engine whose crank does not turn fully.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> engine = ls.SliderCrank(ls.Link(0.04, 1, 0), ls.Link(0.14, 1, 0), slider_mass=0.5)
+    >>> gas = ls.GasPressure(bore=0.086, pressure=ls.OttoCycle(compression_ratio=10.0, peak_pressure=6e6))
+    >>> ls.Scene(engine, omega2=300.0, loads=[gas]).period
+    720.0
+    """
+
+    bore: Number = parameter("length", above=0.0)
+    pressure: Number | Cycle = parameter("pressure", over_angle=True)
+    crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
+    breaks: tuple[float, ...] = ()
+    interpolation: str | None = None
+
+    in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
+
+    @property
+    def changing(self) -> tuple[Any, ...]:
+        return self.pressure, self.crankcase
+
+    @property
+    def form(self) -> LoadForm:
+        return LoadForm("slider", force=True, torque=False, link_axes=True, full_turns=self.cycle is not None)
+
+    @property
+    def cycle(self) -> Cycle | None:
+        return self.pressure if isinstance(self.pressure, Cycle) else None
+
+    @property
+    def period(self) -> float:
+        return self.cycle.period if self.cycle else 0.0
+
+    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
+        of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
+        found = problems(given, path + ".")
+        with np.errstate(over="ignore"):
+            found = found or overflow_problems(f"{path}.bore", self.bore * self.bore, "square")
+        return found + of_cycle + self.changing_problems(path)
+
+    def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
+        if not isinstance(mechanism, SliderCrank):
+            kind = type(mechanism).__name__
+            return [f"{path} is a GasPressure on a {kind}: must be on a SliderCrank; give the {kind} a Load"]
+        if mechanism.branch not in BRANCH_SIGN:
+            return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
+        turns = mechanism.turns_fully
+        if self.cycle and not hasattr(turns, "dims") and not turns:
+            return [
+                f"{path}.pressure is a cycle, which takes full turns of the crank: rod.length must be greater than "
+                f"crank.length + |offset|; make the rod longer"
+            ]
+        return []
+
+    def sampled(self, path: str, revolution: Revolution) -> GasPressure:
+        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE, self.interpolation)
+        if self.cycle is None:
+            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
+            return with_sound(self, pressure=pressure, crankcase=crankcase)
+        brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
+        pressure = pressure_over(self.cycle, engine, revolution.grid.angles, revolution.turning)
+        object.__setattr__(brought, "in_cylinder", pressure)
+        return brought
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
+        dead_centres = cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
+        return (*dead_centres, *super().jumps(mechanism))
+
+    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""
+        pressure = self.in_cylinder if self.cycle else self.pressure
+        area = 0.25 * math.pi * (self.bore * self.bore)
+        force = machine["branch_sign"] * (self.crankcase - pressure) * area
+        return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}

@@ -1,0 +1,214 @@
+"""Loads: a force at a point of a link, a torque on a link, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, cast
+
+import xarray as xr
+
+from linksweep.base.conversion import PAIRS, as_pair
+from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import Number, Rule, choice_problems, pair_problems, parameter, problems, said
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, CrankDriven
+from linksweep.mechanisms.rows.load_forms import LoadForm
+from linksweep.mechanisms.strokes import Stroke
+from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
+from linksweep.scene.curves.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
+from linksweep.scene.loads.action import Revolution, with_values
+from linksweep.scene.loads.changing_load import ChangingLoad
+from linksweep.scene.units import unit_problems
+
+FORCE = Rule("force", over_angle=True)
+TORQUE = Rule("torque", over_angle=True)
+FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
+AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
+AT_ANGLES: dict[str, Any] = {"over": None, "while_": None, "breaks": (), "interpolation": None}
+"""Words of a load over a position once it has been brought to crank angles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Load(ChangingLoad):
+    """A force at a point of a link, a torque on it, or both, besides weight and inertia.
+
+    Parameters
+    ----------
+    link : the link it acts on, by name ("crank", "coupler", "rocker")
+    force : (Fx, Fy) [N], or None for no force; on a slider also one number, along the guide (frame "link")
+    at : the point, in the link's own polar coordinates: (distance [m], angle from the line of pins [degree])
+    frame : axes of the force: "ground", or "link" (x along the line of pins)
+    torque : [N m], positive counter-clockwise, or None for no torque
+    origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
+    breaks : angles theta2 [degree] at which the force or torque jumps, or is narrower than 0.02 degrees, in a list:
+        exact peaks look at both sides of each, and closely between them
+    interpolation : of DataArrays over theta2, at angles that they do not hold: "periodic cubic" (spline, by default),
+        "pchip" (monotone between neighbours, does not ring), "linear", or "step" (each value holds from its angle up
+        to the next)
+
+    over : None, or the position that force and torque follow in place of the crank angle: on a `SliderCrank`
+        "slider.position" (`x_slider`, along the guide from the foot of A on it) or "slider.to_end" (what is left to the
+        outer dead centre, where crank and rod are stretched) [m]; on a `FourBar` "rocker.angle" (`theta4`) [degree]; on
+        an `InvertedSliderCrank` "block.position" (`slide`) [m]
+    while_ : None, or the way on which it acts: "closing" (the slider goes towards its outer dead centre) or "opening";
+        of a block "extending" (it goes away from the rocker's pivot) or "retracting"; of a rocker "counter-clockwise"
+        or "clockwise"
+
+    Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
+    point may be DataArrays of design dims. A DataArray over theta2 is reproduced exactly at angles that it holds. Its
+    period is one turn, or as many as its angles span (two in a four-stroke engine): then theta2 of the whole scene runs
+    over these, and what comes round sooner repeats. Values are checked by the scene that takes the load, with a
+    ValueError there.
+
+    A load over a position may be a number, a DataArray over the dim "position" alone, in [m] or [degree], or a function
+    of it. Between its positions an array is interpolated "linear" (by default), "pchip" or "step"; before its first and
+    after its last position their values hold. `breaks` are positions, too. Each design has its own crank angles for it:
+    exact peaks look at both sides of those where an array bends or jumps, and where the link turns round.
+
+    A spline through a load with steps rings. Where one leaves its data's range by more than 1 % of it, it warns
+    (`OvershootWarning`) when it is first used, and `linksweep.check` tells by how much.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Load("coupler", force=(0.0, -80.0), at=(0.10, 15.0)).frame
+    'ground'
+
+    A press pushes over the last 12 mm before its outer dead centre, whatever its offset.
+
+    >>> import xarray as xr
+    >>> push = xr.DataArray([-50e3, 0.0], {"position": [0.0, 0.012]}, "position")
+    >>> press = ls.Load("slider", force=push, over="slider.to_end", while_="closing", interpolation="step")
+    """
+
+    link: str
+    force: tuple[Number, Number] | None = None
+    at: tuple[Number, Number] = (0.0, 0.0)
+    frame: str = "ground"
+    torque: Number | None = parameter("torque", None, over_angle=True)
+    origin: str = "pin"
+    breaks: tuple[float, ...] = ()
+    interpolation: str | None = None
+    over: str | None = None
+    while_: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "force", as_pair(self.force, PAIRS["force"]))
+        on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
+        if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
+            object.__setattr__(self, "force", (self.force, 0.0))
+            object.__setattr__(self, "frame", "link")
+        super().__post_init__()
+
+    @property
+    def changing(self) -> tuple[Any, ...]:
+        components = self.force if isinstance(self.force, tuple | list) else ()
+        return (*components, self.torque)
+
+    @property
+    def over_positions(self) -> tuple[Any, ...]:
+        curves = () if self.over is None else self.changing
+        return tuple(number for number in curves if is_table(number) or is_function(number))
+
+    @property
+    def form(self) -> LoadForm:
+        return LoadForm(self.link, self.force is not None, self.torque is not None, self.frame == "link")
+
+    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        found = choice_problems(f"{path}.link", self.link, links)
+        found += choice_problems(f"{path}.frame", self.frame, ("ground", "link"))
+        found += choice_problems(f"{path}.origin", self.origin, ("pin", "cg"))
+        found += self.changing_problems(path) + self._position_problems(path)
+        if self.force is None and self.torque is None:
+            found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
+        if self.force is not None:
+            found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), FORCE_PAIR)
+        return (
+            found
+            + problems(self, path + ".")
+            + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
+        )
+
+    def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
+        if self.over is None:
+            return []
+        machine = cast(CrankDriven, mechanism)
+        if machine.branch not in BRANCH_SIGN:
+            return [f'{path}.over = {said(self.over)}: is a position of one branch; give branch="open" or "crossed"']
+        found = choice_problems(f"{path}.over", self.over, machine.strokes)
+        if found:
+            return found
+        stroke = machine.strokes[self.over]
+        for at, number in self._changing_at(path):
+            said_unit = number[POSITION].attrs.get("units") if is_table(number) else None
+            found += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
+        return found + ([] if self.while_ is None else choice_problems(f"{path}.while_", self.while_, stroke.words))
+
+    def _position_problems(self, path: str) -> list[str]:
+        if self.over is None:
+            advice = 'give the position that it means, as in over="slider.position"'
+            return [] if self.while_ is None else [f"{path}.while_ = {said(self.while_)}: {advice}"]
+        known = self.interpolation is None or self.interpolation in POSITION_KINDS
+        periodic = [] if known else choice_problems(f"{path}.interpolation", self.interpolation, POSITION_KINDS)
+        return periodic + [p for at, number in self._changing_at(path) for p in table_problems(at, number)]
+
+    def _changing_at(self, path: str) -> list[tuple[str, Any]]:
+        """Numbers that may change over the revolution, with their paths."""
+        forces = [(f"{path}.force[{k}]", force) for k, force in enumerate(self.changing[:-1], 1)]
+        return [*forces, (f"{path}.torque", self.torque)]
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        if self.over is None:
+            return super().jumps(mechanism)
+        stroke = self._stroke(mechanism)
+        places = {*self.breaks, *(place for number in self.changing for place in corners(number, self.interpolation))}
+        reached = (angle for place in sorted(places) for angle in stroke.reached(place))
+        return (*reached, *(stroke.turning if self.while_ else ()))
+
+    def sampled(self, path: str, revolution: Revolution) -> Load:
+        sample = partial(revolution.sample, interpolation=self.interpolation)
+        if self.over is not None:
+            sample = partial(self._followed, *self._positions(revolution))
+        rules = (*(FORCE,) * len(self.force or ()), TORQUE)
+        *force, torque = (
+            sample(at, number, rule) for (at, number), rule in zip(self._changing_at(path), rules, strict=True)
+        )
+        values = {"force": self.force and tuple(force), "torque": torque}
+        return with_values(self, **values) if self.over is None else with_values(self, **values, **AT_ANGLES)
+
+    def _stroke(self, mechanism: Mechanism) -> Stroke:
+        return cast(CrankDriven, mechanism).strokes[str(self.over)]
+
+    def _positions(self, revolution: Revolution) -> tuple[str, xr.DataArray, Number]:
+        """Kind of the positions, these over the angles, and where it acts: 1 on its way, 0 on the other."""
+        stroke = self._stroke(revolution.mechanism)
+        quantity, slope = revolution.kinematics(stroke.quantity, stroke.slope)
+        positions = stroke.start + stroke.sense * quantity
+        if self.while_ is None:
+            return stroke.kind, positions, 1.0
+        forward = slope * (revolution.turning * stroke.forward)
+        on_its_way = forward > 0.0 if self.while_ == stroke.words[0] else forward < 0.0
+        return stroke.kind, positions, 1.0 * on_its_way
+
+    def _followed(self, kind: str, positions: xr.DataArray, acts: Number, path: str, number: Any, rule: Rule) -> Any:
+        """A force or torque over the angles; what is 0 everywhere stays so."""
+        if number is None or (not hasattr(number, "dims") and not callable(number) and number == 0.0):
+            return number
+        followed: xr.DataArray = at_positions(path, number, rule, positions, kind, self.interpolation) * acts
+        return followed.fillna(0.0)  # where it cannot be assembled there is no position
+
+    def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """The load's numbers under the names that the physics wires by; `machine` has its link's centre of gravity."""
+        named: dict[str, Any] = {}
+        if self.force is not None:
+            component = f"{load}_force_" if self.frame == "link" else f"{load}_F"
+            named |= {component + "x": self.force[0], component + "y": self.force[1]}
+            cos, sin = cos_sin(self.at[1])
+            cg = machine[f"{self.link}_cg_x"], machine[f"{self.link}_cg_y"]
+            from_x, from_y = cg if self.origin == "cg" else (0.0, 0.0)
+            named |= {f"{load}_at_x": from_x + self.at[0] * cos, f"{load}_at_y": from_y + self.at[0] * sin}
+        if self.torque is not None:
+            named[f"{load}_torque"] = self.torque
+        return named

@@ -1,0 +1,1 @@
+"""Compute studies in chunks that go on where they stopped: jobs, cluster, assembly, opening."""

@@ -1,0 +1,190 @@
+"""The folder of an unfinished study: a manifest, and each finished chunk as a whole file of its own.
+
+A chunk is numpy's npz, made in memory and named by its number and the SHA-256 of its bytes. It is written under
+another name, flushed to the disk, then renamed: after kill -9 or a power cut it is there whole or not at all, and one
+whose bytes are not those that its name says is thrown away and computed again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import refuse, said
+from linksweep.files.atomic import SUFFIX, whole
+
+MANIFEST = "manifest.json"
+PART = SUFFIX  # how the names end of what is being written
+ASSEMBLED = "assembled" + PART
+CHUNK = re.compile(r"(\d+)-([0-9a-f]{64})\.npz")
+
+
+class Partial:
+    """Finished chunks of a study in a folder; `kept` has their files by number."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.kept: dict[int, Path] = {}
+        for path in folder.iterdir():
+            if named := CHUNK.fullmatch(path.name):
+                self.kept[int(named[1])] = path
+            elif path.name.endswith(PART):
+                _remove(path)  # it was being written when the study was killed
+
+    @property
+    def assembled(self) -> Path:
+        """Where the finished study is put together."""
+        return self.folder / ASSEMBLED
+
+    def keep(self, number: int, ds: xr.Dataset) -> None:
+        data = packed(ds)
+        path = self._path(number, data)
+        with whole(path) as temporary:
+            temporary.write_bytes(data)
+        self.kept[number] = path
+
+    def holds(self, number: int) -> bool:
+        """Whether a chunk was kept and is whole."""
+        return self._bytes(number) is not None
+
+    def load(self, number: int) -> xr.Dataset | None:
+        """A chunk that was kept; None where there is none, or none that is whole."""
+        data = self._bytes(number)
+        return None if data is None else unpacked(data)
+
+    def _bytes(self, number: int) -> bytes | None:
+        if number not in self.kept:
+            return None
+        path = self.kept[number]
+        data = path.read_bytes() if path.exists() else b""
+        if path == self._path(number, data):
+            return data
+        del self.kept[number]
+        path.unlink(missing_ok=True)
+        return None
+
+    def _path(self, number: int, data: bytes) -> Path:
+        return self.folder / f"{number:06d}-{hashlib.sha256(data).hexdigest()}.npz"
+
+    def remove(self) -> None:
+        """Remove the folder; its manifest last, so that what is left after a kill still says what it is."""
+        for path in [*self.kept.values(), self.assembled, self.folder / MANIFEST]:
+            path.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # somebody else's files stay
+            self.folder.rmdir()
+
+
+def _remove(path: Path) -> None:
+    """Remove a file, or a folder with all that is in it."""
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink()
+
+
+@contextlib.contextmanager
+def partial(folder: Path, manifest: Mapping[str, Any]) -> Iterator[Partial]:
+    """The folder of a study, made or found again, for this process alone.
+
+    Raises
+    ------
+    ValueError
+        Where it is of another study, or another process is at work on it.
+    """
+    begun = folder / MANIFEST
+    folder.mkdir(exist_ok=True)
+    with _alone(folder):
+        if begun.exists():
+            refuse(_other(begun, manifest))
+        elif any(not path.name.endswith(PART) for path in folder.iterdir()):
+            raise ValueError(f"{folder}: is no folder of a study: it has no {MANIFEST}; move it away")
+        else:
+            with whole(begun) as temporary:
+                temporary.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
+        yield Partial(folder)
+
+
+def _other(begun: Path, manifest: Mapping[str, Any]) -> list[str]:
+    """Why this is the folder of another study."""
+    try:
+        there = json.loads(begun.read_bytes())
+        different = [word for word in manifest if there[word] != manifest[word]]
+    except (ValueError, LookupError, TypeError):
+        return [
+            f"{begun}: is damaged: it does not say of which study this folder is; delete the folder and study again"
+        ]
+    return [
+        f"{begun.parent}: was begun with another {word}{differing(there[word], manifest[word])}; go on with that, "
+        f"move the folder away, or choose another name"
+        for word in different[:1]
+    ]
+
+
+def differing(there: Any, wanted: Any) -> str:
+    """What differs, unless it is a digest."""
+    return "" if len(str(wanted)) == 64 else f" ({said(there)}, not {said(wanted)})"
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """A lock on the folder, which the system lifts when the process ends, however it ends; not every system has one."""
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except ImportError:
+        yield
+        return
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise ValueError(f"{folder}: another process is at work on this study; wait for it, or stop it") from None
+    finally:
+        os.close(handle)
+
+
+def packed(ds: xr.Dataset) -> bytes:
+    """A Dataset of numbers as bytes: numpy's npz, with dims and attributes as JSON."""
+    about = {name: [values.dims, _plain(values.attrs)] for name, values in ds.variables.items()}
+    text = json.dumps([_plain(ds.attrs), about])
+    file = io.BytesIO()
+    np.savez(file, *(values.values for values in ds.variables.values()), about=np.frombuffer(text.encode(), np.uint8))
+    return file.getvalue()
+
+
+def unpacked(data: bytes) -> xr.Dataset:
+    """The Dataset of such bytes."""
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        attributes, about = json.loads(file["about"].tobytes())
+        variables = {
+            name: xr.Variable(dims, file[f"arr_{k}"], _as_it_was(own))
+            for k, (name, (dims, own)) in enumerate(about.items())
+        }
+    return xr.Dataset(variables, attrs=_as_it_was(attributes))
+
+
+def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Attributes for JSON; arrays, such as flag_values, with their type."""
+    return {
+        name: [value.dtype.str, value.tolist()] if isinstance(value, np.ndarray | np.generic) else value
+        for name, value in attributes.items()
+    }
+
+
+def _as_it_was(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: np.array(value[1], dtype=value[0]) if isinstance(value, list) else value
+        for name, value in attributes.items()
+    }

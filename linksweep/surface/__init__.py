@@ -1,1 +1,0 @@
-"""Where people meet it: files, plots, the accessor of Datasets, the command line."""

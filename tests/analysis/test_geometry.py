@@ -1,0 +1,189 @@
+"""geometry and coupler_curve: against the sweep's own extremes, textbook values, and finite differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from refusals import LOOP, refusal
+
+import linksweep as ls
+from linksweep.scene.file.toml import write_scene
+
+PRESS, ENGINE, SHAPER = (ls.example(name) for name in ("press", "engine", "quick-return"))
+LIGHT = {"mass": 0.0, "inertia": 0.0}
+
+
+def four_bar(a, b, c, d, **more):
+    return ls.Scene(ls.FourBar(*(ls.Link(length, **LIGHT) for length in (a, b, c)), ground=d, **more), omega2=1.0)
+
+
+def slider(a, b, **more):
+    return ls.Scene(ls.SliderCrank(ls.Link(a, **LIGHT), ls.Link(b, **LIGHT), slider_mass=1.0, **more), omega2=1.0)
+
+
+@pytest.mark.parametrize("branch", ["open", "crossed"])
+@pytest.mark.parametrize("lengths", [(0.08, 0.22, 0.18, 0.2), (0.02, 0.07, 0.05, 0.06), (0.05, 0.3, 0.31, 0.12)])
+def test_the_rocker_swings_between_its_extremes(lengths, branch):
+    scene = four_bar(*lengths, branch=branch, ground_angle=20.0)
+    found, theta4 = ls.geometry(scene), ls.sweep(scene, theta2=36000, outputs=["theta4"]).theta4
+    turned = np.unwrap(theta4, period=360.0)
+    assert float(found.swing) == pytest.approx(np.ptp(turned), abs=1e-5)
+    at = np.sort(found.reversal_angle.values)
+    seen = np.sort([float(theta4.theta2[k]) for k in (turned.argmax(), turned.argmin())])
+    np.testing.assert_allclose(at, seen, atol=0.02)
+    way = at[1] - at[0]
+    assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
+    standing = ls.sweep(scene, theta2=found.reversal_angle.values, outputs=["omega4"]).omega4
+    np.testing.assert_allclose(standing, 0.0, atol=1e-12)
+
+
+def test_a_centric_crank_rocker_has_time_ratio_one():
+    """a² + d² = b² + c² (Norton, chapter 3: a four-bar without quick return)."""
+    a, b, d = 0.05, 0.12, 0.2
+    found = ls.geometry(four_bar(a, b, np.sqrt(a**2 + d**2 - b**2), d))
+    assert float(found.time_ratio) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_double_crank_has_no_swing():
+    assert np.isnan(ls.geometry(four_bar(0.2, 0.22, 0.25, 0.08)).swing)
+
+
+@pytest.mark.parametrize("branch", ["open", "crossed"])
+@pytest.mark.parametrize("offset", [0.0, 0.02, -0.03])
+def test_the_slider_travels_between_its_extremes(offset, branch):
+    scene = slider(0.05, 0.15, offset=offset, slide_angle=30.0, branch=branch)
+    found, x = ls.geometry(scene), ls.sweep(scene, theta2=36000, outputs=["x_slider"]).x_slider
+    assert float(found.stroke) == pytest.approx(np.ptp(x.values), abs=1e-9)
+    standing = ls.sweep(scene, theta2=found.reversal_angle.values, outputs=["v_slider"]).v_slider
+    np.testing.assert_allclose(standing, 0.0, atol=1e-14)
+    way = float(abs(found.reversal_angle.diff("limit")).item())
+    assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
+    assert (float(found.time_ratio) == pytest.approx(1.0, abs=1e-12)) == (offset == 0.0)
+
+
+def test_a_quick_return_has_the_time_ratio_that_check_tells():
+    found = ls.geometry(SHAPER)
+    half = np.degrees(np.arccos(0.12 / 0.36))
+    assert float(found.time_ratio) == pytest.approx((360.0 - 2.0 * half) / (2.0 * half), rel=1e-12)
+    assert float(found.swing) == pytest.approx(2.0 * np.degrees(np.arcsin(0.12 / 0.36)), rel=1e-12)
+
+
+def test_transmission_angles_of_the_press():
+    """The angle of coupler and rocker is extreme with the crank on the line of the ground pins (Norton, chapter 4)."""
+    found = ls.geometry(PRESS)
+    a, b, c, d = PRESS.mechanism.lengths().values()
+    at_0, at_180 = (np.degrees(np.arccos((b * b + c * c - f * f) / (2.0 * b * c))) for f in (d - a, d + a))
+    acute = [min(angle, 180.0 - angle) for angle in (at_0, at_180)]
+    assert float(found.transmission_angle_min) == pytest.approx(min(acute), rel=1e-9)
+    assert float(found.transmission_angle_min_at) % 180.0 == pytest.approx(0.0, abs=1e-5)
+    assert float(found.transmission_angle_max) <= 90.0
+
+
+def test_designs_and_branches_go_along():
+    several = xr.DataArray([0.15, 0.18, 0.4], {"rocker": [1, 2, 3]}, "rocker")
+    scene = four_bar(0.08, 0.22, several, 0.2, branch="both")
+    found = ls.geometry(scene)
+    assert found.swing.dims == ("rocker",)
+    assert {*found.reversal_angle.dims} == {"rocker", "branch", "limit"}
+    assert np.isnan(found.swing[2])
+    one = ls.geometry(four_bar(0.08, 0.22, 0.18, 0.2, branch="crossed"))
+    assert float(found.swing[1]) == float(one.swing)
+    np.testing.assert_array_equal(found.reversal_angle.sel(rocker=2, branch="crossed"), one.reversal_angle)
+
+
+# ------------------------------------------------------------------------------------------------- curves
+
+POINTS = [
+    (PRESS, None, (0.1, 15.0)),
+    (replace(PRESS, alpha2=-40.0), "rocker", (0.25, -30.0)),
+    (PRESS, "crank", (0.03, 100.0)),
+    (ENGINE, None, (0.06, 20.0)),
+    (ENGINE, "slider", (0.02, 90.0)),
+    (SHAPER, None, (0.7, 0.0)),
+    (SHAPER, "block", (0.05, 45.0)),
+]
+
+
+@pytest.mark.parametrize(("scene", "link", "at"), POINTS)
+def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
+    """By time, from positions beside each angle: dθ2/dt = ω2, and d²θ2/dt² = α2."""
+    angles, step = np.arange(5.0, 360.0, 30.0), 1e-2
+    here, left, right = (ls.coupler_curve(scene, at, angles + s, link) for s in (0.0, -step, step))
+    turn = np.radians(step)
+    for axis in "xy":
+        p, v, a = (here[f"{name}{axis}"].values for name in ("P", "vP", "aP"))
+        before, after = left[f"P{axis}"].values, right[f"P{axis}"].values
+        slope, bend = (after - before) / (2.0 * turn), (after - 2.0 * p + before) / turn**2
+        np.testing.assert_allclose(v, slope * scene.omega2, atol=1e-6 * max(abs(v).max(), 1e-3))
+        expected = bend * scene.omega2**2 + slope * (scene.alpha2 or 0.0)
+        np.testing.assert_allclose(a, expected, atol=1e-5 * max(abs(a).max(), 1e-3))
+
+
+def test_points_that_are_known():
+    cycle = ls.sweep(PRESS, theta2=36, outputs=["Bx", "By", "Cx", "Cy", "aG3x", "aG3y"])
+    pin_b, pin_c = (ls.coupler_curve(PRESS, (r, 0.0), theta2=36) for r in (0.0, 0.22))
+    np.testing.assert_allclose(pin_b.Px, cycle.Bx, atol=1e-15)
+    np.testing.assert_allclose(pin_c.Py, cycle.Cy, atol=1e-14)
+    tip = ls.coupler_curve(PRESS, (0.18, 0.0), theta2=36, link="rocker")
+    np.testing.assert_allclose(tip.Px, cycle.Cx, atol=1e-14)
+    centre = ls.coupler_curve(PRESS, (0.11, 0.0), theta2=36)
+    np.testing.assert_allclose(centre.aPx, cycle.aG3x, rtol=1e-10)
+
+
+def test_hoekens_straight_line():
+    """Hoeken's linkage (Norton, chapter 3): crank 1, ground 2, coupler and rocker 2.5; the tip, as far again beyond C,
+    runs along a line to within a hundredth of the crank for nearly half a turn."""
+    hoeken = four_bar(1.0, 2.5, 2.5, 2.0)
+    curve = ls.coupler_curve(hoeken, (5.0, 0.0), np.arange(100.0, 261.0, 5.0))
+    assert float(np.ptp(curve.Py.values)) < 0.01
+    assert float(np.ptp(curve.Px.values)) > 3.0
+
+
+def test_points_over_designs_and_gaps():
+    distances = xr.DataArray([0.0, 0.1], dims="point")
+    several = ls.coupler_curve(PRESS, (distances, 30.0), theta2=12)
+    np.testing.assert_array_equal(several.Px.isel(point=1), ls.coupler_curve(PRESS, (0.1, 30.0), theta2=12).Px)
+    stuck = ls.coupler_curve(four_bar(0.2, 0.12, 0.12, 0.2), (0.1, 0.0), theta2=12)
+    assert (np.isnan(stuck.Px) == (stuck.status != 0)).all()
+    assert np.isnan(stuck.Px).any()
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: ls.geometry(LOOP), "which has no links"),
+        (lambda: ls.coupler_curve(LOOP, (0.1, 0.0)), "which has no links"),
+        (
+            lambda: ls.coupler_curve(PRESS, (0.1, 0.0), link="rod"),
+            "link = 'rod': must be one of crank, coupler, rocker",
+        ),
+        (lambda: ls.coupler_curve(PRESS, 0.1), "at = 0.1: must be a pair"),
+        (lambda: ls.coupler_curve(PRESS, (-0.1, 0.0)), "at[1] = -0.1 m: must be at least 0"),
+    ],
+)
+def test_refusals(call, said):
+    (line,) = refusal(call)
+    assert said in line
+
+
+def test_loads_and_speeds_are_not_looked_at(monkeypatch):
+    """Geometry is that of the bare machine, and its scene that of the whole one."""
+
+    def looked(*_):
+        raise AssertionError("a load over the angle was looked at")
+
+    def push(theta2):
+        return np.cos(np.radians(theta2))
+
+    length = xr.DataArray([0.20, 0.22, 0.24], {"design": [5, 6, 7]}, "design")
+    press = ls.example("press")
+    bare = replace(press, mechanism=replace(press.mechanism, coupler=replace(press.mechanism.coupler, length=length)))
+    torque = xr.DataArray([1.0, 2.0, 3.0], {"design": [5, 6, 7]}, "design")
+    loads = [ls.Load("rocker", torque=torque), ls.Load("coupler", force=(push, 0.0))]
+    scene = replace(bare, omega2=lambda theta2: 20.0 + push(theta2), loads=loads)
+    monkeypatch.setattr("linksweep.scene.curves.over_angle.called", looked)
+    found = ls.geometry(scene)
+    xr.testing.assert_equal(found.drop_vars("loads[1].torque"), ls.geometry(bare))
+    assert found.attrs["scene"] == write_scene(scene, elsewhere=["coupler.length", "loads[1].torque"])
+    assert ls.scene_at(found, design=6).loads[0].torque == 2.0

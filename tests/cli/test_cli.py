@@ -1,0 +1,347 @@
+"""The command line: what it prints and writes, and how it says that something is wrong."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.cli import main as cli
+from linksweep.cli.main import main
+
+PRESS = """\
+omega2 = "300 rpm"
+gravity = [0, -9.81]
+
+[mechanism]
+type = "FourBar"
+ground = "20 cm"
+crank = {type = "Bar", length = "8 cm", width = "2 cm", thickness = "2 cm", density = 7750}
+coupler = {length = 0.22, mass = 0.7, inertia = 3e-3, cg_distance = "11 cm"}
+rocker = {type = "Bar", length = "18 cm", width = "2 cm", thickness = "2 cm", density = 7750}
+
+[[loads]]
+link = "coupler"
+force = [0, "-80 lbf"]
+at = ["10 cm", 15]
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch) -> Path:
+    """An empty folder to work in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def press(folder) -> str:
+    return scene_file("press.toml")
+
+
+def scene_file(name: str, old: str = "", new: str = "") -> str:
+    assert old in PRESS
+    Path(name).write_text(PRESS.replace(old, new), encoding="utf-8")
+    return name
+
+
+BATCH = ('length = "8 cm"', 'length = {dim = "crank", values = ["6 cm", "8 cm", "12 cm", "25 cm", "90 cm"]}')
+
+
+def rows(text: str) -> dict[str, list[str]]:
+    """A printed table by the first word of its lines, cells two spaces apart."""
+    cells = [re.split(r" {2,}", line.strip()) for line in text.splitlines() if "  " in line]
+    return {first: rest for first, *rest in cells}
+
+
+def assert_table_is(text: str, peaks: xr.Dataset) -> None:
+    found = rows(text)
+    angles = {name: name.removesuffix("_at") for name in map(str, peaks.data_vars) if name.endswith("_at")}
+    assert list(found) == ["quantity", *angles.values()]
+    for at, name in angles.items():
+        value, unit, angle = found[name]
+        assert value == f"{float(peaks[name]):.6g}"
+        assert unit == peaks[name].attrs["units"]
+        assert angle == f"{float(peaks[at]):.2f}°"
+
+
+def is_png(path) -> bool:
+    return Path(path).read_bytes().startswith(b"\x89PNG\r\n")
+
+
+# ------------------------------------------------------------------------------------------------ demo
+
+
+def test_demo_prints_the_peaks_and_writes_data_and_picture(capsys):
+    assert main(["demo"]) == 0
+    out, err = capsys.readouterr()
+    assert_table_is(out, ls.peaks(ls.example("press")))
+    assert err == ""
+    assert sorted(os.listdir()) == ["demo.nc", "demo.png"]
+    assert is_png("demo.png")
+    with xr.open_dataset("demo.nc") as found:
+        xr.testing.assert_equal(found.load(), ls.sweep(ls.example("press")))
+    assert ls.load_scene("demo.nc") == ls.example("press")
+
+
+def test_demo_writes_where_it_is_told(capsys):
+    Path("results").mkdir()
+    assert main(["demo", "-o", "results/press.v2"]) == 0
+    assert sorted(os.listdir("results")) == ["press.v2.nc", "press.v2.png"]
+    assert "results/press.v2.nc" in capsys.readouterr().out
+
+
+# ----------------------------------------------------------------------------------------------- sweep
+
+
+def test_sweep_writes_the_cycle_and_a_picture_of_it(press, capsys):
+    assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png", "--theta2", "48"]) == 0
+    assert capsys.readouterr().out.splitlines() == ["written: cycle.nc", "written: cycle.png"]
+    assert is_png("cycle.png")
+    with xr.open_dataset("cycle.nc") as found:
+        xr.testing.assert_equal(found.load(), ls.sweep(ls.load_scene(press), 48))
+    assert sorted(os.listdir()) == ["cycle.nc", "cycle.png", "press.toml"]
+
+
+@pytest.mark.parametrize(("ending", "begins"), [(".pdf", b"%PDF"), (".svg", b"<?xml"), (".PNG", b"\x89PNG")])
+def test_pictures_of_other_kinds(press, ending, begins, capsys):
+    picture = "cycle" + ending
+    assert main(["sweep", press, "-o", "cycle.nc", "--plot", picture, "--theta2", "24"]) == 0
+    assert Path(picture).read_bytes().startswith(begins)
+
+
+def test_sweep_writes_only_the_variables_asked_for(press, capsys):
+    arguments = ["sweep", press, "-o", "cycle.nc", "--outputs", "T12, F32,", "--theta2", "24", "--plot", "c.png"]
+    assert main(arguments) == 0
+    with xr.open_dataset("cycle.nc") as found:
+        assert set(found.data_vars) == {"T12", "F32", "status"}
+    assert is_png("c.png")  # it shows what it always shows
+
+
+def test_a_result_is_as_good_a_scene_as_a_scene_file(press, capsys):
+    assert main(["sweep", press, "-o", "first.nc", "--theta2", "24"]) == 0
+    assert main(["sweep", "first.nc", "-o", "second.nc", "--theta2", "24"]) == 0
+    with xr.open_dataset("first.nc") as first, xr.open_dataset("second.nc") as second:
+        xr.testing.assert_identical(first.load(), second.load())
+
+
+# ----------------------------------------------------------------------------------------------- peaks
+
+
+def test_peaks_prints_a_table_and_writes_a_file(press, capsys):
+    assert main(["peaks", press]) == 0
+    assert_table_is(capsys.readouterr().out, ls.peaks(ls.load_scene(press)))
+    assert os.listdir() == [press]
+    assert main(["peaks", press, "--of", "F14,T12_mean", "-o", "peaks.nc", "--theta2", "90"]) == 0
+    out = capsys.readouterr().out
+    expected = ls.peaks(ls.load_scene(press), of=["F14", "T12_mean"], theta2=90)
+    assert rows(out)["T12_mean"] == [f"{float(expected.T12_mean):.6g}", "N m"]
+    assert list(rows(out)) == ["quantity", "F14_peak", "T12_mean"]
+    assert out.endswith("\nwritten: peaks.nc\n")
+    with xr.open_dataset("peaks.nc") as found:
+        xr.testing.assert_equal(found.load(), expected)
+
+
+def test_peaks_of_a_batch_are_those_of_the_worst_design(capsys):
+    scene = scene_file("batch.toml", *BATCH)
+    assert main(["peaks", scene, "--of", "F32,T12,By,T12_mean,theta4"]) == 0
+    out = capsys.readouterr().out
+    found, peaks = rows(out), ls.peaks(ls.load_scene(scene), of=["F32", "T12", "By", "T12_mean", "theta4"])
+    assert found["quantity"] == ["value", "unit", "at theta2", "worst crank"]
+    for name, worst in {
+        "F32_peak": peaks.F32_peak.where(np.isfinite).argmax("crank"),
+        "T12_max": peaks.T12_max.where(np.isfinite).argmax("crank"),
+        "T12_min": peaks.T12_min.where(np.isfinite).argmin("crank"),
+        "By_min": peaks.By_min.argmin("crank"),
+        "theta4_max": peaks.theta4_max.argmax("crank"),
+    }.items():
+        place = {"crank": int(worst)}
+        assert found[name][0] == f"{float(peaks[name].isel(place)):.6g}"
+        assert found[name][2] == f"{float(peaks[f'{name}_at'].isel(place)):.2f}°"
+        assert found[name][3] == f"{float(peaks.crank.isel(place)):.6g}"
+    assert found["T12_mean"][-1] == f"{float(peaks.crank[int(abs(peaks.T12_mean).argmax('crank'))]):.6g}"
+    assert "Some quantity of 1 of 5 designs grows without bound at a toggle" in out
+    assert "1 of 5 designs cannot be assembled at any angle." in out
+
+
+def test_a_quantity_that_a_dimension_does_not_touch_is_worst_at_any(capsys):
+    scene = scene_file("batch.toml", "mass = 0.7", 'mass = {dim = "mass", values = [0.5, 0.9]}')
+    assert main(["peaks", scene, "--of", "F32,theta4"]) == 0
+    found = rows(capsys.readouterr().out)
+    assert found["theta4_max"][-1] == "any"
+    assert found["F32_peak"][-1] == "0.9"
+
+
+# ----------------------------------------------------------------------------------------------- check
+
+
+def test_check_says_it_in_words(press, capsys):
+    assert main(["check", press]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "Grashof class:            crank-rocker",
+        "can be assembled:         everywhere",
+        "at theta2 from:           0.0000° to 360.0000°",
+        "toggles at theta2:        none",
+        "least transmission angle: 33.0302°",
+    ]
+
+
+def test_check_of_a_rocker_gives_its_limits(capsys):
+    scene = scene_file("rocker.toml", 'length = "8 cm"', 'length = "25 cm"')
+    assert main(["check", scene]) == 0
+    said = dict(re.split(r": +", line) for line in capsys.readouterr().out.splitlines())
+    found = ls.check(ls.load_scene(scene))
+    folded, stretched, mirrored, also_mirrored = found.toggle_angle.values
+    assert np.isfinite([folded, stretched, mirrored, also_mirrored]).sum() == 2
+    assert said["Grashof class"] == "triple-rocker"
+    assert said["can be assembled"] == "partly"
+    assert said["toggles at theta2"] == f"{stretched:.4f}° (stretched), {mirrored:.4f}° (stretched, mirrored)"
+    assert said["at theta2 from"] == f"{mirrored:.4f}° to {stretched + 360.0:.4f}°"
+
+
+def test_check_counts_the_designs_of_a_batch(capsys):
+    assert main(["check", scene_file("batch.toml", *BATCH)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "designs:                  5 (crank 5)",
+        "Grashof class:            crank-rocker 3, triple-rocker 2",
+        "can be assembled:         everywhere 3, partly 1, never 1",
+        "least transmission angle: 0.0000°",
+    ]
+    tilted = scene_file("tilt.toml", '"20 cm"', '"20 cm"\nground_angle = {dim = "tilt", values = [0, 90, 180]}')
+    assert main(["check", tilted]) == 0
+    assert "can be assembled:         everywhere 3" in capsys.readouterr().out
+
+
+# ------------------------------------------------------------------------------------------ what is wrong
+
+
+def refused(arguments: list[str], capsys) -> list[str]:
+    """Run what must be refused: exit code 2, nothing printed, nothing written; what it says."""
+    before = sorted(os.listdir())
+    assert main(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "Traceback" not in err
+    assert err.startswith("linksweep: ")
+    assert sorted(os.listdir()) == before
+    return err.removeprefix("linksweep: ").splitlines()
+
+
+def test_all_errors_of_a_scene_file_with_their_lines(capsys):
+    scene = scene_file("bad.toml", 'omega2 = "300 rpm"', 'omega2 = "300 rmp"\ndrive = "crnk"')
+    for command in (["check"], ["peaks"], ["sweep", "-o", "cycle.nc"]):
+        first, second = refused([command[0], scene, *command[1:]], capsys)
+        assert first.startswith(
+            'bad.toml:1: omega2 = "300 rmp": "rmp" is not an accepted unit of angular velocity; did'
+        )
+        assert second == "bad.toml:2: drive = 'crnk': must be one of crank, coupler, rocker; did you mean \"crank\"?"
+
+
+def test_geometry_that_never_closes(capsys):
+    scene = scene_file("far.toml", '"20 cm"', '"50 cm"')
+    assert refused(["check", scene], capsys) == [
+        "far.toml:6: ground = 0.5 m is 0.02 m longer than crank + coupler + rocker: "
+        "the mechanism cannot be assembled at any angle; shorten it or lengthen the others"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["check", "pres.toml"], 'pres.toml: there is no such file; did you mean "press.toml"?'),
+        (["check", "no.nc"], "no.nc: there is no such file"),
+        (["peaks", "press.toml", "--of", "F32,T21"], "of: nothing is named 'T21'; did you mean \"T12\"?"),
+        (["peaks", "press.toml", "--theta2", "0"], "theta2 = 0: a count of angles must be at least 1"),
+        (["peaks", "press.toml", "--theta2", "-3"], "theta2 = -3: a count of angles must be at least 1"),
+        (
+            ["sweep", "press.toml", "-o", "c.nc", "--outputs", "t12"],
+            "outputs: nothing is named 't12'; did you mean",
+        ),
+        (["sweep", "press.toml", "-o", "no/c.nc"], "no/c.nc: there is no folder no; make it first"),
+        (["demo", "-o", "no/demo"], "no/demo.nc: there is no folder no; make it first"),
+    ],
+)
+def test_arguments_that_cannot_be(arguments, message, press, capsys):
+    if arguments[0] == "demo":  # it has printed by then
+        assert main(arguments) == 2
+        assert capsys.readouterr().err == f"linksweep: {message}\n"
+    else:
+        (said,) = refused(arguments, capsys)
+        assert said.startswith(message)
+
+
+def test_a_file_that_is_neither_scene_nor_result(capsys):
+    Path("notes.nc").write_text("crank 8 cm")
+    (said,) = refused(["peaks", "notes.nc"], capsys)
+    assert said == "notes.nc: cannot be read as NetCDF (NetCDF: Unknown file format); a scene file ends in .toml"
+
+
+def test_a_batch_cannot_be_drawn_and_then_nothing_is_written(capsys):
+    (said,) = refused(["sweep", scene_file("b.toml", *BATCH), "-o", "c.nc", "--plot", "c.png"], capsys)
+    assert "crank (5)" in said
+
+
+def test_a_picture_that_fails_half_way_leaves_none(press, monkeypatch, capsys):
+    class Broken:
+        def savefig(self, path, **_):
+            Path(path).write_bytes(b"half")
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cli, "_figure", lambda cycle: Broken())
+    Path("cycle.png").write_bytes(b"old")
+    assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png"]) == 2
+    assert "No space left on device" in capsys.readouterr().err
+    assert Path("cycle.png").read_bytes() == b"old"
+    assert sorted(os.listdir()) == ["cycle.nc", "cycle.png", "press.toml"]
+
+
+def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
+    def stopped(scene):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "check", stopped)
+    assert main(["check", press]) == 130
+    assert capsys.readouterr().err == "linksweep: stopped\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["--help"], 0, "demo.*sweep.*peaks.*check"),
+        (["sweep", "--help"], 0, "--output.*--plot.*--outputs"),
+        (["peaks", "--help"], 0, "--theta2.*--of"),
+        ([], 2, "the following arguments are required: command"),
+        (["chek", "press.toml"], 2, "invalid choice: 'chek'"),
+        (["sweep", "press.toml"], 2, "the following arguments are required: -o/--output"),
+        (
+            ["sweep", "press.toml", "-o", "c.nc", "--plot", "c.xyz"],
+            2,
+            r"c.xyz: its ending must be \.png or \.pdf or \.svg",
+        ),
+        (["peaks", "press.toml", "--of", " ,"], 2, "argument --of: must be names, separated by commas"),
+        (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2: invalid int value: 'many'"),
+    ],
+)
+def test_help_and_usage(arguments, code, said, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == code
+    out, err = capsys.readouterr()
+    assert re.search(said, out + err, re.DOTALL)
+
+
+def test_it_runs_as_a_module(press):
+    def run(*arguments):
+        return subprocess.run([sys.executable, "-m", "linksweep", *arguments], capture_output=True, text=True)
+
+    good = run("check", press)
+    assert (good.returncode, good.stderr) == (0, "")
+    assert good.stdout.startswith("Grashof class:            crank-rocker\n")
+    bad = run("check", "missing")
+    assert (bad.returncode, bad.stdout) == (2, "")
+    assert bad.stderr == "linksweep: missing: there is no such file\n"

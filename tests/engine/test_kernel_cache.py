@@ -1,0 +1,213 @@
+"""Compiled kernels are kept safely: never stale, never half written, and not missed where nothing can be kept."""
+
+import errno
+import math
+import os
+import pickle
+import stat
+
+import numpy as np
+import pytest
+
+import linksweep as ls
+from linksweep.base import cache
+from linksweep.engine import run
+from linksweep.engine.kernel import compile as kernels
+from linksweep.engine.trace.plan import plan
+
+SOURCE = "def kernel(x):\n    x[0] = sqrt(x[0])\n"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty cache, and nothing compiled in this process."""
+    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(tmp_path / "cache"))
+    forget()
+    yield tmp_path / "cache"
+    forget()
+
+
+def root_of_two() -> float:
+    """Compile a kernel, or fetch it from the cache, and run it."""
+    x = np.array([2.0])
+    kernels.compiled(SOURCE, "", "void(f8[::1])")(x)
+    return float(x[0])
+
+
+def forget():
+    """As in a new process: compiled kernels are not in memory."""
+    kernels.compiled.cache_clear()
+    kernels.compiled_functions.cache_clear()
+
+
+def kept(folder):
+    """The one kernel that is kept."""
+    (path,) = folder.glob("kernel_*")
+    return path
+
+
+def test_a_second_process_finds_the_compiled_kernel(folder):
+    root_of_two()
+    written = kept(folder).stat().st_mtime_ns
+    forget()
+    assert root_of_two() == math.sqrt(2)
+    assert kept(folder).stat().st_mtime_ns == written
+
+
+DAMAGE = {
+    "cut": lambda whole: whole[: len(whole) // 2],
+    "empty": lambda whole: b"",
+    "a bit flipped": lambda whole: whole[:999] + bytes([whole[999] ^ 4]) + whole[1000:],
+    "garbage": lambda whole: b"\xff" * len(whole),
+    "another numba's": lambda whole: cache.hashlib.sha256(pickle.dumps((1, 2))).digest() + pickle.dumps((1, 2)),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_kernel_is_compiled_and_kept_again(folder, damage):
+    root_of_two()
+    whole = kept(folder).read_bytes()
+    kept(folder).write_bytes(DAMAGE[damage](whole))
+    forget()
+    assert root_of_two() == math.sqrt(2)
+    assert len(kept(folder).read_bytes()) == len(whole)
+    assert kept(folder).read_bytes() != DAMAGE[damage](whole)
+
+
+def test_a_full_disk_keeps_nothing_and_leaves_nothing(folder, monkeypatch):
+    root_of_two()
+    kept(folder).unlink()
+    forget()
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(cache.os, "replace", full)
+    assert root_of_two() == math.sqrt(2)
+    assert list(folder.iterdir()) == []
+
+
+def test_temporary_files_of_killed_runs_are_swept(folder):
+    folder.mkdir(mode=0o700)
+    for name, age in (("old.tmp", 2 * cache.ORPHAN_AGE), ("new.tmp", 0.0)):
+        (folder / name).write_bytes(b"")
+        then = cache.time.time() - age
+        os.utime(folder / name, (then, then))
+    root_of_two()
+    assert [path.name for path in folder.glob("*.tmp")] == ["new.tmp"]
+
+
+# ------------------------------------------------------------------------------------------ what others put there
+
+
+posix = pytest.mark.skipif(not hasattr(os, "geteuid"), reason="Windows guards the user's folders itself")
+
+
+class Trap:
+    """A pickle that leaves a mark where it is run."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.mark),)
+
+
+def plant(folder, mark):
+    """Put a trap, its checksum right, in place of the kept kernel."""
+    content = pickle.dumps(Trap(mark))
+    path = kept(folder)
+    path.write_bytes(cache.hashlib.sha256(content).digest() + content)
+    return path
+
+
+@posix
+def test_what_the_user_alone_may_write_is_trusted(folder, tmp_path):
+    """The trap works: tests below that find no mark do so because it was not read."""
+    root_of_two()
+    plant(folder, tmp_path / "mark")
+    forget()
+    root_of_two()
+    assert (tmp_path / "mark").exists()
+
+
+@posix
+@pytest.mark.parametrize("who", ["the folder", "the kernel"])
+@pytest.mark.parametrize("mode", [stat.S_IWGRP, stat.S_IWOTH])
+def test_what_others_may_write_is_not_read(folder, tmp_path, who, mode):
+    root_of_two()
+    path = plant(folder, tmp_path / "mark")
+    written = folder if who == "the folder" else path
+    written.chmod(written.stat().st_mode | mode)
+    forget()
+    assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
+
+
+@posix
+@pytest.mark.parametrize("who", ["the folder", "the kernel", "a link to the folder"])
+def test_what_another_user_owns_is_not_read(folder, tmp_path, monkeypatch, who):
+    root_of_two()
+    path = plant(folder, tmp_path / "mark")
+    others = {"the folder": folder, "the kernel": path, "a link to the folder": tmp_path / "link"}[who]
+    if not others.exists():
+        others.symlink_to(folder)
+        monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(others))
+    inode, owned = others.lstat().st_ino, cache._owned
+    monkeypatch.setattr(cache, "_owned", lambda status: status.st_ino != inode and owned(status))
+    forget()
+    assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
+
+
+@posix
+def test_a_kernel_that_is_a_link_is_not_read(folder, tmp_path):
+    root_of_two()
+    path = plant(folder, tmp_path / "mark")
+    path.rename(tmp_path / "elsewhere")
+    path.symlink_to(tmp_path / "elsewhere")
+    forget()
+    assert root_of_two() == math.sqrt(2)
+    assert not (tmp_path / "mark").exists()
+    assert not path.is_symlink()  # the kernel that was compiled stands there now
+
+
+@posix
+@pytest.mark.parametrize("umask", [0o000, 0o022])
+def test_a_new_folder_is_the_users_alone(folder, umask):
+    before = os.umask(umask)
+    try:
+        root_of_two()
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    assert stat.S_IMODE(kept(folder).stat().st_mode) == 0o600
+
+
+# ------------------------------------------------------------------------------------------------------- its name
+
+
+def test_the_name_covers_all_that_enters_the_kernel(folder, monkeypatch):
+    scene = ls.example("press")
+    kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms), (), 1024).fused.source
+    kernels.compiled(kernel, "")
+    kernels.compiled(kernel.replace("sqrt(", "1.0 * sqrt("), "")
+    kernels.compiled(kernel, "import math\n\n\ndef unused():\n    return 1.0\n")
+    monkeypatch.setattr(kernels, "SETTINGS", kernels.SETTINGS | {"boundscheck": False})
+    kernels.compiled.cache_clear()
+    kernels.compiled(kernel, "")
+    assert len(list(folder.glob("kernel_*"))) == 4
+
+
+@pytest.mark.parametrize("blocked", ["a file stands in the way", "a folder that cannot be written"])
+def test_without_a_folder_to_write_to_it_compiles_all_the_same(folder, monkeypatch, blocked):
+    elsewhere = folder.parent / "blocked"
+    if blocked.startswith("a file"):
+        elsewhere.write_text("not a folder")
+    else:
+        elsewhere.mkdir()
+        elsewhere.chmod(stat.S_IRUSR | stat.S_IXUSR)
+        monkeypatch.setattr(cache.os, "access", lambda *_: False)  # root may write anywhere
+    monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(elsewhere))
+    assert cache.cache_folder() is None
+    assert root_of_two() == math.sqrt(2)

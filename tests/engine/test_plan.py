@@ -1,0 +1,203 @@
+"""A request is charged for what it needs: the functions and operations that its plan holds, counted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.engine.trace.plan import Plan, plan
+
+KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
+UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
+PIN_FORCES = {name for name in UNKNOWNS if name.startswith("F")}
+
+
+def links(**changes) -> dict[str, ls.Link]:
+    """Links with nothing that is zero or one, unless changed."""
+    return {
+        "crank": ls.Link(0.04, 0.25, 1.3e-4, cg_distance=0.013, cg_angle=70.0),
+        "coupler": ls.Link(0.12, 0.40, 5.0e-4, cg_distance=0.05, cg_angle=12.0),
+        "rocker": ls.Link(0.09, 0.33, 4.0e-4, cg_distance=0.06, cg_angle=-33.0),
+    } | changes
+
+
+def scene(loads=(), gravity=(0.3, -9.81), alpha2=7.0, omega2=-31.0, ground_angle=25.0, **changed_links) -> ls.Scene:
+    bars = ls.FourBar(**links(**changed_links), ground=0.13, ground_angle=ground_angle)
+    return ls.Scene(bars, omega2=omega2, alpha2=alpha2, gravity=gravity, loads=loads)
+
+
+def planned(scene: ls.Scene, *names: str) -> Plan:
+    return plan(scene.table, names, scene.inputs.forms)
+
+
+def makes(found: Plan) -> set[str]:
+    """Names of all that the plan's functions make."""
+    return {name for function in found.functions for name in function.split(" → ")[1].split(", ")}
+
+
+def cost(scene: ls.Scene, *names: str) -> int:
+    """Operations at every crank angle."""
+    return planned(scene, *names).operations("theta2").total()
+
+
+def test_velocities_need_no_inertia_and_no_force():
+    found = planned(scene(loads=[ls.Load("rocker", force=(1.0, 2.0), at=(0.05, 10.0))]), "omega3")
+    assert {"r3x", "ratio3", "omega3"} <= makes(found)
+    assert not {name for name in makes(found) if name[0] in "FQNPMTJ" or name.startswith(("alpha", "aB", "load"))}
+    assert set(found.inputs) <= {
+        *("cos2", "sin2", "cos2_rest", "sin2_rest", "omega2", "branch_sign"),
+        *(f"{link}_length" for link in ("crank", "coupler", "rocker", "ground")),
+        *("ground_cos", "ground_sin", "ground_cos_rest", "ground_sin_rest"),
+    }
+
+
+def test_torque_needs_no_pin_force():
+    """Virtual work gives it without."""
+    found = planned(scene(), "T12")
+    assert makes(found).isdisjoint(PIN_FORCES)
+    assert "work" in makes(found)
+    assert cost(scene(), "T12") < 0.9 * cost(scene(), *UNKNOWNS)
+
+
+def test_forces_need_no_torque_and_no_power():
+    assert makes(planned(scene(), *sorted(PIN_FORCES))).isdisjoint({"T12", "work", "power"})
+
+
+def test_one_pin_force_needs_only_what_leads_to_it():
+    """F43 is found first; the others follow by addition, each by its own."""
+    assert makes(planned(scene(), "F43x")) & PIN_FORCES == {"F43x", "F43y"}
+    assert makes(planned(scene(), "F32x")) & PIN_FORCES == {"F43x", "F43y", "F32x", "F32y"}
+    assert makes(planned(scene(), "F14y")) & PIN_FORCES == {"F43x", "F43y", "F14x", "F14y"}
+
+
+def test_costs_rise_with_the_request():
+    requests = [("omega3",), ("omega3", "omega4"), ("alpha3", "alpha4"), ("T12",), UNKNOWNS]
+    costs = [cost(scene(), *names) for names in requests]
+    assert costs == sorted(set(costs))
+
+
+def test_all_of_the_kinematics_is_shared_by_the_forces():
+    together = cost(scene(), *KINEMATICS, *UNKNOWNS)
+    late = 4  # theta3 and theta4: atan2, and degrees
+    assert together - cost(scene(), *UNKNOWNS) == late
+
+
+def test_one_root_and_one_division_an_angle():
+    """What makes the kernel fast: all that is divided by belongs to the design, or is shared."""
+    found = planned(scene(), *UNKNOWNS).operations("theta2")
+    assert (found["sqrt"], found["/"]) == (1, 1)
+
+
+# ---- what is zero costs nothing -----
+
+FORCE = ls.Load("coupler", force=(3.0, -80.0), at=(0.10, 15.0))
+
+
+def test_no_loads_no_load_functions():
+    assert not {name for name in makes(planned(scene(), *UNKNOWNS, "power_residual")) if "load" in name}
+    assert {"load1_rx", "load1_moment"} <= makes(planned(scene(loads=[FORCE]), *UNKNOWNS))
+
+
+def test_each_load_costs_what_it_brings():
+    none, torque, force, in_link_axes, two = (
+        cost(scene(loads=loads), *UNKNOWNS)
+        for loads in (
+            [],
+            [ls.Load("coupler", torque=2.0)],
+            [FORCE],
+            [replace(FORCE, frame="link")],
+            [FORCE, replace(FORCE, link="rocker")],
+        )
+    )
+    assert none < torque < force < in_link_axes
+    assert two > force
+    at_the_pin = cost(scene(loads=[replace(FORCE, at=(0.0, 0.0))]), *UNKNOWNS)
+    assert none < at_the_pin < force
+
+
+WITHOUT = {
+    "gravity": {"gravity": (0.0, 0.0)},
+    "gravity_x": {"gravity": (0.0, -9.81)},
+    "alpha2": {"alpha2": 0.0},
+    "omega2": {"omega2": 0.0},
+    "ground_angle": {"ground_angle": 0.0},
+    "crank_cg": {"crank": ls.Link(0.04, 0.25, 1.3e-4)},
+    "coupler_cg": {"coupler": ls.Link(0.12, 0.40, 5.0e-4)},
+    "rocker_cg": {"rocker": ls.Link(0.09, 0.33, 4.0e-4)},
+    "coupler_cg_angle": {"coupler": ls.Link(0.12, 0.40, 5.0e-4, cg_distance=0.05)},
+    "crank_mass": {"crank": ls.Link(0.04, 0.0, 0.0)},
+    "coupler_mass": {"coupler": ls.Link(0.12, 0.0, 0.0)},
+    "rocker_mass": {"rocker": ls.Link(0.09, 0.0, 0.0)},
+}
+
+
+@pytest.mark.parametrize("nothing", WITHOUT)
+def test_nothing_costs_nothing(nothing):
+    assert cost(scene(**WITHOUT[nothing]), *UNKNOWNS) < cost(scene(), *UNKNOWNS)
+
+
+@pytest.mark.parametrize("nothing", WITHOUT)
+def test_leaving_nothing_out_changes_no_number(nothing):
+    """The cheaper plan against the full one, which is told the same zeros as arrays of one design."""
+
+    def as_array(value):
+        return xr.DataArray([float(value)], dims="design")
+
+    cheap = scene(**WITHOUT[nothing])
+    bars = cheap.mechanism
+    numbers = ("length", "mass", "inertia", "cg_distance", "cg_angle")
+    full_links = (
+        ls.Link(*(as_array(getattr(link, x)) for x in numbers)) for link in (bars.crank, bars.coupler, bars.rocker)
+    )
+    full = ls.Scene(
+        ls.FourBar(*full_links, ground=bars.ground, ground_angle=as_array(bars.ground_angle)),
+        omega2=as_array(cheap.omega2),
+        alpha2=as_array(cheap.alpha2),
+        gravity=tuple(map(as_array, cheap.gravity)),
+    )
+    expected, found = ls.sweep(full, 36), ls.sweep(cheap, 36)
+    for name in expected.data_vars:
+        np.testing.assert_array_equal(*np.broadcast_arrays(found[name], expected[name].isel(design=0)), err_msg=name)
+
+
+def test_massless_machine_at_rest_has_nothing_to_do():
+    still = scene(crank=ls.Link(0.04, 0, 0), coupler=ls.Link(0.12, 0, 0), rocker=ls.Link(0.09, 0, 0), alpha2=0.0)
+    assert cost(still, *UNKNOWNS) == 0
+    assert not any(ls.sweep(still, 8, outputs=UNKNOWNS)[name].any() for name in UNKNOWNS)
+
+
+def test_what_belongs_to_the_design_is_done_once():
+    """Moments of inertia and the like are no work at the angles."""
+    found = planned(scene(), *UNKNOWNS)
+    assert found.operations().total() > 20
+    once = {"J2", "J3", "J4"} & makes(found)
+    assert once == {"J2", "J3", "J4"}
+    heavy = planned(scene(coupler=links()["coupler"]), "J3")
+    assert heavy.operations("theta2").total() == 0
+
+
+# ---- names -----
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"), [("omega_3", "omega3"), ("F23X", "F23x"), ("t12", "T12"), ("pwoer", "power")]
+)
+def test_unknown_output_is_refused_with_what_was_meant(name, meant):
+    with pytest.raises(ValueError, match=rf'{name}.*did you mean "{meant}"'):
+        ls.sweep(scene(), outputs=["theta3", name])
+
+
+def test_all_unknown_outputs_are_named_at_once():
+    with pytest.raises(ValueError, match="outputs") as caught:
+        ls.sweep(scene(), outputs=["omega_3", "theta3", "zzz"])
+    first, second = str(caught.value).splitlines()
+    assert "omega_3" in first
+    assert "zzz" in second
+    assert "transmission_angle" in second
+
+
+def test_torque_of_another_drive_is_no_output():
+    with pytest.raises(ValueError, match="T13"):
+        ls.sweep(scene(), outputs="T13")

@@ -1,0 +1,214 @@
+"""Targets of results: only files are replaced, whatever their names, and nothing is left of killed writers."""
+
+import contextlib
+import fcntl
+import os
+import re
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.cli.commands import write_figure
+from linksweep.cli.main import main
+from linksweep.files.atomic import whole
+
+GET = fcntl.F_GETFL
+WRITERS = {
+    "save": (".nc", lambda path: ls.save(ls.check(ls.example("press")), path)),
+    "CSV": (".csv", lambda path: ls.peaks(ls.example("press"), theta2=8).linksweep.to_csv(path)),
+    "report": (".html", lambda path: ls.report(ls.example("loop"), path)),
+    "film": (".gif", lambda path: ls.plot.animate(ls.example("press"), 2).save(path)),
+    "figure": (".png", lambda path: write_figure(ls.sweep(ls.example("loop"), 8).linksweep.cycle(), path)),
+    "study": (".nc", lambda path: ls.study(ls.example("press"), path, of=["T12"])),
+}
+
+
+def pipe(path):
+    os.mkfifo(path)
+
+
+def device(path):
+    if os.geteuid():
+        pytest.skip("only root makes devices")
+    os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
+
+
+def bound(path):
+    with socket.socket(socket.AF_UNIX) as made:
+        made.bind(str(path))
+
+
+KINDS = {"a folder": Path.mkdir, "a pipe": pipe, "a device": device, "a socket": bound}
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """An empty working folder with a short path: a socket's has at most 108 bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.chdir(folder)
+        yield Path(folder)
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize("linked", [False, True], ids=["itself", "by a link"])
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_is_no_file_is_refused_and_stays(here, writer, kind, linked):
+    ending, write = WRITERS[writer]
+    target = here / f"target{ending}"
+    KINDS[kind](target)
+    path = here / f"link{ending}" if linked else target
+    if linked:
+        path.symlink_to(target)
+    before, mode = sorted(os.listdir(here)), target.stat().st_mode
+    with pytest.raises(OSError, match=f"{path.name}: is {kind}, which no file replaces; choose another name"):
+        write(path)
+    assert target.stat().st_mode == mode
+    assert sorted(os.listdir(here)) == before
+
+
+def test_the_command_line_refuses_it_before_it_computes(here, monkeypatch, capsys):
+    pipe(here / "out.nc")
+    monkeypatch.setattr("linksweep.cli.main.sweep", lambda *_, **__: pytest.fail("computed"))
+    (here / "press.toml").write_text((Path(ls.__file__).parent / "scene/examples/press.toml").read_text())
+    assert main(["sweep", "press.toml", "-o", "out.nc"]) == 2
+    assert capsys.readouterr().err == "linksweep: out.nc: is a pipe, which no file replaces; choose another name\n"
+
+
+ENGINE = ls.example("engine")
+
+
+@pytest.mark.parametrize(
+    ("write", "allowed"),
+    [
+        (lambda path: ls.save(ls.check(ENGINE), path), ".nc or .csv"),
+        (lambda path: ls.save(ENGINE, path), ".toml or .nc"),
+        (lambda path: ls.check(ENGINE).linksweep.to_csv(path), ".csv"),
+        (lambda path: ls.study(ENGINE, path), ".nc: a study file is NetCDF; of a finished one ls.open_study"),
+        (lambda path: ls.plot.animate(ENGINE, 2).save(path), ".gif or .html"),
+        (lambda path: ls.report(ENGINE, path), ".html or .htm: a report is a page"),
+    ],
+)
+@pytest.mark.parametrize("name", ["x.xlsx", "x", "x.nc4", "x.CSVX", ".nc"])
+def test_an_ending_that_says_something_else_is_refused(here, write, allowed, name):
+    with pytest.raises(ValueError, match=f"^{re.escape(name)}: its ending must be {re.escape(allowed)}"):
+        write(name)
+    assert os.listdir(here) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("sweep press.toml -o x.xlsx", "x.xlsx: its ending must be .nc or .csv"),
+        ("sweep press.toml -o x", "x: its ending must be .nc or .csv"),
+        ("peaks press.toml -o x.txt", "x.txt: its ending must be .nc or .csv"),
+        ("study press.toml -o x.csv", "x.csv: its ending must be .nc: a study file is NetCDF"),
+        ("demo -o x.csv", "x.csv: give a name without ending; x.nc and x.png follow"),
+        ("demo -o y/x.nc", "y/x.nc: give a name without ending; x.nc and x.png follow"),
+    ],
+)
+def test_the_command_line_refuses_an_ending_before_it_computes(here, monkeypatch, capsys, arguments, said):
+    for name in {"sweep", "peaks", "example"}:
+        monkeypatch.setattr(f"linksweep.cli.main.{name}", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("linksweep.studies.run.Job", lambda *_, **__: pytest.fail("computed"))
+    ls.save(ls.example("press"), "press.toml")
+    with contextlib.suppress(SystemExit):
+        assert main(arguments.split()) == 2
+    assert said in capsys.readouterr().err
+    assert os.listdir(here) == ["press.toml"]
+
+
+@pytest.mark.parametrize("command", ["sweep", "peaks"])
+def test_csv_is_the_table_of_the_netcdf_file(here, command):
+    ls.save(ls.example("press"), "press.toml")
+    for name in ("x.nc", "x.CSV"):
+        assert main([command, "press.toml", "-o", name]) == 0
+    with xr.open_dataset("x.nc") as found:
+        found.linksweep.to_csv("again.csv")
+    text = Path("x.CSV").read_text()
+    assert text == Path("again.csv").read_text()
+    first, *rows = text.splitlines()
+    assert "status" in first.split(",")
+    assert len(rows) == {"sweep": 720, "peaks": 1}[command]
+
+
+@pytest.mark.parametrize("length", [*range(241, 256)])
+def test_every_name_that_a_file_may_have(here, length):
+    for name in ("a" * (length - 3) + ".nc", "é" * ((length - 3) // 2) + "a" * ((length - 3) % 2) + ".nc"):
+        with whole(name) as temporary:
+            temporary.write_text("text")
+        assert os.listdir(here) == [name]
+        os.unlink(name)
+
+
+def test_a_study_may_have_the_longest_name(here):
+    name = "a" * 252 + ".nc"
+    ls.study(ls.example("press"), name, of=["T12"])
+    assert os.listdir(here) == [name]
+
+
+def test_a_file_that_is_replaced_keeps_its_rights(here):
+    Path("private.nc").touch(0o600)
+    ls.save(ls.check(ls.example("press")), "private.nc")
+    assert stat.S_IMODE(os.stat("private.nc").st_mode) == 0o600
+
+
+def test_a_link_to_a_file_that_is_not_there_yet(here):
+    Path("link.nc").symlink_to("new.nc")
+    ls.save(ls.check(ls.example("press")), "link.nc")
+    assert Path("link.nc").is_symlink()
+    assert Path("new.nc").stat().st_size > 0
+
+
+def test_what_is_flushed_was_opened_to_be_written(here, monkeypatch):
+    """Windows flushes no other file."""
+    opened = []
+    monkeypatch.setattr(
+        os, "fsync", lambda handle: opened.append((os.fstat(handle), fcntl.fcntl(handle, fcntl.F_GETFL)))
+    )
+    with whole("a.nc") as temporary:
+        temporary.write_text("text")
+    modes = [flags & os.O_ACCMODE for status, flags in opened if stat.S_ISREG(status.st_mode)]
+    assert modes == [os.O_RDWR]
+
+
+# --------------------------------------------------------------------------------------------- killed while writing
+
+
+KILLED = """
+import os, signal, sys
+from linksweep.files.atomic import whole
+with whole(sys.argv[1]) as temporary:
+    temporary.write_text("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_writer_left_is_swept_by_the_next(here):
+    assert subprocess.run([sys.executable, "-c", KILLED, "a.nc"], check=False).returncode == -9
+    (left,) = os.listdir(here)
+    assert left != "a.nc"
+    with whole("b.nc") as temporary:
+        temporary.write_text("text")
+    assert os.listdir(here) == ["b.nc"]
+
+
+def test_what_another_process_is_writing_stays(here):
+    going = "import sys\nfrom linksweep.files.atomic import whole\n" + (
+        "with whole('slow.nc') as temporary:\n    print(flush=True)\n    temporary.write_text(sys.stdin.read())\n"
+    )
+    command = [sys.executable, "-c", going]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        with whole("quick.nc") as temporary:
+            temporary.write_text("text")
+        process.communicate("all of it")
+    assert Path("slow.nc").read_text() == "all of it"
+    assert sorted(os.listdir(here)) == ["quick.nc", "slow.nc"]

@@ -1,0 +1,76 @@
+"""error_bound: never below the true rounding error of the pin forces, and seldom far above; free unless asked for."""
+
+from dataclasses import replace
+
+import numpy as np
+import oracle
+import oracle_slider_crank
+import pytest
+
+import linksweep as ls
+from linksweep.engine.trace.plan import plan
+
+COMPONENTS = tuple(f"{pin}{axis}" for pin in ("F12", "F32", "F43", "F14") for axis in "xy")
+JUDGES = {"four-bar": oracle, "slider-crank": oracle_slider_crank}
+
+
+def true_error(judge, data, theta2: float, cycle) -> float:
+    """Largest error of a component against 60 digits, relative to the largest component."""
+    exact = judge.solve(data, theta2)
+    exact = [exact[name] for name in COMPONENTS]
+    errors = [abs(float(cycle[name].values.flat[0]) - value) for name, value in zip(COMPONENTS, exact, strict=True)]
+    return float(max(errors) / max(map(abs, exact)))
+
+
+@pytest.mark.parametrize("machine", JUDGES)
+def test_it_holds_and_is_not_far_off(machine):
+    judge, rng = JUDGES[machine], np.random.default_rng(51)
+    ratios = []
+    for _ in range(120):
+        data = judge.random_data(rng)
+        theta2 = judge.random_theta2(rng, data)
+        cycle = ls.sweep(judge.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
+        if int(cycle.status.values.flat[0]) == 0:
+            error, bound = true_error(judge, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
+            assert error <= bound
+            ratios.append(bound / max(error, 2.0**-53))
+    assert len(ratios) > 80
+    assert np.quantile(ratios, 0.9) < 1000
+
+
+def test_it_holds_near_toggles():
+    """A rocker that nearly folds: the closure keeps its digits there, and the bound knows."""
+    rng, bounds = np.random.default_rng(52), []
+    for margin in (1e-2, 1e-4, 1e-6, 1e-8):
+        for _ in range(6):
+            data = oracle.random_data(rng)
+            toggle = ls.check(oracle.to_scene(data)).toggle_angle.values
+            toggle = toggle[np.isfinite(toggle)]
+            for side in (-1.0, 1.0) if len(toggle) else ():
+                theta2 = float(toggle[0] + side * np.degrees(margin))
+                cycle = ls.sweep(oracle.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
+                if int(cycle.status.values.flat[0]) == 0:
+                    error, bound = true_error(oracle, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
+                    assert error <= bound
+                    bounds.append(bound)
+    assert len(bounds) > 10
+    assert max(bounds) < 1e-10
+
+
+@pytest.mark.parametrize("name", ["press", "engine", "quick-return"])
+@pytest.mark.parametrize("angle", [-90.0, 0.0, 90.0, 180.0])
+def test_a_frame_at_right_angles_is_as_good(name, angle):
+    """Its cosine or sine is 0, and products with it drop out: what is left must not be taken for a difference that
+    cancels."""
+    scene = ls.example(name)
+    turned = "slide_angle" if name == "engine" else "ground_angle"
+    scene = replace(scene, mechanism=replace(scene.mechanism, **{turned: angle}))
+    bound = ls.sweep(scene, theta2=36, outputs=["error_bound"]).error_bound
+    assert float(bound.min()) > 0.0 and float(bound.max()) < 1e-12
+
+
+def test_nobody_else_pays_for_it():
+    scene = ls.example("press")
+    request = plan(scene.table, ("F32",), scene.inputs.forms)
+    with_bound = plan(scene.table, ("F32", "error_bound"), scene.inputs.forms)
+    assert request.operations("theta2").total() < 150 < with_bound.operations("theta2").total()

@@ -1,0 +1,88 @@
+"""Plots of what comes after the cycle, where they have something awkward to show."""
+
+import numpy as np
+import pytest
+from drawn import closed_figures, line, texts  # noqa: F401
+
+import linksweep as ls
+from linksweep.plot.kit.with_peaks import with_peaks
+
+PRESS = ls.example("press")
+LINKS = [ls.Link(length, 1.0, 0.01, cg_distance=length / 2.0) for length in (0.08, 0.12, 0.11)]
+SWING = ls.Scene(ls.FourBar(*LINKS, ground=0.22), 20.0, gravity=(0.0, -9.81))  # turns between two toggles
+
+
+def test_the_torque_with_a_flywheel_is_the_mean_of_that_without():
+    figure = ls.plot.torque_with_flywheel(ls.flywheel(ls.example("engine"), fluctuation=0.02))
+    above, below = figure.axes
+    angles, torque = line(above, "without flywheel").get_data()
+    cycle = ls.sweep(ls.example("engine"), solver="dense")
+    np.testing.assert_allclose(torque[:-1], cycle.T12, rtol=1e-9, atol=1e-9 * np.ptp(torque))
+    constant = next(drawn for drawn in above.lines if drawn.get_label().startswith("with it, constant: −"))
+    mean = np.trapezoid(torque, angles) / 720.0
+    np.testing.assert_allclose(constant.get_ydata(), mean, rtol=1e-4)
+    assert f"{abs(mean):.4g} N m" in constant.get_label()
+    gains, loses = (area.get_paths()[0].vertices[:, 1] for area in above.collections)
+    assert gains.max() <= mean + 1.0 < mean + 100.0 < loses.max()  # the machine asks for less, and for more
+    assert "max 317.30 rad/s" in texts(below)  # 314.16 · (1 + 0.02/2)
+
+
+def test_a_flywheel_that_does_not_turn_fully_is_refused():
+    found = ls.flywheel(SWING, fluctuation=0.02)
+    with pytest.raises(ValueError, match="found has no speed at some angle: it stalls, or does not turn fully"):
+        ls.plot.flywheel(found)
+
+
+@pytest.mark.parametrize("frame", ["ground", "journal"])
+def test_three_pins_are_compared_in_a_fourth_panel(frame):
+    cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))
+    figure = cycle.linksweep.bearings(frame)
+    *panels, together = figure.axes
+    assert together.get_title(loc="left") == "All to one scale [N]"
+    for panel, force in zip(panels, ("F12", "F32", "F43"), strict=True):
+        label = next(drawn for drawn in together.lines if f"_{{{force[1:]}}}" in drawn.get_label())
+        np.testing.assert_array_equal(label.get_xydata(), line(panel, f"_locus {force}").get_xydata())
+        size = np.hypot(*label.get_data())[:-1]
+        np.testing.assert_allclose(size, np.hypot(cycle[f"{force}x"], cycle[f"{force}y"]), rtol=1e-12)
+    assert len(ls.sweep(PRESS, theta2=90).linksweep.bearings().axes) == 4  # of four pins each has its own
+
+
+def test_shares_that_grow_without_bound_leave_the_rest_to_be_seen():
+    shares = ls.breakdown(SWING, "F32")
+    ax = ls.plot.breakdown(shares)
+    whole = np.abs(line(ax, "sum").get_ydata())
+    assert np.nanmax(whole) > 20.0 * ax.get_ylim()[1]
+    assert np.nanmedian(whole) > 0.05 * ax.get_ylim()[1]
+    assert ax.get_title(loc="left").startswith("off scale: up to ")
+    assert [text.get_text() for text in ax.texts] == ["cannot assemble"]
+    assert ls.plot.breakdown(ls.breakdown(PRESS, "F32")).get_title(loc="left") == ""
+
+
+@pytest.mark.parametrize(
+    ("below", "said"), [(2000.0, "kept up to "), (100.0, "kept at none")], ids=["beyond the axis", "not even at rest"]
+)
+def test_a_limit_that_is_not_on_the_axis_is_said_in_the_legend(below, said):
+    ax = ls.plot.over_speed(PRESS, "F32", np.linspace(5.0, 30.0, 6), below=below)
+    legend = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert said in legend[-1] and legend[-1].startswith(f"limit, {below:#.4g}".rstrip("."))
+    assert texts(ax) == []
+    assert ax.get_xlim() == (5.0, 30.0)
+    assert ax.get_ylim()[1] > max(below, line(ax, "peak of $F_{32}$").get_ydata().max())
+
+
+def test_peaks_without_bound_are_not_an_empty_plot():
+    with pytest.raises(ValueError, match="F32 grows without bound at every speed"):
+        ls.plot.over_speed(SWING, "F32", [10.0, 20.0])
+
+
+def test_what_is_balanced_away_is_shown_as_nothing():
+    balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
+    figure = ls.plot.balance(PRESS, balanced, theta2=90)
+    before, after = (text.get_text() for text in figure.axes[0].get_legend().get_texts())
+    largest = float(ls.sweep(PRESS, theta2=90, outputs=["Fs"]).Fs.max())
+    assert before == f"before, up to {largest:#.4g}"
+    assert after == "after, up to 0"
+    figure.canvas.draw()
+    for ax in figure.axes:
+        frame, legend = ax.get_window_extent(), ax.get_legend().get_window_extent()
+        assert frame.x0 < legend.x0 and legend.x1 < frame.x1

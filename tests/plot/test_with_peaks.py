@@ -1,0 +1,176 @@
+"""Figures mark the exact peak that the table beside it has, at jumps, too."""
+
+from dataclasses import replace
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import xarray as xr
+from drawn import texts
+
+import linksweep as ls
+from linksweep.plot.kit.signals import angle_text, number
+from linksweep.plot.kit.with_peaks import with_peaks
+from linksweep.reports.results_of_page import results_of
+from linksweep.results.peaks import peaks_of_part
+
+mpl.use("Agg")
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def pump() -> ls.Scene:
+    """A slider-crank with friction: its forces jump at the dead centres, so that a sample has one side of them."""
+    machine = ls.SliderCrank(
+        ls.Bar(0.05, 0.02, 0.02, 7750), ls.Bar(0.2, 0.02, 0.02, 7750), 1.5, friction=0.15, offset=0.004
+    )
+    return ls.Scene(machine, omega2=40.0, gravity=(0.0, -9.81), loads=[ls.Load("slider", force=-300.0)])
+
+
+def said_at_peaks(ax, units: str) -> str:
+    return "\n".join(texts(ax)).replace(f" {units}", "")
+
+
+@pytest.mark.parametrize("count", [36, 90, 720])
+def test_every_figure_marks_what_the_table_says(count):
+    scene = pump()
+    cycle, worst = ls.sweep(scene, count), ls.peaks(scene)
+    assert float(cycle.T12.max()) < float(worst.T12_max)  # the samples miss it
+    said = said_at_peaks(ls.plot.torque(cycle), "N m")
+    assert f"max {number(float(worst.T12_max))} at" in said
+    assert f"min {number(float(worst.T12_min))} at" in said
+    said = said_at_peaks(ls.plot.forces(cycle), "N")
+    for pin in ("F12", "F32", "F43", "F14"):
+        assert f"$F_{{{pin[1:]}}}$ {number(float(worst[f'{pin}_peak']))} at" in said
+        if pin != "F14":
+            assert f" = {number(float(worst[f'{pin}_peak']))}" in said_at_peaks(ls.plot.bearing(cycle, pin), "N")
+    shaking = ls.sweep(scene, count, ["Fsx", "Fsy"])
+    fs = number(float(ls.peaks(scene, of=["Fs"]).Fs_peak))
+    assert f"$F_{{s}}$ = {fs}" in said_at_peaks(ls.plot.hodograph(shaking), "N")
+
+
+def double_rocker() -> ls.Scene:
+    """Toggles at ±arccos((a² + d² − (b + c)²)/(2·a·d)), where forces are unbounded."""
+    links = (ls.Bar(length, 0.02, 0.02, 7750) for length in (0.2, 0.12, 0.15))
+    return ls.Scene(ls.FourBar(*links, ground=0.25), omega2=5.0, gravity=(0.0, -9.81))
+
+
+def tipper() -> ls.Scene:
+    machine = ls.InvertedSliderCrank(
+        ls.Link(1.5, 300.0, 90.0, 0.9), ls.Link(4.0, 80.0, 40.0, 1.0), 1.6, 30.0, ground_angle=-25.0
+    )
+    return ls.Scene(machine, omega2=0.05, gravity=(0.0, -9.81), drive="cylinder")
+
+
+MACHINES = {
+    "press": lambda: ls.example("press"),
+    "engine": lambda: ls.example("engine"),
+    "quick-return": lambda: ls.example("quick-return"),
+    "pump": pump,
+    "tipper": tipper,
+}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_marks_over_a_part_are_the_peaks_of_close_samples(name):
+    """Of a part of a turn there is another reference: 20 samples to a degree, with the marks' own angles among them."""
+    scene, first, last = MACHINES[name](), 10.0, 60.0
+    close = np.linspace(first, last, 1001)
+    marked = [with_peaks(ls.sweep(scene, np.linspace(first, last, count))) for count in (36, 720)]
+    at = np.concatenate([close, *(ds.theta2.values for ds in marked)])
+    for force in ("F12", "F32", "F43", "F14"):
+        sizes = [float(np.hypot(ds[f"{force}x"], ds[f"{force}y"]).max()) for ds in marked]
+        reference = float(ls.peaks(scene, [force], theta2=np.unique(at))[f"{force}_peak"])
+        assert sizes == pytest.approx([reference] * 2, rel=1e-12)
+        sampled = float(ls.peaks(scene, [force], theta2=close)[f"{force}_peak"])
+        assert sampled <= reference * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("count", [36, 720])
+def test_marks_over_a_part_are_those_of_the_reports_table(name, count):
+    scene, part = MACHINES[name](), (-35.0, 117.3)
+    found = results_of(scene, part).peaks
+    cycle = ls.sweep(scene, np.linspace(*part, count))
+    said = said_at_peaks(ls.plot.forces(cycle), "N")
+    for force in ("F12", "F32"):
+        size, at = number(float(found[f"{force}_peak"])), angle_text(float(found[f"{force}_peak_at"]))
+        assert f"$F_{{{force[1:]}}}$ {size} at {at}" in said
+    drive = scene.mechanism.drives[scene.drive]
+    said = said_at_peaks(ls.plot.torque(cycle), "N m" if drive.startswith("T") else "N")
+    for end in ("max", "min"):
+        size, at = number(float(found[f"{drive}_{end}"])), angle_text(float(found[f"{drive}_{end}_at"]))
+        assert f"{end} {size} at {at}" in said
+
+
+def test_a_part_that_ends_at_a_toggle_or_beyond():
+    """And one that ends beside it: forces are as large there as at the last angle itself."""
+    scene = double_rocker()
+    toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
+    beyond = peaks_of_part(scene, ["F32", "T12"], (10.0, toggle + 20.0))
+    assert np.isposinf(beyond.F32_peak) and float(beyond.F32_peak_at) == pytest.approx(toggle, abs=1e-6)
+    assert int(beyond.status) == 3
+    beside = peaks_of_part(scene, ["F32"], (10.0, toggle - 1e-3))
+    last = ls.sweep(scene, [toggle - 1e-3], ["F32"]).F32
+    assert float(beside.F32_peak) == pytest.approx(float(last[0]), rel=1e-9)
+    assert float(beside.F32_peak_at) == pytest.approx(toggle - 1e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [36, 37, 720])
+def test_unbounded_peaks_are_marked_where_they_are_whatever_the_samples(count):
+    scene = double_rocker()
+    toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
+    cycle = ls.sweep(scene, count, [*scene.mechanism.dynamics("crank"), "Fsx", "Fsy"])
+    where = {angle_text(toggle), angle_text(360.0 - toggle)}
+    for drawn, units in (
+        (ls.plot.forces, "N"),
+        (ls.plot.torque, "N m"),
+        (ls.plot.bearing, "N"),
+        (ls.plot.hodograph, "N"),
+    ):
+        said = said_at_peaks(drawn(cycle), units)
+        assert "∞" in said and "off scale" in said
+        assert any(angle in said for angle in where)
+    ls.plot.cycle(cycle).draw_without_rendering()
+
+
+def test_a_part_of_a_cycle_of_two_turns():
+    """The gas of a four-stroke engine pushes in its second turn, too."""
+    scene = ls.example("engine")
+    whole = ls.peaks(scene, ["F32"])
+    parts = [peaks_of_part(scene, ["F32"], (first, first + 0.5 * scene.period)) for first in (0.0, 0.5 * scene.period)]
+    assert max(float(part.F32_peak) for part in parts) == pytest.approx(float(whole.F32_peak), rel=1e-9)
+
+
+def test_the_samples_stay_and_peaks_come_between_them():
+    cycle = ls.sweep(pump(), 90)
+    more = with_peaks(cycle)
+    xr.testing.assert_equal(
+        more.sel(theta2=cycle.theta2)[["T12", "F32x"]], cycle[["T12", "F32x"]].reset_coords(drop=True)
+    )
+    worst = ls.peaks(pump())
+    assert float(np.hypot(more.F32x, more.F32y).max()) == pytest.approx(float(worst.F32_peak), rel=1e-9)
+    assert with_peaks(more) is more
+
+
+def test_numbers_that_are_not_the_scenes_are_drawn_as_they_are():
+    cycle = ls.sweep(pump(), 90)
+    with xr.set_options(keep_attrs=True):
+        doubled = cycle.assign(T12=2.0 * cycle.T12)
+    lost = cycle.drop_attrs()
+    speeds = ls.sweep(replace(pump(), omega2=xr.DataArray([20.0, 40.0], dims="speed")), 90)
+    jumps = replace(pump(), loads=[ls.Load("slider", force=lambda a: np.where(np.mod(a, 360.0) < 180.0, 0.0, -300.0))])
+    for ds in (doubled, lost, speeds, ls.sweep(jumps, 90)):
+        assert with_peaks(ds) is ds
+    ls.plot.cycle(ls.sweep(jumps, 90))
+
+
+def test_one_of_several_designs_is_marked_exactly():
+    scene = replace(pump(), omega2=xr.DataArray([20.0, 40.0], {"speed": [1, 2]}, "speed"))
+    said = said_at_peaks(ls.plot.torque(ls.sweep(scene, 90).isel(speed=1)), "N m")
+    assert f"max {number(float(ls.peaks(pump()).T12_max))} at" in said

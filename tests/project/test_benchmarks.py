@@ -1,0 +1,153 @@
+"""Every benchmark once, tiny: its rows are there and its rivals agree. No time is asserted."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks import __main__ as front_door
+from benchmarks.cases import ALL, GENERAL, LENGTHS, QUICK, batch
+from benchmarks.report import HEADER, machine, markdown
+from benchmarks.rivals import limit, peers
+from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
+
+JUDGED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "warm", "threads"}
+GOALS = {
+    "unknowns": {60, 250, 1.3},
+    "peaks": {200, 1.4},
+    "exact": {0.35, 0.7, 1.0, 400},
+    "missed": set(),
+    "skipping": {0.35, 0.75},
+    "solves": set(),
+    "grids": set(),
+    "growth": set(),
+    "mechanisms": {1.0, 1.5},
+    "warm": {1e-3},
+    "first": {1.0, 3.0},
+    "threads": {1.7},
+}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    """Rows of a group at the tiny size, measured once."""
+    found = {}
+
+    def of(name: str) -> list[Row]:
+        return found[name] if name in found else found.setdefault(name, front_door.measured(name, QUICK))
+
+    return of
+
+
+@pytest.mark.parametrize("name", front_door.GROUPS)
+def test_rows_exist_and_rivals_agree(name, rows):
+    found = rows(name)
+    assert {row.goal for row in found} - {None} == GOALS[name]
+    for row in found:
+        assert row.note.startswith("not measured") or (math.isfinite(row.ratio) and row.ratio > 0), row
+        assert row.agrees, row
+        assert name not in JUDGED or row.error is not None or row.note, row
+
+
+@pytest.mark.skipif(cores() < 2, reason="one core only")
+def test_two_threads_give_the_same_bits(rows):
+    assert [row.error for row in rows("threads")] == [0.0] * 4
+
+
+def test_skipped_work_is_counted(rows):
+    notes = [row.note.split() for row in rows("skipping") if "operations" in row.note]
+    assert len(notes) == 16
+    assert all(int(ours) < int(full) for ours, _, full, _ in notes)
+
+
+# --------------------------------------------------------------------------------- the rivals themselves
+
+
+@pytest.fixture(scope="module")
+def library():
+    if limit.compiler() is None:
+        pytest.skip("no C compiler on this machine")
+    return limit.build()
+
+
+@pytest.mark.parametrize("n_angles", [1, 17, 720])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_limit_stores_what_the_dense_solve_gives(library, n_angles, sign):
+    design, theta2 = replace(GENERAL, sign=sign), peers.grid(n_angles)
+    dense = peers.numpy_lapack(design, theta2)
+    np.testing.assert_allclose(limit.store(library, design, theta2), dense, rtol=0, atol=1e-12 * np.abs(dense).max())
+
+
+@pytest.mark.parametrize("n_angles", [16, 100, 720])
+def test_the_limit_finds_the_peaks_of_the_dense_solve(library, n_angles):
+    designs = batch(7, *ALL)
+    values, at = limit.peaks(library, designs, n_angles)
+    dense, dense_at = peers.numpy_lapack_peaks(designs, n_angles, chunk=3)
+    np.testing.assert_allclose(values, dense, rtol=1e-11)
+    np.testing.assert_array_equal(at, dense_at)
+
+
+def test_the_closed_form_is_the_dense_solve():
+    designs, theta2 = batch(5, *LENGTHS), peers.grid(90)
+    assert peers.difference(peers.numpy_closed_form(designs, theta2), peers.numpy_lapack(designs, theta2)) < 1e-12
+
+
+# -------------------------------------------------------------------------------- timing and front door
+
+
+def test_calls_are_timed_in_turn():
+    order = []
+    calls = {name: lambda name=name: order.append(name) for name in "AB"}
+    found = race(calls, replace(QUICK, rounds=3))
+    assert "".join(order[-6:]) == "ABABAB"
+    assert [len(seconds) for seconds in found.seconds.values()] == [3, 3]
+
+
+def test_a_figure_is_the_median_of_the_rounds_ratios():
+    found = Race({"ours": [1.0, 2.0, 1.0], "theirs": [4.0, 6.0, 50.0]})
+    assert found.row(FASTER, "ours", "theirs").figure == 4.0
+    assert found.row(SHARE, "ours", "theirs").figure == 0.25
+    assert found.row(WALL, "ours", "theirs").figure == 1.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "goal", "met"), [(FASTER, 4, True), (FASTER, 5, False), (SHARE, 0.3, True), (SHARE, 0.2, False)]
+)
+def test_a_goal_is_met_or_not(kind, goal, met):
+    assert Race({"ours": [1.0], "theirs": [4.0]}).row(kind, "ours", "theirs", goal).met is met
+
+
+def test_a_rival_that_is_not_there_says_why():
+    row = Race({"ours": [1.0]}).row(SHARE, "ours", "limit.c", 1.3)
+    assert (row.figure, row.met, row.note) == (None, None, "not measured: no C compiler found")
+
+
+def test_the_table_is_markdown():
+    rows = [Race({"ours": [2e-3], "theirs": [8e-3]}, 1000).row(FASTER, "ours", "theirs", 3, error=2e-15)]
+    title, _, header, rule, line = markdown({"a group": rows}).splitlines()
+    cells = [cell.strip() for cell in line.strip("|").split("|")]
+    assert (title, header.count("|"), set(rule)) == ("## a group", len(HEADER) + 1, {"|", "-"})
+    assert cells == ["ours", "theirs", "4 times as fast", "≥ 3", "yes", "2 µs", "8 µs", "2e-15", ""]
+
+
+def test_front_door(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(front_door, "RESULTS", tmp_path / "RESULTS.md")
+    file = tmp_path / "rows.json"
+    assert front_door.main(["--quick", "--only", "threads", "--json", str(file), "--write"]) == 0
+    printed, written, stored = capsys.readouterr().out, front_door.RESULTS.read_text(), json.loads(file.read_text())
+    assert "## Two threads against one" in printed
+    assert "## Two threads against one" in written
+    assert stored["machine"] == machine()
+    assert all(f"- {name}: {value}" in written for name, value in machine().items())
+    assert [row["group"] for row in stored["rows"]] == ["Two threads against one"] * 4
+
+
+def test_disagreement_is_an_error_a_slow_run_is_not(tmp_path, monkeypatch):
+    def group(error: float) -> front_door.Group:
+        return front_door.Group("t", lambda size: [Row("ours", "theirs", FASTER, 0.1, goal=60.0, error=error)])
+
+    for error, code in ((1e-15, 0), (1e-3, 1), (math.nan, 1)):
+        monkeypatch.setitem(front_door.GROUPS, "unknowns", group(error))
+        assert front_door.main(["--only", "unknowns"]) == code

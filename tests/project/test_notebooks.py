@@ -1,0 +1,41 @@
+"""Every notebook runs from top to bottom, and shows its figures."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import jupytext
+import nbclient
+import pytest
+
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.py"))
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning", "ignore::FutureWarning")
+def test_notebook_runs(path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
+    notebook = jupytext.read(path)
+    nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert any("image/png" in output.get("data", {}) for output in shown)
+
+
+def test_there_are_notebooks():
+    assert NOTEBOOKS
+
+
+def test_a_page_drawn_first_leaves_display_on(tmp_path):
+    """A notebook's backend turns it on when it wakes, with the first figure; nothing would be seen otherwise."""
+    (tmp_path / "wakes.py").write_text(
+        "import matplotlib\nfrom matplotlib.backends.backend_agg import *\nmatplotlib.interactive(True)\n"
+    )
+    code = """
+import linksweep as ls, matplotlib
+ls.sweep(ls.example("press"), theta2=8).linksweep.cycle()
+assert matplotlib.get_backend() == "module://wakes"
+assert matplotlib.is_interactive()
+"""
+    there = os.environ | {"MPLBACKEND": "module://wakes", "PYTHONPATH": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", code], env=there, check=True)

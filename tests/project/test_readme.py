@@ -1,0 +1,37 @@
+"""What the README shows works as it stands."""
+
+import re
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import pytest
+
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mpl.use("Agg")
+
+
+@pytest.mark.parametrize("block", re.findall(r"```python\n(.*?)```", README, re.DOTALL))
+def test_its_python_runs(block):
+    exec(block, {})
+    assert Path("cycle.nc").exists() == ("cycle.nc" in block)
+    plt.close("all")
+
+
+def test_it_has_the_two_lines():
+    lines = [line for line in README.splitlines() if line.startswith("python3 -m venv")]
+    assert len(lines) == 2
+    assert lines[0].endswith("linksweep demo")
+    assert lines[1].endswith("pytest")
+
+
+def test_its_links_lead_somewhere():
+    links = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
+    missing = [link for link in links if not (Path(__file__).parents[2] / link).exists()]
+    assert links
+    assert not missing

@@ -1,0 +1,37 @@
+"""The search for peaks misses none: 2000 random machines against thousands of samples each.
+
+`python -m benchmarks --only missed` is the same for a million.
+"""
+
+import numpy as np
+import pytest
+
+import linksweep as ls
+from benchmarks.accuracy import missed
+
+
+@pytest.mark.parametrize("name", missed.FAMILIES)
+def test_no_sample_exceeds_a_peak(name):
+    found = missed.search(missed.FAMILIES[name], 500, seed=1)
+    assert found.count == 0, found.worst
+    assert found.shortfall <= missed.ALLOWED
+
+
+def test_half_of_the_machines_come_near_to_a_toggle():
+    """Otherwise it proves little."""
+    scene = missed.FAMILIES["four-bar"].scene(np.random.default_rng(0), 400)
+    found = ls.check(scene)
+    assert (found.assembly == 0).all()
+    assert 100 < int((found.transmission_angle_min < 15.0).sum()) < 400
+    assert {"crank_rocker", "double_crank"} <= {
+        found.grashof.attrs["flag_meanings"].split()[k] for k in found.grashof.values
+    }
+
+
+def test_a_peak_that_falls_short_is_counted():
+    scene = missed.FAMILIES["slider-crank"].scene(np.random.default_rng(0), 3)
+    found, dense = ls.peaks(scene), ls.peaks(scene, theta2=missed.angles(90.0))
+    found["T12_min"][1] += 1e-2 * found.T12_peak[1]
+    found["F32_peak"][2] *= 0.9
+    short = missed.shortfall(found, dense)
+    np.testing.assert_allclose(short, [0.0, 1e-2, 1.0 / 0.9 - 1.0], atol=1e-4)

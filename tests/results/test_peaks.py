@@ -1,0 +1,286 @@
+"""peaks: against dense sweeps and against a reference of a few lines, row by row; names, dims, status, bits."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from oracle import random_lengths
+
+import linksweep as ls
+from linksweep.engine import run
+from linksweep.engine.kernel import reduce
+
+FORCES = ("F12", "F32", "F43", "F14")
+BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
+
+
+def reduced(function, row, angles) -> tuple[float, float]:
+    """A function of engine.reduce on plain Python numbers, as small requests run it."""
+    return function(list(map(float, row)), list(map(float, angles)), np.empty(reduce.WORK))
+
+
+def grid(n: int) -> np.ndarray:
+    return np.arange(n) * (360 / n)
+
+
+def reference(row: np.ndarray, angles: np.ndarray) -> tuple[float, float]:
+    """The first largest sample and its angle."""
+    return (math.nan, math.nan) if np.isnan(row).all() else (row[np.nanargmax(row)], angles[np.nanargmax(row)])
+
+
+# --------------------------------------------------------------------------------------- reductions
+
+
+def test_random_rows_of_every_length_against_the_reference():
+    rng = np.random.default_rng(2)
+    for n in [*range(1, 135), 191, 192, 193, 720]:
+        for missing in (0.0, 0.3, 0.95, 1.0):
+            row = np.where(rng.random(n) < missing, np.nan, rng.normal(size=n))
+            np.testing.assert_array_equal(reduced(reduce.largest_sample, row, grid(n)), reference(row, grid(n)))
+            least, at = reduced(reduce.least_sample, row, grid(n))
+            np.testing.assert_array_equal((-least, at), reference(-row, grid(n)))
+
+
+def test_every_place_of_a_lone_peak_is_found():
+    for n in (64, 100, 129):
+        for at in range(n):
+            row = np.zeros(n)
+            row[at] = 1.0
+            assert reduced(reduce.largest_sample, row, grid(n)) == (1.0, grid(n)[at])
+
+
+def test_of_equal_samples_the_first_is_taken():
+    row = np.zeros(300)
+    row[[7, 71, 135, 200]] = 2.0  # three of them in one lane
+    assert reduced(reduce.largest_sample, row, grid(300)) == (2.0, grid(300)[7])
+    row[6] = 2.0
+    assert reduced(reduce.largest_sample, row, grid(300)) == (2.0, grid(300)[6])
+
+
+@pytest.mark.parametrize("level", [3.0, 0.0, -3.0, -1e300])
+def test_a_plateau_is_itself(level):
+    assert reduced(reduce.largest_sample, np.full(100, level), grid(100)) == (level, 0.0)
+    row = np.full(100, level)
+    row[40:60] = np.nan
+    assert reduced(reduce.largest_sample, row, grid(100)) == (level, 0.0)
+
+
+@pytest.mark.parametrize("n", [1, 64, 130])
+def test_mean_and_mean_square_pass_over_what_is_missing(n):
+    rng = np.random.default_rng(n)
+    row = rng.normal(size=n)
+    row[1::3] = np.nan
+    there = row[~np.isnan(row)]
+    assert reduced(reduce.mean, row, grid(n)) == (pytest.approx(math.fsum(there) / len(there), rel=1e-13), len(there))
+    squares = math.fsum(there**2) / len(there)
+    assert reduced(reduce.mean_square, row, grid(n)) == (pytest.approx(squares, rel=1e-13), len(there))
+    for function in (reduce.mean, reduce.mean_square):
+        value, count = reduced(function, np.full(n, np.nan), grid(n))
+        assert math.isnan(value)
+        assert count == 0.0
+
+
+# ------------------------------------------------------------------------------- against dense sweeps
+
+
+def smooth_designs(seed: int, count: int) -> list[ls.Scene]:
+    """Crank-rockers and double cranks that transmit well, with loads."""
+    rng = np.random.default_rng(seed)
+    found: list[ls.Scene] = []
+    while len(found) < count:
+        *moving, ground = random_lengths(rng, ("crank_rocker", "double_crank")[len(found) % 2])
+        links = [
+            ls.Link(x, rng.uniform(0.5, 2.0), 0.1 * x * x, rng.uniform(0.0, x), rng.uniform(-180, 180)) for x in moving
+        ]
+        load = ls.Load("coupler", force=rng.uniform(-30, 30, 2).tolist(), at=(moving[1], 20.0), frame="link")
+        mechanism = ls.FourBar(*links, ground=ground, branch=str(rng.choice(["open", "crossed"])))
+        scene = ls.Scene(mechanism, omega2=rng.uniform(3.0, 9.0), gravity=(0.0, -9.81), loads=[load])
+        if ls.check(scene).transmission_angle_min > 25.0:
+            found.append(scene)
+    return found
+
+
+@pytest.mark.parametrize("scene", [ls.example("press"), *smooth_designs(1, 8)])
+def test_peaks_are_those_of_a_dense_sweep(scene):
+    dense = ls.sweep(scene, 14_400, [*FORCES, "T12"])
+    found = ls.peaks(scene)
+    for name in FORCES:
+        row = dense[name].values
+        assert float(found[f"{name}_peak"]) == pytest.approx(row.max(), rel=1e-6)
+        assert abs(dense[name].sel(theta2=found[f"{name}_peak_at"], method="nearest") / row.max() - 1) < 1e-5
+    torque = dense.T12.values
+    scale = np.abs(torque).max()
+    assert float(found.T12_max) == pytest.approx(torque.max(), abs=1e-6 * scale)
+    assert float(found.T12_min) == pytest.approx(torque.min(), abs=1e-6 * scale)
+    assert float(found.T12_peak) == pytest.approx(scale, rel=1e-6)
+    assert found.T12_peak == max(abs(found.T12_max), abs(found.T12_min))
+    for which in ("max", "min"):
+        there = ls.sweep(scene, [float(found[f"T12_{which}_at"])], ["T12"]).T12.item()
+        assert there == pytest.approx(float(found[f"T12_{which}"]), abs=1e-6 * scale)
+
+
+def test_of_given_angles_it_is_the_largest_sample():
+    scene = ls.example("press")
+    for given in (97, np.linspace(200.0, 350.0, 301), [330.0, 310.0, 320.0, 310.0]):
+        cycle = ls.sweep(scene, given, ["F32", "T12"])
+        found = ls.peaks(scene, of=["F32", "T12"], theta2=given)
+        for peak, row in (("F32_peak", cycle.F32), ("T12_max", cycle.T12), ("T12_min", -cycle.T12)):
+            value, at = reference(row.values, row.theta2.values)
+            assert abs(float(found[peak])) == pytest.approx(abs(value), rel=1e-15)
+            assert float(found[f"{peak}_at"]) == at
+
+
+def test_means_against_work_and_against_the_sweep():
+    scene = ls.example("press")
+    found = ls.peaks(scene, of=["T12_mean", "T12_rms", "F32_mean", "F32_rms", "theta4_mean"])
+    cycle = ls.sweep(scene, 720, ["T12", "F32", "theta4"])
+    for name in ("T12", "F32", "theta4"):
+        row = cycle[name].values
+        assert float(found[f"{name}_mean"]) == pytest.approx(math.fsum(row) / 720, rel=1e-12, abs=1e-12)
+        if f"{name}_rms" in found:
+            assert float(found[f"{name}_rms"]) == pytest.approx(math.hypot(*row) / math.sqrt(720), rel=1e-12)
+    # weight, constant forces and a constant torque on a link that comes back do no work in a revolution
+    assert abs(float(found.T12_mean)) < 1e-12 * float(found.T12_rms)
+    turning = ls.Scene(scene.mechanism, omega2=3.0, loads=[ls.Load("crank", torque=-2.5)])
+    assert float(ls.peaks(turning, of="T12_mean").T12_mean) == pytest.approx(2.5, rel=1e-12)
+
+
+# -------------------------------------------------------------------------------- names, dims, status
+
+
+def test_names_units_and_words():
+    found = ls.peaks(ls.example("press"))
+    pins = [f"{name}_{what}" for name in FORCES for what in ("peak", "peak_at")]
+    torque = ["T12_max", "T12_max_at", "T12_min", "T12_min_at", "T12_peak"]
+    assert list(found.data_vars) == [*pins, *torque, "status"]
+    for name in [*pins, *torque]:
+        unit = "degree" if name.endswith("_at") else "N m" if name.startswith("T12") else "N"
+        assert found[name].attrs["units"] == unit
+    assert found.F32_peak.attrs["long_name"] == (
+        "largest magnitude of the force of link 3 (coupler) on link 2 (crank) at pin B"
+    )
+    assert found.T12_min_at.attrs["long_name"].startswith("crank angle of the least torque of the drive on link 2")
+    assert found.status.dtype == np.int8
+    assert found.status.attrs["flag_meanings"].split() == ["ok", "partial_revolution", "cannot_assemble", "unbounded"]
+    assert found.attrs["command"] == "linksweep.peaks(scene)"
+    assert ls.peaks(ls.example("press"), theta2=72).attrs["command"] == "linksweep.peaks(scene, theta2=72)"
+    assert not found.sizes
+
+
+@pytest.mark.parametrize(("drive", "torque"), [("crank", "T12"), ("coupler", "T13"), ("rocker", "T14")])
+def test_the_torque_is_that_of_the_drive(drive, torque):
+    mechanism = ls.FourBar(ls.Bar(0.2, **BAR), ls.Bar(0.21, **BAR), ls.Bar(0.22, **BAR), ground=0.08)
+    found = ls.peaks(ls.Scene(mechanism, omega2=5.0, drive=drive))
+    assert f"{torque}_max" in found
+    assert sum(name.endswith("_max") for name in found.data_vars) == 1
+
+
+def test_what_is_asked_for_is_what_comes():
+    found = ls.peaks(ls.example("press"), of=["T12_mean", "F21", "theta4", "F32_rms", "T12_mean"])
+    assert list(found.data_vars) == [
+        "T12_mean",
+        "F21_peak",
+        "F21_peak_at",
+        *(f"theta4_{what}" for what in ("max", "max_at", "min", "min_at", "peak")),
+        "F32_rms",
+        "status",
+    ]
+    assert list(ls.peaks(ls.example("press"), of="F32").data_vars) == ["F32_peak", "F32_peak_at", "status"]
+
+
+def batch() -> ls.Scene:
+    """Lengths, masses, speeds and loads on dims of their own."""
+    coupler = ls.Link(
+        xr.DataArray([0.2, 0.22, 0.24], {"length": [20, 22, 24]}, "length"),
+        xr.DataArray([0.5, 0.7], dims="mass"),
+        2.8e-3,
+        cg_distance=0.1,
+    )
+    mechanism = ls.FourBar(ls.Bar(0.08, **BAR), coupler, ls.Bar(0.18, **BAR), ground=0.2)
+    torque = xr.DataArray([-1.0, 0.0, 4.0, 9.0], {"case": list("abcd")}, "case")
+    return ls.Scene(mechanism, xr.DataArray([10.0, 30.0], dims="speed"), loads=[ls.Load("rocker", torque=torque)])
+
+
+def test_a_peak_has_only_the_dims_that_it_depends_on():
+    found = ls.peaks(batch(), of=["theta4", "omega4", "aG3x", "F43", "T12", "By"], theta2=60)
+    assert found.theta4_max.dims == found.theta4_max_at.dims == found.status.dims == ("length",)
+    assert found.By_max.dims == ()
+    assert set(found.omega4_max.dims) == {"length", "speed"}
+    assert set(found.aG3x_peak.dims) == {"length", "speed"}
+    assert set(found.F43_peak.dims) == set(found.T12_min_at.dims) == {"length", "mass", "speed", "case"}
+    assert found.length.values.tolist() == [20, 22, 24]
+    assert found.case.values.tolist() == list("abcd")
+    assert found["coupler.mass"].values.tolist() == [0.5, 0.7]
+    np.testing.assert_allclose(found.omega4_max.sel(speed=1), 3 * found.omega4_max.sel(speed=0), rtol=1e-12)
+
+
+def test_a_design_of_a_batch_has_the_peaks_that_it_has_alone():
+    found = ls.peaks(batch(), theta2=90)
+    for length, mass, speed, case in ((0, 0, 0, 0), (1, 1, 1, 3), (2, 0, 1, 2)):
+        alone = ls.peaks(design(length, mass, speed, case), theta2=90)
+        one = found.isel({"length": length, "mass": mass, "speed": speed, "case": case}, missing_dims="ignore")
+        for name in alone.data_vars:
+            assert one[name].item() == alone[name].item(), name
+
+
+def design(length: int, mass: int, speed: int, case: int) -> ls.Scene:
+    """One design of the batch, in plain numbers."""
+    coupler = ls.Link([0.2, 0.22, 0.24][length], [0.5, 0.7][mass], 2.8e-3, cg_distance=0.1)
+    mechanism = ls.FourBar(ls.Bar(0.08, **BAR), coupler, ls.Bar(0.18, **BAR), ground=0.2)
+    load = ls.Load("rocker", torque=[-1.0, 0.0, 4.0, 9.0][case])
+    return ls.Scene(mechanism, omega2=[10.0, 30.0][speed], loads=[load])
+
+
+def mixed() -> ls.Scene:
+    """Designs that close everywhere, in part and nowhere."""
+    coupler = xr.DataArray([0.22, 0.10, 0.05, 0.5, 0.21], dims="design")
+    links = {"crank": ls.Bar(0.08, **BAR), "rocker": ls.Bar(0.18, **BAR)}
+    mechanism = ls.FourBar(**links, coupler=ls.Link(coupler, 0.6, 2e-3), ground=0.2, branch="both")
+    return ls.Scene(mechanism, omega2=20.0, gravity=(0.0, -9.81))
+
+
+def test_status_and_values_of_designs_that_do_not_close():
+    found = ls.peaks(mixed(), of=["F32", "T12", "T12_mean", "F32_rms"], theta2=360)
+    words = [found.status.attrs["flag_meanings"].split()[k] for k in found.status.values]
+    assert words == ["ok", "partial_revolution", "partial_revolution", "cannot_assemble", "ok"]
+    cycle = ls.sweep(mixed(), 360, ["F32", "T12"])
+    assert found.isel(design=3).drop_vars("status").to_array().isnull().all()
+    assert not found.isel(design=[0, 1, 2, 4]).to_array().isnull().any()
+    for branch in ("open", "crossed"):
+        for k in (0, 1, 2, 4):
+            one, rows = found.sel(branch=branch).isel(design=k), cycle.sel(branch=branch).isel(design=k)
+            value, angle = reference(rows.F32.values, grid(360))
+            assert float(one.F32_peak) == pytest.approx(value, rel=1e-15)
+            assert float(one.F32_peak_at) == pytest.approx(angle, abs=1e-6)
+            for sign, name in ((1, "max"), (-1, "min")):
+                value, angle = reference(sign * rows.T12.values, grid(360))
+                assert float(one[f"T12_{name}"]) == pytest.approx(sign * value, rel=1e-9)
+                assert float(one[f"T12_{name}_at"]) == pytest.approx(angle, abs=1e-6)
+            assert float(one.T12_mean) == pytest.approx(np.nanmean(rows.T12.values), rel=1e-9, abs=1e-9)
+            assert float(one.F32_rms) == pytest.approx(math.sqrt(np.nanmean(rows.F32.values**2)), rel=1e-9)
+
+
+# ------------------------------------------------------------------------------------------------ bits
+
+
+@pytest.mark.parametrize("scene", [batch, mixed])
+def test_compiled_and_interpreted_peaks_are_equal_to_the_bit(scene, monkeypatch):
+    of = ["F32", "F14", "T12", "T12_mean", "F43_rms", "aG3y_rms"]
+    found = []
+    for compile_after in (np.inf, -1):
+        monkeypatch.setattr(run, "COMPILE_AFTER", compile_after)
+        found += [ls.peaks(scene(), of=of, theta2=angles) for angles in (150, np.linspace(10.0, 300.0, 77))]
+    for interpreted, compiled in zip(found[:2], found[2:], strict=True):
+        assert list(interpreted.data_vars) == list(compiled.data_vars)
+        for name in interpreted.data_vars:
+            assert interpreted[name].dims == compiled[name].dims
+            np.testing.assert_array_equal(interpreted[name].values, compiled[name].values, err_msg=str(name))
+
+
+def test_peaks_do_not_depend_on_the_number_of_threads(monkeypatch):
+    monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)
+    monkeypatch.setattr(run, "COMPILE_AFTER", -1)
+    one, two, many = (ls.peaks(batch(), of=["F32", "T12"], theta2=90, threads=n) for n in (1, 2, 7))
+    xr.testing.assert_identical(one, two)
+    xr.testing.assert_identical(one, many)

@@ -1,0 +1,65 @@
+"""Breaks of a load: angles that the user names, which exact peaks look at, and which files keep."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.scene.file.toml import parse_scene, write_scene
+
+ENGINE = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), slider_mass=0.5)
+
+
+def pushed(force, breaks=()) -> ls.Scene:
+    return ls.Scene(ENGINE, omega2=30.0, loads=[ls.Load("slider", force=force, breaks=breaks)])
+
+
+def spike(width: float, at: float = 77.7):
+    """A force that rises to -1000 N within so many degrees of one angle."""
+    return lambda theta2: -1000.0 * np.exp(-(((theta2 - at) / width) ** 2))
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
+def test_a_narrow_load_is_found_where_its_break_says(width):
+    """At the top of the spike the load is -1000 N: the peak is at least the force there, and next to nothing more."""
+    top = ls.sweep(pushed(-1000.0), [77.7], outputs=["F43y", "F32"])
+    found = ls.peaks(pushed(spike(width), breaks=[77.7]), of=["F32"])
+    assert found.F32_peak == pytest.approx(top.F32.item(), rel=2e-6 if width > 1e-3 else 1e-7)
+    assert found.F32_peak >= top.F32.item() * (1.0 - 1e-10)
+    assert found.F32_peak_at == pytest.approx(77.7, abs=width)
+
+
+def test_breaks_are_equal_in_any_form_and_shown():
+    one, other = pushed(1.0, [10, 20.5]), pushed(1.0, np.array([10.0, 20.5]))
+    assert one == other and hash(one) == hash(other)
+    assert one != pushed(1.0)
+    assert "breaks=(10.0, 20.5)" in repr(one)
+    assert one.jumps() == (10.0, 20.5)
+
+
+def test_files_keep_breaks_and_read_units():
+    torque = xr.DataArray(np.zeros(4), {"theta2": [0.0, 90.0, 180.0, 270.0]}, "theta2")
+    gas = ls.GasPressure(bore=0.08, pressure=1e5, breaks=[12.5])
+    scene = ls.Scene(ENGINE, omega2=30.0, loads=[ls.Load("crank", torque=torque, breaks=[90.0, 180.0]), gas])
+    text = write_scene(scene)
+    assert parse_scene(text) == scene
+    turned = text.replace("breaks = [90.0, 180.0]", f'breaks = ["{np.pi / 2!r} rad", "180 deg"]')
+    assert turned != text
+    assert parse_scene(turned).jumps() == pytest.approx((90.0, 180.0, 12.5))
+    assert "breaks" not in write_scene(pushed(1.0))
+
+
+@pytest.mark.parametrize(
+    ("breaks", "problem"),
+    [
+        (30.0, r"loads\[1\].breaks = 30.0: must be a list, each item a number in degrees"),
+        ([10.0, np.nan], r"loads\[1\].breaks\[2\] = nan degree: must be finite"),
+        (["30 deg"], r"loads\[1\].breaks\[1\] = '30 deg': must be a number in degrees, not text"),
+        ([xr.DataArray([1.0], dims="a")], r"loads\[1\].breaks\[1\] is an array: must be a number in degrees, for all"),
+    ],
+)
+def test_what_is_no_list_of_angles_is_refused(breaks, problem):
+    with pytest.raises(ValueError, match=problem):
+        pushed(1.0, breaks)
+    with pytest.raises(ValueError, match=problem):
+        ls.Scene(ENGINE, omega2=30.0, loads=[ls.GasPressure(bore=0.08, pressure=1e5, breaks=breaks)])

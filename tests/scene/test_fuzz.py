@@ -1,0 +1,183 @@
+"""Scenes and scene files by chance: a result whose power balance holds, or an error of ours that names the parameter.
+
+A few hundred examples in all, the same in every run. ``LINKSWEEP_FUZZ=25000 pytest tests/scene/test_fuzz.py`` does so many of
+each test, others every time.
+"""
+
+import os
+import re
+import signal
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tomli_w
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from random_scenes import built, listed, objects, sound, spoiled
+
+import linksweep as ls
+from linksweep.results.compute import compute
+from linksweep.scene.file import toml as file
+from linksweep.scene.file.toml import parse_scene
+from linksweep.scene.grid import crank_grid
+
+EXAMPLES = os.environ.get("LINKSWEEP_FUZZ")
+FOREVER = 60  # seconds: an example takes some hundredths
+fuzzed = settings(
+    max_examples=int(EXAMPLES or 100),
+    derandomize=not EXAMPLES,
+    deadline=None,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+THETA2 = [0.0, 77.7, 200.0, 300.0]
+FORCES = [f"F{pin}{axis}" for pin in ("12", "32", "43", "14") for axis in "xy"]
+TOLERANCE = 1e-11
+SAID = re.compile(r"[a-z]\w*(\[\d+\])*(\.\w+(\[\d+\])*)*( = |: | has | is | holds | depends )")
+UNKNOWN = r".*: (unknown key|belongs to the mechanism|belongs at the top)"
+SAID_OF_A_FILE = re.compile(
+    rf".*scene.toml(:\d+: (not TOML|{SAID.pattern}|{UNKNOWN})|: is not a text file in UTF-8)", re.DOTALL
+)
+
+
+@contextmanager
+def in_finite_time():
+    """An example that never ends fails, where the system has such a clock."""
+
+    def late(*_):
+        raise AssertionError(f"not finished after {FOREVER} s")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(FOREVER)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def outcome(make, said: re.Pattern = SAID):
+    """What is made, or None where it is refused in our words."""
+    try:
+        with in_finite_time():
+            return make()
+    except ValueError as error:
+        refusal = error
+    assert type(refusal) is ValueError, refusal
+    for line in str(refusal).split("\n"):
+        assert said.match(line) and " at 0x" not in line, refusal
+    return None
+
+
+def assert_sound(scene: ls.Scene, finite: bool = False) -> None:
+    """Where a sample is ok the powers add up, where it is not there are no values.
+
+    And where it is ok they are `finite`: numbers near the ends of their range may overflow.
+    """
+    names = scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
+    cycle = outcome(lambda: ls.sweep(scene, THETA2, names))  # functions and arrays of theta2 are read only now
+    if cycle is None:
+        return
+    outcome(lambda: ls.check(scene))
+    for name in names:
+        known, ok = xr.broadcast(np.isfinite(cycle[name]), cycle.status == 0)
+        assert not (known & ~ok).all(set(ok.dims) - {*cycle[name].dims}).any(), name
+        assert not finite or not (ok & ~known).any(), name
+    if "power_residual" in scene.table.quantity:
+        assert_powers_add_up(scene)
+
+
+def assert_powers_add_up(scene: ls.Scene) -> None:
+    """To the rounding of what cancels in them: of the powers themselves, and of the pins' forces at the links' speeds.
+
+    `power_residual` is relative to what the links' powers are made of; of massless links that may be nothing.
+    """
+    terms = scene.table.maker["power_residual"].wiring
+    speeds = [name for k in (2, 3, 4) for name in (f"vG{k}x", f"vG{k}y") if name in scene.table.maker]
+    names = (*terms, *speeds, *FORCES, "power_residual", "transmission_angle", "status")
+    grid = crank_grid(THETA2, scene.period)
+    fields = compute(scene.at(grid), grid, names)
+    found = {name: xr.DataArray(field.values, dims=field.dims) for name, field in fields.items()}
+    powers = sum(abs(found[name]) for name in terms)
+    cancelling = sum(abs(found[name]) for name in FORCES) * sum(abs(found[name]) for name in speeds)
+    sharpness = np.sin(np.radians(found["transmission_angle"]))
+    wrong = abs(found["power_residual"]) * powers * sharpness > TOLERANCE * (powers + cancelling) + 1e-300
+    assert not (wrong & (found["status"] == 0)).any(), found["power_residual"]
+
+
+@fuzzed
+@given(sound)
+def test_a_sound_scene_is_computed_or_refused_in_our_words(raw):
+    scene = outcome(lambda: ls.Scene(**built(raw)))
+    if scene is not None:
+        assert_sound(scene, finite=True)
+
+
+@fuzzed
+@given(spoiled(st.one_of(objects, listed), ways=["change"]))
+def test_a_spoiled_scene_is_computed_or_refused_in_our_words(raw):
+    scene = outcome(lambda: ls.Scene(**built(raw)))
+    if scene is not None:
+        assert_sound(scene)
+
+
+@fuzzed
+@given(spoiled())
+def test_a_spoiled_scene_file_is_computed_or_refused_with_its_line(raw):
+    scene = outcome(lambda: parse_scene(tomli_w.dumps(raw), "scene.toml"), SAID_OF_A_FILE)
+    if scene is not None:
+        assert_sound(scene)
+
+
+EXAMPLE_FILES = [path.read_bytes() for path in sorted(Path(file.__file__).with_name("examples").glob("*.toml"))]
+PIECES = st.sampled_from(
+    [b"\n", b"[", b"]", b"{", b"}", b"[[loads]]\n", b"=", b'"', b"'", b"-", b"1e400", b" cm", b"\xff", b"\0", b"#"]
+)
+
+
+@st.composite
+def damaged_text(draw) -> bytes:
+    """A scene file with some bytes changed, cut out or put in."""
+    content = draw(st.sampled_from(EXAMPLE_FILES))
+    for _ in range(draw(st.integers(0, 4))):
+        at = draw(st.integers(0, len(content)))
+        cut = draw(st.sampled_from([0, 0, 1, 1, 2, 5, 50]))
+        content = content[:at] + draw(st.one_of(PIECES, st.binary(max_size=4))) + content[at + cut :]
+    return content
+
+
+@fuzzed
+@given(content=st.one_of(damaged_text(), damaged_text(), st.binary(), st.text().map(str.encode)))
+def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, content):
+    path = tmp_path_factory.getbasetemp() / "scene.toml"
+    path.write_bytes(content)
+    scene = outcome(lambda: ls.load_scene(path), SAID_OF_A_FILE)
+    if scene is not None:
+        assert_sound(scene)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("a = " + "[" * 5000 + "]" * 5000, "1: not TOML of a scene: tables or lists are nested too deep"),
+        (".".join("a" * 3000) + " = 1", "1: not TOML of a scene: tables or lists are nested too deep"),
+        ("omega2 = " + "9" * 5000, "1: not TOML of a scene: a number has too many digits"),
+        ('omega2 = {csv = "\\u0000"}', '1: omega2.csv = "\\u0000": must be the name of a file'),
+        ('omega2 = {csv = "a\\nb"}', '1: omega2.csv = "a\\nb": must be the name of a file'),
+        ('omega2 = {"8 cm\\n" = 0}', '1: omega2."8 cm\\n": unknown key'),
+        ('omega2 = {dim = "n", values = ["\\u0085"]}', '1: omega2.values[1] = "\\u0085": must be a number'),
+        ('omega2 = {dim = "a\\nb", values = [1]}', '1: omega2.dim = "a\\nb": must be a name'),
+        (
+            'omega2 = {dim = "n", values = [1], coords = {"a\\nb" = [1]}}',
+            '1: omega2.coords: "a\\nb" is no dim of these values',
+        ),
+        ('omega2 = {dim = "n", start = 1, stop = 2, num = 1000000000000}', "1: omega2.num = 1000000000000: must be at"),
+    ],
+)
+def test_what_chance_seldom_finds(line, message):
+    rest = (Path(file.__file__).parent / "examples" / "press.toml").read_text().split('omega2 = "300 rpm"\n')[1]
+    with in_finite_time(), pytest.raises(ValueError, match=rf"^scene\.toml:{re.escape(message)}"):
+        parse_scene(f"{line}\n{rest}", "scene.toml")
