@@ -1,7 +1,7 @@
 """NetCDF files without our seal, read in a process of their own: HDF5 may die of one that is damaged, or never end.
 
 ``python -m linksweep.files.apart cycle.nc`` writes what is in the file to its standard output, as
-`linksweep.studies.partial.packed` has it.
+`linksweep.files.packed` makes it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from linksweep.studies.partial import packed, unpacked
+from linksweep.files.packed import packed, unpacked
 
 LONGEST = 60.0
 """Seconds that reading a file may take."""

@@ -11,6 +11,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.validate import did_you_mean, refuse, said
+from linksweep.files.apart import read_apart
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.seal import SAVED, mark_of, seal, sealed
 from linksweep.files.table import to_csv
@@ -132,8 +133,6 @@ def load_scene(path: str | os.PathLike) -> Scene:
 def _loaded(path: Path) -> xr.Dataset:
     """All of a NetCDF file; one without our seal is read where HDF5 can do no harm."""
     if not (mark := mark_of(path)):
-        from linksweep.files.apart import read_apart  # here: it takes what is above
-
         return read_apart(path)
     sealed(path, mark)  # which refuses a file that is damaged
     with NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:

@@ -107,3 +107,9 @@ def _text(scene: Scene, elsewhere: tuple[str, ...]) -> str:
     if elsewhere not in texts:
         texts[elsewhere] = write_scene(scene, elsewhere)
     return texts[elsewhere]
+
+
+def joined(parts: Iterable[Any], dim: str, labels: Iterable[str]) -> xr.DataArray:
+    """Arrays side by side along a new dim, each spread over the dims of all."""
+    spread = xr.broadcast(*(xr.DataArray(part) for part in parts))
+    return xr.concat(spread, xr.Variable(dim, list(labels)), coords="minimal", compat="override", join="override")

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import io
 import json
 import os
 import re
@@ -18,11 +17,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse, said
 from linksweep.files.atomic import SUFFIX, whole
+from linksweep.files.packed import packed, unpacked
 
 MANIFEST = "manifest.json"
 PART = SUFFIX  # how the names end of what is being written
@@ -153,38 +152,3 @@ def _alone(folder: Path) -> Iterator[None]:
         raise ValueError(f"{folder}: another process is at work on this study; wait for it, or stop it") from None
     finally:
         os.close(handle)
-
-
-def packed(ds: xr.Dataset) -> bytes:
-    """A Dataset of numbers as bytes: numpy's npz, with dims and attributes as JSON."""
-    about = {name: [values.dims, _plain(values.attrs)] for name, values in ds.variables.items()}
-    text = json.dumps([_plain(ds.attrs), about])
-    file = io.BytesIO()
-    np.savez(file, *(values.values for values in ds.variables.values()), about=np.frombuffer(text.encode(), np.uint8))
-    return file.getvalue()
-
-
-def unpacked(data: bytes) -> xr.Dataset:
-    """The Dataset of such bytes."""
-    with np.load(io.BytesIO(data), allow_pickle=False) as file:
-        attributes, about = json.loads(file["about"].tobytes())
-        variables = {
-            name: xr.Variable(dims, file[f"arr_{k}"], _as_it_was(own))
-            for k, (name, (dims, own)) in enumerate(about.items())
-        }
-    return xr.Dataset(variables, attrs=_as_it_was(attributes))
-
-
-def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """Attributes for JSON; arrays, such as flag_values, with their type."""
-    return {
-        name: [value.dtype.str, value.tolist()] if isinstance(value, np.ndarray | np.generic) else value
-        for name, value in attributes.items()
-    }
-
-
-def _as_it_was(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        name: np.array(value[1], dtype=value[0]) if isinstance(value, list) else value
-        for name, value in attributes.items()
-    }

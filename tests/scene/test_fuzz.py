@@ -1,7 +1,7 @@
 """Scenes and scene files by chance: a result whose power balance holds, or an error of ours that names the parameter.
 
-A few hundred examples in all, the same in every run. ``LINKSWEEP_FUZZ=25000 pytest tests/scene/test_fuzz.py`` does so many of
-each test, others every time.
+A few hundred examples in all, the same in every run. ``LINKSWEEP_FUZZ=25000 pytest tests/scene/test_fuzz.py`` does so
+many of each test, others every time.
 """
 
 import os

@@ -97,7 +97,8 @@ def best_counterweights(
 
     Notes
     -----
-    Minimized is the sum of weight·(size after / size before)². Equations and sources: `linksweep.analysis.balance.best_counterweights`.
+    Minimized is the sum of weight·(size after / size before)². Equations and sources:
+    `linksweep.analysis.balance.best_counterweights`.
 
     Examples
     --------

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearings import joined
 from linksweep.base.validate import refuse
 from linksweep.results.compute import quantity_problems, require_scene
-from linksweep.results.dataset import origin_attributes
+from linksweep.results.dataset import joined, origin_attributes
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene

@@ -174,8 +174,8 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
 
     Notes
     -----
-    Conditions and source: `linksweep.analysis.balance.counterweights` (Berkof and Lowen). The shaking moment remains, and commonly
-    grows, as do pin forces and torque; `linksweep.best_counterweights` finds compromises.
+    Conditions and source: `linksweep.analysis.balance.counterweights` (Berkof and Lowen). The shaking moment remains,
+    and commonly grows, as do pin forces and torque; `linksweep.best_counterweights` finds compromises.
 
     Examples
     --------

@@ -20,13 +20,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearings import joined
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import Number, refuse
 from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.links import Bar, Disk, Link
 from linksweep.results.compute import quantity_problems, requested, require_scene
-from linksweep.results.dataset import provenance
+from linksweep.results.dataset import joined, provenance
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene

@@ -1,6 +1,7 @@
 """bearings(scene, {...}): what each pin asks of its bearing over a cycle: load diagrams, pressure, friction, life.
 
-Equations and sources: of rolling bearings `linksweep.analysis.pins.bearing_life`, of plain ones `linksweep.physics.bearing`.
+Equations and sources: of rolling bearings `linksweep.analysis.pins.bearing_life`, of plain ones
+`linksweep.physics.bearing`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from linksweep.base.validate import (
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import angles_missing, require_scene
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.dataset import flags
+from linksweep.results.dataset import flags, joined
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import said_unit_problems
@@ -338,9 +339,3 @@ def _histogram(force: np.ndarray, share: np.ndarray, classes: int) -> tuple[np.n
 
 def _or_nan(number: Number) -> Number:
     return np.nan if number is None else number
-
-
-def joined(parts: Iterable[Any], dim: str, labels: Iterable[str]) -> xr.DataArray:
-    """Arrays side by side along a new dim, each spread over the dims of all."""
-    spread = xr.broadcast(*(xr.DataArray(part) for part in parts))
-    return xr.concat(spread, xr.Variable(dim, list(labels)), coords="minimal", compat="override", join="override")

@@ -1,6 +1,7 @@
 """Bearings of a crankshaft's mains, of an engine of several cylinders: loads by the lever rule, exact peaks, and life.
 
-Model and source of the loads: `linksweep.results.cylinders.cylinder_sums`; of life: `linksweep.analysis.pins.bearing_life`.
+Model and source of the loads: `linksweep.results.cylinders.cylinder_sums`; of life:
+`linksweep.analysis.pins.bearing_life`.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ from typing import Any
 import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import rotation_under_load
-from linksweep.analysis.pins.bearings import Bearing, attributes_of, bearing_problems, joined, of_life, on_journal
+from linksweep.analysis.pins.bearings import Bearing, attributes_of, bearing_problems, of_life, on_journal
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
 from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
 from linksweep.results.cylinders.cylinder_sums import main
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.dataset import joined
 from linksweep.results.peaks import peaks
 
 FRAMES = ("ground", "journal")

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearings import Bearing, checked_pins, joined
+from linksweep.analysis.pins.bearings import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.physics.bearing import friction_circle
-from linksweep.results.dataset import flags
+from linksweep.results.dataset import flags, joined
 from linksweep.results.sweep import sweep
 from linksweep.scene.loads.load import Load
 from linksweep.scene.scene import Scene

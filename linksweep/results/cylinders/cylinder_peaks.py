@@ -7,12 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearings import joined
 from linksweep.base.validate import name_problems
 from linksweep.results.compute import assembly_of, requested
 from linksweep.results.cylinders.cylinders_between import exact_peaks_together
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
-from linksweep.results.dataset import design_coordinates, origin_attributes, variable
+from linksweep.results.dataset import design_coordinates, joined, origin_attributes, variable
 from linksweep.results.peak_search.exact import Found
 from linksweep.results.peak_search.quadrature import means_at
 from linksweep.results.peaks import STATUS_ANGLES, Averages, Wanted, named, peaks, status_of, wanted

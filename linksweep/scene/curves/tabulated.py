@@ -1,8 +1,8 @@
 """Functions of theta2 as samples, which is how a file holds them.
 
-Samples every half degree are joined by the periodic cubic spline of `linksweep.scene.curves.over_angle`; where the function
-leaves it, samples are added halfway between, until it does so nowhere. About a kink they crowd; a jump has no such
-samples.
+Samples every half degree are joined by the periodic cubic spline of `linksweep.scene.curves.over_angle`; where the
+function leaves it, samples are added halfway between, until it does so nowhere. About a kink they crowd; a jump has no
+such samples.
 """
 
 from __future__ import annotations

@@ -301,7 +301,8 @@ def write_scene(scene: Scene, elsewhere: Collection[str] = ()) -> str:
     """Return the text of a scene file from which `parse_scene` makes an equal scene, to the bit.
 
     Names and attributes of DataArrays are not kept, nor coordinates other than those of their dims. A function of
-    theta2 stands there as `linksweep.scene.curves.tabulated` samples it; of one that has no such samples the text says so.
+    theta2 stands there as `linksweep.scene.curves.tabulated` samples it; of one that has no such samples the text says
+    so.
 
     Parameters
     ----------
