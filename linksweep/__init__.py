@@ -1,5 +1,7 @@
 """linksweep: how hard are my pins loaded, and where is the worst of it?"""
 
+from typing import TYPE_CHECKING
+
 from linksweep import plot
 from linksweep.analysis.balance.best_counterweights import best_counterweights
 from linksweep.analysis.balance.compare import compare
@@ -17,6 +19,7 @@ from linksweep.analysis.pins.bearings import Bearing, bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
+from linksweep.base.version import installed_version
 from linksweep.files.netcdf import load_scene, save
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
@@ -26,6 +29,7 @@ from linksweep.results.check import check
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.peaks import peaks
 from linksweep.results.position_equation import position_equation
+from linksweep.results.quantities import QuantityTable, quantities
 from linksweep.results.sweep import sweep
 from linksweep.results.system import system
 from linksweep.scene.curves.interpolation import OvershootWarning
@@ -59,6 +63,7 @@ __all__ = [
     "Normal",
     "OttoCycle",
     "OvershootWarning",
+    "QuantityTable",
     "Scene",
     "SliderCrank",
     "Spring",
@@ -87,6 +92,7 @@ __all__ = [
     "pin_friction",
     "plot",
     "position_equation",
+    "quantities",
     "regressor",
     "report",
     "sample",
@@ -100,3 +106,16 @@ __all__ = [
     "system",
     "with_counterweights",
 ]
+
+if TYPE_CHECKING:
+    __version__: str
+else:
+
+    def __getattr__(name: str) -> str:
+        if name == "__version__":
+            return installed_version()
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -1,4 +1,4 @@
-"""The command line: demo, sweep, peaks, study, check, report; `commands` has the rest."""
+"""The command line: demo, sweep, peaks, quantities, study, check, report; `commands` has the rest."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from linksweep.base.validate import refuse
+from linksweep.base.version import installed_version
 from linksweep.cli.commands import FILMS, PICTURES, a_file, add_commands, write_figure
 from linksweep.cli.text import check_lines, peak_table, study_report
 from linksweep.files.atomic import target_of
@@ -19,6 +21,7 @@ from linksweep.files.netcdf import RESULTS, SCENES, load_scene, save
 from linksweep.reports.page import report
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks
+from linksweep.results.quantities import quantities
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
 from linksweep.studies.run import study
@@ -75,7 +78,9 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="linksweep", description="How hard are my pins loaded, and where is the worst of it?"
     )
-    commands = parser.add_subparsers(required=True, metavar="command")
+    parser.add_argument("--version", action="version", version=f"linksweep {installed_version()}")
+    parser.set_defaults(run=lambda options: parser.print_help())
+    commands = parser.add_subparsers(metavar="command")
 
     demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
     scenes, without = names(), "name of the files without ending (demo)"
@@ -99,6 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
 
+    _add_quantities(commands)
     _add_study(commands)
     sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
     sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
@@ -106,6 +112,13 @@ def _parser() -> argparse.ArgumentParser:
     _add_report(commands)
     add_commands(commands)
     return parser
+
+
+def _add_quantities(commands: Any) -> None:
+    listed = commands.add_parser("quantities", help="all that sweep and peaks can be asked for: names, units, meanings")
+    listed.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    listed.add_argument("words", nargs="*", help="only those with these words in name, unit or meaning, such as force")
+    listed.set_defaults(run=_quantities)
 
 
 def _add_study(commands: Any) -> None:
@@ -159,6 +172,13 @@ def _peaks(options: argparse.Namespace) -> None:
     if options.output:
         save(found, options.output)
         print(f"\nwritten: {options.output}")
+
+
+def _quantities(options: argparse.Namespace) -> None:
+    words = " ".join(options.words)
+    table = quantities(load_scene(options.scene), words)
+    refuse([] if table else [f'{options.scene}: no quantity has "{words}" in its name, unit or meaning'])
+    print(table)
 
 
 def _study(options: argparse.Namespace) -> None:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.analysis.balance.counterweights import Counterweight
 from linksweep.analysis.pins.bearing_life import UNBOUNDED
-from linksweep.cli.text import aligned
+from linksweep.base.text_table import aligned
 from linksweep.plot.kit import signals
 from linksweep.results.over_time import mean_over_time
 

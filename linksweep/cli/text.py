@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator
 from math import prod
 
 import numpy as np
 import xarray as xr
 
+from linksweep.base.text_table import aligned
 from linksweep.scene.curves.interpolation import RINGING
 
 
@@ -45,14 +46,6 @@ def _label(found: xr.Dataset, dim: Hashable, k: int | None) -> str:
 
 def _unit(values: xr.DataArray) -> str:
     return str(values.attrs["units"])
-
-
-def aligned(rows: Sequence[tuple[str, ...]], right: Container[int] = (1, 3)) -> Iterator[str]:
-    """Lines of a table, some columns to the right, as numbers are."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = enumerate(zip(row, widths, strict=True))
-        yield "  ".join(cell.rjust(width) if k in right else cell.ljust(width) for k, (cell, width) in cells).rstrip()
 
 
 def _remarks(found: xr.Dataset) -> list[str]:

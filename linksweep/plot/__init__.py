@@ -58,6 +58,10 @@ __all__ = [
 A4_WIDTH = 7.1  # inches between the margins of an A4 page
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def cycle(ds: xr.Dataset) -> Figure:
     """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, drive, that pin's bearing.
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cache
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
 from linksweep.scene.file.toml import write_scene
 from linksweep.scene.scene import Scene
+
+STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"
 
 
 def described(
@@ -60,7 +61,7 @@ def flags(long_name: str, meanings: Iterable[str]) -> dict:
 
 
 def status_attributes(meanings: Iterable[str]) -> dict:
-    return flags("what happened at this sample; values are NaN where it is not ok", meanings)
+    return flags(STATUS_LONG_NAME, meanings)
 
 
 def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
@@ -78,7 +79,7 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
     return {
         "Conventions": "CF-1.11",
         "title": f"linksweep: {type(scene.mechanism).__name__}",
-        "linksweep_version": _version(),
+        "linksweep_version": installed_version(),
         "command": command,
     }
 
@@ -95,11 +96,6 @@ def kept_beside(scene: Scene, coordinates: Iterable[Any]) -> tuple[str, ...]:
     """
     index, names = scene.mechanism.index, {*coordinates}
     return tuple(path for path, array in scene.arrays.items() if path in names and index not in array.dims)
-
-
-@cache
-def _version() -> str:
-    return version("linksweep")
 
 
 def _text(scene: Scene, elsewhere: tuple[str, ...]) -> str:

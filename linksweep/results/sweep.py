@@ -86,9 +86,14 @@ def _sweep(scene: Scene, theta2: Any, outputs: list[str] | None, solver: str, th
     return described(scene, sampled, grid, fields, status, command)
 
 
+def default_names(scene: Scene) -> tuple[str, ...]:
+    """Return the names of the quantities that a sweep computes where none are given."""
+    return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
+
+
 def _names(scene: Scene, names: list[str] | None) -> tuple[str, ...]:
     if names is None:
-        return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
+        return default_names(scene)
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in quantity_problems("outputs", name, known, scene)])
     return tuple(name for name in names if name != "status")

@@ -106,6 +106,12 @@ def of_form(scene: Scene, form: str) -> System:
     return mechanism.unknowns(drive), mechanism.equations(drive)
 
 
+def names_in(equations: tuple[Equation, ...]) -> tuple[str, ...]:
+    """Return the names of the quantities that equations are made of, on both of their sides."""
+    names = {entry[1] for row in equations for entry in row.coefficients.values() if isinstance(entry, tuple)}
+    return tuple(sorted(names | {row.right_side for row in equations}))
+
+
 def assembled(
     scene: Scene,
     grid: Grid,
@@ -114,9 +120,7 @@ def assembled(
     threads: int | None = None,
 ) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Dims, matrix and right side of a square system, for every design and angle."""
-    names = {entry[1] for row in equations for entry in row.coefficients.values() if isinstance(entry, tuple)}
-    names |= {row.right_side for row in equations}
-    fields = compute(scene, grid, tuple(sorted(names)), threads)
+    fields = compute(scene, grid, names_in(equations), threads)
     dims = (*scene.inputs.sizes, grid.dim)
     dims = tuple(dim for dim in dict.fromkeys(dims) if any(dim in field.dims for field in fields.values()))
     if grid.dim not in dims:

@@ -313,9 +313,9 @@ def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
     ("arguments", "code", "said"),
     [
         (["--help"], 0, "demo.*sweep.*peaks.*check"),
+        (["--version"], 0, rf"^linksweep {re.escape(ls.__version__)}$"),
         (["sweep", "--help"], 0, "--output.*--plot.*--outputs"),
         (["peaks", "--help"], 0, "--theta2.*--of"),
-        ([], 2, "the following arguments are required: command"),
         (["chek", "press.toml"], 2, "invalid choice: 'chek'"),
         (["sweep", "press.toml"], 2, "the following arguments are required: -o/--output"),
         (
@@ -333,6 +333,30 @@ def test_help_and_usage(arguments, code, said, capsys):
     assert stopped.value.code == code
     out, err = capsys.readouterr()
     assert re.search(said, out + err, re.DOTALL)
+
+
+def test_alone_it_prints_its_help(capsys):
+    assert main([]) == 0
+    alone = capsys.readouterr()
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    assert alone == capsys.readouterr()
+
+
+def test_quantities_prints_the_table(press, capsys):
+    assert main(["quantities", press]) == 0
+    printed = rows(capsys.readouterr().out)
+    table = ls.quantities(ls.load_scene(press))
+    assert [*printed] == ["name", *table.names]
+    assert printed["F32x"] == ["N", "theta2", "yes", table["F32x"].long_name]
+    assert main(["quantities", press, "shaking", "moment"]) == 0
+    assert [*rows(capsys.readouterr().out)] == ["name", "Ms"]
+
+
+def test_quantities_says_that_none_has_the_words(press, capsys):
+    assert main(["quantities", press, "torqe"]) == 2
+    said = 'linksweep: press.toml: no quantity has "torqe" in its name, unit or meaning\n'
+    assert capsys.readouterr() == ("", said)
 
 
 def test_it_runs_as_a_module(press):

@@ -1,0 +1,196 @@
+"""quantities(scene): every quantity that can be asked for of a scene, as a table to read and to search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import astuple, dataclass, fields
+from html import escape
+from typing import TYPE_CHECKING, overload
+
+from linksweep.base.text_table import aligned
+from linksweep.base.validate import name_problems, refuse
+from linksweep.engine.trace.plan import plan
+from linksweep.results.compute import require_scene
+from linksweep.results.dataset import STATUS_LONG_NAME
+from linksweep.results.sweep import default_names
+from linksweep.results.system import names_in, of_form
+from linksweep.scene.designs.lazy import lazy_paths, stand_in
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class AvailableQuantity:
+    """A quantity that can be asked for of a scene.
+
+    Parameters
+    ----------
+    name : str
+        The name to ask for.
+    units : str
+        Its unit, in UDUNITS spelling; "1" where it has none.
+    dims : tuple of str
+        The dims that it depends on: those of designs, and theta2.
+    default : bool
+        Whether `linksweep.sweep` computes it where no names are given.
+    long_name : str
+        Its meaning, and how its sign counts.
+    """
+
+    name: str
+    units: str
+    dims: tuple[str, ...]
+    default: bool
+    long_name: str
+
+    def __str__(self) -> str:
+        return "  ".join(filter(None, self.cells))
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Its entries as text."""
+        return self.name, self.units, ", ".join(self.dims), "yes" if self.default else "", self.long_name
+
+
+HEADER = ("name", "unit", "dims", "default", "meaning")
+
+
+@dataclass(frozen=True, repr=False)
+class QuantityTable(Sequence[AvailableQuantity]):
+    """A table of quantities, as `linksweep.quantities` returns it.
+
+    It prints as text, shows as a table in a notebook, and gives its rows by name, by place or one after the other.
+
+    Parameters
+    ----------
+    rows : tuple of AvailableQuantity
+        One for each quantity.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> table = ls.quantities(ls.example("press"))
+    >>> table["F32"].units, "F32" in table, table.names[:3]
+    ('N', True, ('theta3', 'theta4', 'transmission_angle'))
+    """
+
+    rows: tuple[AvailableQuantity, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the quantities, to be asked for."""
+        return tuple(row.name for row in self.rows)
+
+    @overload
+    def __getitem__(self, key: str | int) -> AvailableQuantity: ...
+
+    @overload
+    def __getitem__(self, key: slice) -> QuantityTable: ...
+
+    def __getitem__(self, key: str | int | slice) -> AvailableQuantity | QuantityTable:
+        """Return the row of a name or a place, or the table of a slice; raise ValueError for an unknown name."""
+        if isinstance(key, str):
+            refuse(name_problems("quantity", key, self.names))
+            key = self.names.index(key)
+        return QuantityTable(self.rows[key]) if isinstance(key, slice) else self.rows[key]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[AvailableQuantity]:
+        return iter(self.rows)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.names or key in self.rows
+
+    def search(self, words: str) -> QuantityTable:
+        """Return the table of those quantities that have all these words in their name, unit or meaning."""
+        parts = words.casefold().split()
+        return QuantityTable(tuple(row for row in self.rows if all(part in str(row).casefold() for part in parts)))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as a DataFrame, its index the names."""
+        import pandas as pd
+
+        columns = [item.name for item in fields(AvailableQuantity)]
+        return pd.DataFrame([astuple(row) for row in self.rows], columns=columns).set_index("name")
+
+    def __repr__(self) -> str:
+        return "\n".join(aligned([HEADER, *(row.cells for row in self.rows)], right=()))
+
+    def _repr_html_(self) -> str:
+        body = "".join(_html_row(row.cells, "td") for row in self.rows)
+        return f"<table><thead>{_html_row(HEADER, 'th')}</thead><tbody>{body}</tbody></table>"
+
+
+def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
+    """List every quantity that can be asked for of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of one design or many.
+    search : str, optional
+        Words, in small or capital letters, that a quantity must have in its name, unit or meaning. Default: none.
+
+    Returns
+    -------
+    QuantityTable
+        A row for each quantity with its name, unit, dims, whether a default sweep has it, and its meaning with the
+        sign convention. Nothing is computed. Design dims are in the order of the scene, theta2 (in a loop, theta) is
+        the last.
+
+    Raises
+    ------
+    ValueError
+        For a scene that is none.
+
+    Notes
+    -----
+    `linksweep.sweep` takes all of the names; `linksweep.peaks` takes all but `cond` and `status`, each of them also
+    with one of the endings `_mean`, `_rms`, `_bound` and `_samples`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.quantities(ls.example("press"), "torque")
+    name            unit  dims    default  meaning
+    T12             N m   theta2  yes      torque of the drive on link 2 (crank), positive counter-clockwise
+    torque_ratio    1     theta2           torque that the rocker gives per torque on the crank, without any losses
+    reduced_torque  N m   theta2           drive reduced to the crank: its work per radian of the crank
+    """
+    require_scene(scene)
+    default, dims = {*default_names(scene), "status"}, _dims(scene)
+    rows = [
+        AvailableQuantity(item.name, item.units, dims[item.name], item.name in default, item.long_name)
+        for item in scene.table.quantities
+    ]
+    rows.append(AvailableQuantity("status", "1", dims["status"], True, STATUS_LONG_NAME))
+    table = QuantityTable(tuple(rows))
+    return table if search is None else table.search(search)
+
+
+def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Return the dims of each quantity: known from the plan, before anything is computed."""
+    sampled = _with_samples(stand_in(scene) if lazy_paths(scene) else scene)
+    names = [name for name in (*scene.table.quantity, "status") if name != "cond"]
+    of_matrix = names_in(of_form(scene, "reduced")[1])
+    request = plan(scene.table, tuple(dict.fromkeys([*names, *of_matrix])), sampled.inputs.forms)
+    order = (*sampled.inputs.sizes, request.index)
+    known = {name: {*request.dims(request.outputs[name])} for name in request.outputs}
+    known["cond"] = {request.index}.union(*(known[name] for name in of_matrix))
+    return {name: tuple(dim for dim in order if dim in dims) for name, dims in known.items()}
+
+
+def _with_samples(scene: Scene) -> Scene:
+    """Return the scene at one angle, or at as many as an array has that does not say at which."""
+    index = scene.mechanism.index
+    counts = [a.sizes[index] for a in scene.arrays.values() if index in a.dims and index not in a.coords]
+    return scene.at(crank_grid(counts[0], scene.period, index)) if counts else scene.at_one_angle
+
+
+def _html_row(cells: Iterable[str], tag: str) -> str:
+    return f"<tr>{''.join(f'<{tag}>{escape(cell)}</{tag}>' for cell in cells)}</tr>"
