@@ -22,7 +22,7 @@ PREFIX, SUFFIX = ".linksweep-", ".part"
 
 
 @contextlib.contextmanager
-def whole(path: str | os.PathLike) -> Iterator[Path]:
+def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield a temporary file to write to, which becomes `path` when all went well; else `path` is left as it was.
 
     Raises OSError for a path that is no file, or lies in a folder that is missing or cannot be written.
@@ -41,7 +41,7 @@ def whole(path: str | os.PathLike) -> Iterator[Path]:
     sync_folder(target.parent)
 
 
-def ending_of(path: str | os.PathLike, endings: tuple[str, ...], advice: str = "") -> str:
+def ending_of(path: str | os.PathLike[str], endings: tuple[str, ...], advice: str = "") -> str:
     """Return the ending of a file's name, in lower case, which says what is written.
 
     Raises ValueError, with some advice, for another than these.
@@ -51,7 +51,7 @@ def ending_of(path: str | os.PathLike, endings: tuple[str, ...], advice: str = "
     return ending
 
 
-def target_of(path: str | os.PathLike) -> Path:
+def target_of(path: str | os.PathLike[str]) -> Path:
     """Return the file that a path leads to, which is there or can be made: a link stays one, its target is replaced.
 
     Raises OSError where it is a folder, a device, a pipe, a socket, or in a folder that is not there.
@@ -123,7 +123,7 @@ def _locked(folder: Path, wait: bool) -> Iterator[bool]:
 
 
 @contextlib.contextmanager
-def _named(path: str | os.PathLike) -> Iterator[None]:
+def _named(path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the file, and not the temporary one, in what the system says."""
     try:
         yield

@@ -28,7 +28,7 @@ NETCDF = RLock()
 """The NetCDF library is not made for two threads at once: the process dies."""
 
 
-def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
+def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
     """Write a Dataset or a scene whole or not at all: a temporary file beside it, flushed to disk, then renamed.
 
     Parameters
@@ -68,7 +68,7 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike) -> None:
         seal(temporary, {}, SAVED)
 
 
-def write_text(text: str, path: str | os.PathLike) -> None:
+def write_text(text: str, path: str | os.PathLike[str]) -> None:
     """Write a text file whole or not at all."""
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
@@ -90,7 +90,7 @@ def _unstorable(ds: xr.Dataset) -> list[str]:
     return found + [f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem]
 
 
-def load_scene(path: str | os.PathLike) -> Scene:
+def load_scene(path: str | os.PathLike[str]) -> Scene:
     """The scene of a TOML file, or of a NetCDF file that linksweep wrote.
 
     Parameters

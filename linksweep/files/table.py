@@ -46,7 +46,7 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame({_header(known[name]): _column(known[name].variable, sizes) for name in names})
 
 
-def to_csv(ds: xr.Dataset, path: str | os.PathLike) -> None:
+def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a Dataset as a CSV file, whole or not at all, with the columns of `to_pandas`.
 
     Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would run as a formula

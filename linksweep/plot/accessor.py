@@ -118,6 +118,6 @@ class Cycle:
         """The Dataset as a table, a row for each design (and angle): see `linksweep.files.table.to_pandas`."""
         return table.to_pandas(self._ds)
 
-    def to_csv(self, path: str | os.PathLike) -> None:
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write that table as a CSV file, whole or not at all: see `linksweep.files.table.to_csv`."""
         table.to_csv(self._ds, path)

@@ -7,7 +7,7 @@ revolution is told by its least and its greatest value.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -158,7 +158,7 @@ def _followed(load: Any) -> str:
     return f", over {load.over}" + (f", while {load.while_}" if load.while_ else "")
 
 
-def _breaks(angles: tuple[float, ...]) -> list[str]:
+def _breaks(angles: Sequence[float]) -> list[str]:
     """Angles at which a load jumps, kinks or is narrow."""
     return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
 

@@ -51,7 +51,7 @@ class AvailableQuantity:
 
     @property
     def cells(self) -> tuple[str, ...]:
-        """Its entries as text."""
+        """Return its entries as text."""
         return self.name, self.units, ", ".join(self.dims), "yes" if self.default else "", self.long_name
 
 
@@ -81,7 +81,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the quantities, to be asked for."""
+        """Return the names, to be passed to `linksweep.sweep`."""
         return tuple(row.name for row in self.rows)
 
     @overload

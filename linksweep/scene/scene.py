@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from typing import Any
@@ -101,8 +101,8 @@ class Scene(ByContent):
     mechanism: Mechanism
     omega2: Number = parameter("angular_velocity", None, over_angle=True)
     alpha2: Number = parameter("angular_acceleration", None, over_angle=True)
-    gravity: tuple[Number, Number] = (0.0, 0.0)
-    loads: tuple[Action, ...] = ()
+    gravity: Sequence[Number] = (0.0, 0.0)
+    loads: Sequence[Action] = ()
     drive: str = ""
     speed: Number = parameter("velocity", None, at_least=0.0)
     thrust: Number = parameter("force", None)

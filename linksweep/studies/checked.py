@@ -18,7 +18,7 @@ from linksweep.files.netcdf import NETCDF
 from linksweep.files.seal import sealed
 
 
-def open_study(path: str | os.PathLike) -> xr.Dataset:
+def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     """Open a finished study; each variable is read when it is first used.
 
     The file is not kept open. It has been read through once and its checksum found to fit; whatever is damaged

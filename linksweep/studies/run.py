@@ -55,7 +55,7 @@ SHOWN_AFTER = 1.0
 
 def study(
     scene: Any,
-    path: str | os.PathLike,
+    path: str | os.PathLike[str],
     of: Iterable[str] | None = None,
     chunk: int | None = None,
     threads: int | None = None,

@@ -18,7 +18,7 @@ Engineering for Industry 91 (1969) 21–26; for engines R. L. Norton, Design of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -75,7 +75,7 @@ class Counterweight(ByContent):
 
     link: str
     mass: Number = parameter("mass", at_least=0.0)
-    at: tuple[Number, Number] = (0.0, 0.0)
+    at: Sequence[Number] = (0.0, 0.0)
     inertia: Number = parameter("inertia", 0.0, at_least=0.0)
 
     def __post_init__(self) -> None:
@@ -136,7 +136,8 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
 
 def _carrying(link: Any, weights: list[Counterweight]) -> Link:
     """The link with its weights: masses, first moments and moments of inertia about its pin add up."""
-    parts = [moments(part) for part in (link, *(Placed(*weight.at, weight.mass, weight.inertia) for weight in weights))]
+    placed = (Placed(weight.at[0], weight.at[1], weight.mass, weight.inertia) for weight in weights)
+    parts = [moments(part) for part in (link, *placed)]
     mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
     distance = np.hypot(x, y) / mass.where(mass > 0.0, 1.0)
     inertia = (about_pin - mass * distance * distance).clip(min=0.0)

@@ -98,7 +98,7 @@ class Film:
                 self.figure.draw_artist(artist)
         return Image.fromarray(np.array(self._canvas.buffer_rgba())[..., :3])
 
-    def save(self, path: str | os.PathLike) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write the film, whole or not at all: a .gif that runs for ever, or a page .html with a slider.
 
         Raises

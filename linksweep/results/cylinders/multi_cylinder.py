@@ -84,10 +84,10 @@ class MultiCylinder(ByContent):
     """
 
     engine: Scene
-    crank_angles: tuple[float, ...]
-    bank_angles: tuple[float, ...] = ()
-    positions: tuple[float, ...] = ()
-    main_positions: tuple[float, ...] = ()
+    crank_angles: Sequence[float]
+    bank_angles: Sequence[float] = ()
+    positions: Sequence[float] = ()
+    main_positions: Sequence[float] = ()
 
     def __post_init__(self) -> None:
         refuse(_engine_problems(self.engine))

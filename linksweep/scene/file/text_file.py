@@ -42,6 +42,6 @@ def text_of(path: Path, name: str, ending: str, where: str = "", advice: str = "
         raise ValueError(f"{name}: is not a text file in UTF-8; save it as one") from None
 
 
-def kind_of(path: str | os.PathLike) -> str:
+def kind_of(path: str | os.PathLike[str]) -> str:
     """Return "a folder", "a pipe", … where a path leads to no regular file, else nothing; it must be there."""
     return KINDS.get(stat.S_IFMT(os.stat(path).st_mode), "")

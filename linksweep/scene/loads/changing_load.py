@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from linksweep.base.validate import (
@@ -24,7 +25,7 @@ class ChangingLoad(Action):
     """A load with an `interpolation`, by default that of its arrays, attrs["interpolation"]; and with `breaks`."""
 
     interpolation: str | None
-    breaks: tuple[float, ...]
+    breaks: Sequence[float]
 
     @property
     def changing(self) -> tuple[Any, ...]:

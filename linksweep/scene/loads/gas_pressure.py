@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, cast
 
@@ -60,7 +60,7 @@ class GasPressure(ChangingLoad):
     bore: Number = parameter("length", above=0.0)
     pressure: Number | Cycle = parameter("pressure", over_angle=True)
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
-    breaks: tuple[float, ...] = ()
+    breaks: Sequence[float] = ()
     interpolation: str | None = None
 
     in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own

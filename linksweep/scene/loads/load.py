@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, cast
@@ -84,12 +84,12 @@ class Load(ChangingLoad):
     """
 
     link: str
-    force: tuple[Number, Number] | None = None
-    at: tuple[Number, Number] = (0.0, 0.0)
+    force: Sequence[Number] | Number | None = None
+    at: Sequence[Number] = (0.0, 0.0)
     frame: str = "ground"
     torque: Number | None = parameter("torque", None, over_angle=True)
     origin: str = "pin"
-    breaks: tuple[float, ...] = ()
+    breaks: Sequence[float] = ()
     interpolation: str | None = None
     over: str | None = None
     while_: str | None = None
