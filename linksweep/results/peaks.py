@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse, said
 from linksweep.engine.kernel.writer import Reduction
@@ -54,8 +55,8 @@ class Wanted(NamedTuple):
 
 def peaks(
     scene: Scene | MultiCylinder,
-    of: Iterable[str] | None = None,
-    theta2: Any = None,
+    of: str | Iterable[str] | None = None,
+    theta2: ArrayLike | None = None,
     threads: int | None = None,
     solver: str = "fast",
 ) -> xr.Dataset:

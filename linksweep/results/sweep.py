@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse
 from linksweep.results.compute import blank, compute, quantity_problems, requested, require_scene, sample_status
@@ -21,8 +22,8 @@ SOLVERS = ("fast", "superposed", "dense")
 
 def sweep(
     scene: Scene,
-    theta2: Any = 720,
-    outputs: Iterable[str] | None = None,
+    theta2: ArrayLike = 720,
+    outputs: str | Iterable[str] | None = None,
     solver: str = "fast",
     threads: int | None = None,
 ) -> xr.Dataset:

@@ -5,7 +5,7 @@ Equations and source: `linksweep.results.cylinders.cylinder_sums`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
