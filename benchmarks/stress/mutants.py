@@ -25,6 +25,8 @@ ROOT = Path(__file__).parents[2]
 LIST = Path(__file__).with_suffix(".toml")
 TAKEN = ("linksweep", "tests", "benchmarks", "pyproject.toml")
 """What the tests need of the project."""
+ALL_IN_TURN = ("-p", "no:cacheprovider", "-n", "0", "-m", "")
+"""Options of pytest: long tests too, and one after the other, so that -x names the first that fails."""
 FOREVER = 600.0
 """Seconds after which tests that do not end count as failed."""
 NO_TESTS = 5
@@ -58,10 +60,10 @@ class Copy:
     def failures(self, tests: Iterable[str], *options: str) -> list[str]:
         """Tests of these files that fail."""
         left_out = [f"--deselect={name}" for name in self.red]
-        command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--tb=no", "-rfE", *options, *left_out]
+        command = [sys.executable, "-m", "pytest", *ALL_IN_TURN, "--tb=no", "-rfE", *options, *left_out]
         # no .pyc: a source planted and restored within a second would be taken for the same
         surroundings = os.environ | {"LINKSWEEP_CACHE_DIR": str(self.folder / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
-        surroundings.pop("PYTEST_ADDOPTS", None)  # one after the other: -x is to name the first
+        surroundings.pop("PYTEST_ADDOPTS", None)
         try:
             ran = subprocess.run(
                 [*command, *(f"tests/{name}" for name in tests)],

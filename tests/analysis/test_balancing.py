@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -316,9 +317,6 @@ def test_refusals_of_aims(call, said):
 
 
 def test_the_plot_shows_both():
-    import matplotlib as mpl
-
-    mpl.use("Agg")
     balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
     figure = ls.plot.balance(PRESS, balanced, theta2=90)
     hodograph, moment, torque, pin = figure.axes
@@ -327,4 +325,4 @@ def test_the_plot_shows_both():
         for line, scene in zip(lines, (PRESS, balanced), strict=True):
             cycle = ls.sweep(scene, theta2=90, outputs=list(names))
             np.testing.assert_array_equal(line.get_ydata()[:-1], cycle[names[-1]])
-    mpl.pyplot.close(figure)
+    plt.close(figure)

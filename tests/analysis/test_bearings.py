@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -188,9 +189,6 @@ def test_angles_without_a_result_are_left_out():
 
 @pytest.mark.parametrize("frame", ["ground", "journal", "bearing"])
 def test_load_diagrams_show_these_forces(frame):
-    import matplotlib as mpl
-
-    mpl.use("Agg")
     figure = ls.sweep(PRESS, theta2=90).linksweep.bearings(frame)
     found = ls.bearings(PRESS, theta2=90).sel(frame=frame)
     for ax, (pin, force) in zip(figure.axes, zip("ABCD", ("F12", "F32", "F43", "F14"), strict=True), strict=True):
@@ -201,7 +199,7 @@ def test_load_diagrams_show_these_forces(frame):
         assert off.min(axis=0).max() < 1e-9 * np.abs(samples).max()
         assert np.all(np.diff(off.argmin(axis=0)) > 0)
         assert pin in ax.get_title(loc="left")
-    mpl.pyplot.close(figure)
+    plt.close(figure)
 
 
 @pytest.mark.parametrize(
