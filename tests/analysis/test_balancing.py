@@ -225,9 +225,9 @@ def test_for_the_shaking_force_alone_it_finds_berkof_and_lowen():
 @pytest.mark.parametrize(
     "minimize",
     [
-        {"F32_rms": 1.0, "T12_ripple": 1.0},
+        pytest.param({"F32_rms": 1.0, "T12_ripple": 1.0}, marks=pytest.mark.long),
         {"F14_peak": 1.0},
-        {"F12_peak": 1.0, "Fs_rms": 0.5, "Ms_peak": 0.5, "T12_ripple": 0.3},
+        pytest.param({"F12_peak": 1.0, "Fs_rms": 0.5, "Ms_peak": 0.5, "T12_ripple": 0.3}, marks=pytest.mark.long),
     ],
 )
 def test_brute_force_finds_nothing_better(minimize):

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 import xarray as xr
+from long import long_but
 
 import linksweep as ls
 from linksweep.engine import run
@@ -97,14 +98,14 @@ SCENES = {"plain": plain, "loaded": loaded, "coupler": partial(loaded, drive="co
     ("scene", "request_name"),
     [
         ("plain", "unknowns"),
-        ("plain", "torque"),
-        ("plain", "kinematics"),
+        pytest.param("plain", "torque", marks=pytest.mark.long),
+        pytest.param("plain", "kinematics", marks=pytest.mark.long),
         ("plain", "magnitudes"),
         ("loaded", "unknowns"),
-        ("loaded", "torque"),
-        ("loaded", "others"),
+        pytest.param("loaded", "torque", marks=pytest.mark.long),
+        pytest.param("loaded", "others", marks=pytest.mark.long),
         ("designs", "unknowns"),
-        ("designs", "kinematics"),
+        pytest.param("designs", "kinematics", marks=pytest.mark.long),
     ],
 )
 def test_compiled_and_interpreted_kernels_agree(sweep, scene, request_name):
@@ -112,7 +113,7 @@ def test_compiled_and_interpreted_kernels_agree(sweep, scene, request_name):
     assert_same_bits(*(sweep(way, scene, 37, outputs=names) for way in ("compiled", "interpreted")))
 
 
-@pytest.mark.parametrize("drive", ["coupler", "rocker"])
+@pytest.mark.parametrize("drive", long_but(["coupler", "rocker"], "rocker"))
 def test_compiled_and_interpreted_kernels_agree_for_each_drive(sweep, drive):
     assert_same_bits(*(sweep(way, loaded(drive=drive), 37) for way in ("compiled", "interpreted")))
 
@@ -203,7 +204,7 @@ def on_grid(length, mass, speed=12.0) -> ls.Scene:
     return ls.Scene(four_bar(length, mass), omega2=speed, alpha2=9.0, gravity=(0.0, -9.81), loads=loads)
 
 
-@pytest.mark.parametrize("way", ["compiled", "interpreted"])
+@pytest.mark.parametrize("way", long_but(["compiled", "interpreted"], "interpreted"))
 def test_a_grid_of_designs_is_the_designs_in_a_loop(sweep, way):
     """Also along the last length, which cannot be assembled all round."""
     names = (*KINEMATICS, *MAGNITUDES, *UNKNOWNS, "Cx", "aG3y", "aG4x", *OTHERS)

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 import xarray as xr
+from long import long_but
 
 import linksweep as ls
 from benchmarks.cases import GENERAL, LENGTHS, LOADS, MASSES, batch, scene, stacked
@@ -40,7 +41,7 @@ def work(request, *dims: str) -> int:
     return request.operations("theta2", *dims).total()
 
 
-@pytest.mark.parametrize("way", ["interpreted", "compiled"])
+@pytest.mark.parametrize("way", long_but(["interpreted", "compiled"], "interpreted"))
 @pytest.mark.parametrize("swept", SWEPT)
 def test_superposed_cycles_are_those_of_the_textbooks_matrix(swept, way, monkeypatch):
     if way == "compiled":

@@ -7,6 +7,7 @@ import re
 from functools import partial
 
 import pytest
+from long import long_but
 
 import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, batch, scene
@@ -49,7 +50,7 @@ def assembly(monkeypatch):
     return of
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("name", long_but(CALLS, "nine unknowns of many designs", "peaks"))
 def test_square_roots_are_packed(name, assembly):
     registers = width()
     call, roots = CALLS[name]

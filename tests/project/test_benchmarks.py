@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from long import long_but
 
 from benchmarks import __main__ as front_door
 from benchmarks.cases import ALL, GENERAL, LENGTHS, QUICK, batch
@@ -41,7 +42,7 @@ def rows():
     return of
 
 
-@pytest.mark.parametrize("name", front_door.GROUPS)
+@pytest.mark.parametrize("name", long_but(front_door.GROUPS, "threads", "peaks"))
 def test_rows_exist_and_rivals_agree(name, rows):
     found = rows(name)
     assert {row.goal for row in found} - {None} == GOALS[name]
@@ -56,6 +57,7 @@ def test_two_threads_give_the_same_bits(rows):
     assert [row.error for row in rows("threads")] == [0.0] * 4
 
 
+@pytest.mark.long
 def test_skipped_work_is_counted(rows):
     notes = [row.note.split() for row in rows("skipping") if "operations" in row.note]
     assert len(notes) == 16

@@ -1,6 +1,6 @@
 """Ten thousand random and hard mechanisms reach the goals of the stress suite, whose own judge is judged here.
 
-The same of a million: ``python -m benchmarks.stress --mechanisms 1000000``.
+With the long tests, else a thousand. The same of a million: ``python -m benchmarks.stress --mechanisms 1000000``.
 """
 
 from dataclasses import replace
@@ -11,6 +11,7 @@ import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
 from judges import LinkData, LoadData, mp
+from long import long_but
 
 from benchmarks.accuracy import digits as accuracy
 from benchmarks.speed.kernel import way
@@ -36,11 +37,12 @@ def drawn(family: str, count: int, seed: int = 7) -> Designs:
 # ---- the product -----
 
 
-def test_ten_thousand_mechanisms_reach_the_goals():
-    tallies = front_door.judged(FAMILIES, 10_000, seed=2026)
+@pytest.mark.parametrize("count", long_but([1_000, 10_000], 1_000))
+def test_mechanisms_reach_the_goals(count):
+    tallies = front_door.judged(FAMILIES, count, seed=2026)
     assert {name: tally.wrong for name, tally in tallies.items()} == dict.fromkeys(FAMILIES, 0)
     every = sum(tallies.values(), Tally())
-    assert every.samples >= 10_000
+    assert every.samples >= count
     assert len(every.figure("mixed")) > 0.95 * every.samples
     assert [goal for goal in every.missed() if not goal.startswith("backward: ")] == []
     assert np.all(np.quantile(every.figure("backward"), [0.99, 0.999]) < [10.0, 30.0])  # its largest is not kept

@@ -201,11 +201,12 @@ def test_a_design_alone_has_the_bits_that_it_has_among_others(scene):
             np.testing.assert_array_equal(values, whole[name].isel(design=k, missing_dims="ignore"), err_msg=name)
 
 
-def test_compiled_and_interpreted_searches_give_the_same_bits(monkeypatch):
+@pytest.mark.parametrize("of", [["F32"], pytest.param(OF, marks=pytest.mark.long)])
+def test_compiled_and_interpreted_searches_give_the_same_bits(of, monkeypatch):
     monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", math.inf)
-    interpreted = ls.peaks(several(), of=OF)
+    interpreted = ls.peaks(several(), of=of)
     monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", -1)
-    xr.testing.assert_identical(interpreted, ls.peaks(several(), of=OF))
+    xr.testing.assert_identical(interpreted, ls.peaks(several(), of=of))
 
 
 def test_a_kink_of_friction_between_the_samples():

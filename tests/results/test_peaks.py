@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from long import long_but
 from oracle import random_lengths
 
 import linksweep as ls
@@ -264,7 +265,7 @@ def test_status_and_values_of_designs_that_do_not_close():
 # ------------------------------------------------------------------------------------------------ bits
 
 
-@pytest.mark.parametrize("scene", [batch, mixed])
+@pytest.mark.parametrize("scene", long_but([batch, mixed], mixed))
 def test_compiled_and_interpreted_peaks_are_equal_to_the_bit(scene, monkeypatch):
     of = ["F32", "F14", "T12", "T12_mean", "F43_rms", "aG3y_rms"]
     found = []

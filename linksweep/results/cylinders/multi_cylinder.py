@@ -159,7 +159,7 @@ class MultiCylinder(ByContent):
     @cached_property
     def mains(self) -> tuple[float, ...]:
         """Places of the main bearings along the crankshaft [m], in order; none where nothing says where they are."""
-        return self.main_positions or _halfway(sorted({*self.positions}))
+        return tuple(self.main_positions) or _halfway(sorted({*self.positions}))
 
     @cached_property
     def throws(self) -> tuple[Throw, ...]:
