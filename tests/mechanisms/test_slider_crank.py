@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from judges import BRANCHES, DeadPoint, LinkData, LoadData, Unassemblable, largest_force, mp
+from long import long_but
 from oracle import torque_name
 from oracle_slider_crank import (
     DRIVES,
@@ -252,7 +253,7 @@ def test_status_is_right_at_every_sample(drive):
     assert seen == {"ok", "jammed", "jammed_two_solutions", "cannot_assemble"}
 
 
-@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("drive", long_but(DRIVES, "crank"))
 def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkeypatch):
     """With friction, also among jammed samples and those that cannot be assembled."""
     designs, theta2 = jamming()[drive][:6], np.random.default_rng(2).uniform(-180, 540, 11)

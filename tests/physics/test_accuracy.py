@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from judges import BRANCHES, LinkData, LoadData, largest_force, mp
+from long import long_but
 from oracle import (
     KINDS,
     LINKS,
@@ -246,7 +247,7 @@ def loaded(data: FourBarData, rng: np.random.Generator) -> FourBarData:
     return replace(data, loads=loads)
 
 
-@pytest.mark.parametrize("drive", LINKS)
+@pytest.mark.parametrize("drive", long_but(LINKS, "crank"))
 def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkeypatch):
     """Also where some of the designs cannot be assembled: NaN there, and nowhere else."""
     rng = np.random.default_rng(7)
