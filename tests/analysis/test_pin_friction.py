@@ -43,7 +43,15 @@ def test_the_force_in_a_massless_rod_touches_both_friction_circles():
     np.testing.assert_allclose(across / found.F43, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("scene", [PRESS, SHAPER, replace(PRESS, omega2=-20.0), replace(PRESS, drive="rocker")])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        PRESS,
+        SHAPER,
+        replace(PRESS, omega2=-20.0),
+        pytest.param(replace(PRESS, drive="rocker"), marks=pytest.mark.long),
+    ],
+)
 def test_energy_in_is_energy_out_and_friction(scene):
     """Friction takes just what the drive gives more than without it; at a steady speed, over a cycle."""
     pins = dict.fromkeys(scene.mechanism.pins, RUBBING)

@@ -10,7 +10,10 @@ from oracle import LINKS, FourBarData, random_data, random_theta2, to_scene, tor
 
 import linksweep as ls
 
-SEEDS = [pytest.param(*case, id="-".join(map(str, case))) for case in product(BRANCHES, LINKS, range(3))]
+SEEDS = [
+    pytest.param(branch, drive, seed, id=f"{branch}-{drive}-{seed}", marks=[pytest.mark.long] if seed else [])
+    for branch, drive, seed in product(BRANCHES, LINKS, range(3))
+]
 random_scenes = pytest.mark.parametrize(("branch", "drive", "seed"), SEEDS)
 ANGLES = ("theta3", "theta4")
 PINS = ("F12", "F32", "F43", "F14")

@@ -46,6 +46,7 @@ def test_a_text_that_is_not_there_or_there_twice_is_no_mutant():
         CAUGHT.planted(CAUGHT.old + "\n" + CAUGHT.old)
 
 
+@pytest.mark.long
 def test_the_runner_tells_who_catches_what():
     with copied() as copy:
         source = copy.folder / "linksweep" / CAUGHT.file

@@ -296,6 +296,7 @@ def after_each_chunk(patch, happens) -> None:
 WORDS = {"of": ["F32", "T12"], "chunk": 6, "theta2": 48}
 
 
+@pytest.mark.long
 def test_a_study_survives_the_loss_of_a_worker(client, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         without_a_cluster(patch)

@@ -27,7 +27,14 @@ from linksweep.studies import run as study_module
 # ------------------------------------------------------------------------------------ the numbers of peaks
 
 
-@pytest.mark.parametrize(("scene", "chunk"), [*((scene, 2) for scene in SCENES), ("grid", 5), ("grid", 50_000)])
+@pytest.mark.parametrize(
+    ("scene", "chunk"),
+    [
+        *((scene, 2) for scene in SCENES),
+        pytest.param("grid", 5, marks=pytest.mark.long),
+        pytest.param("grid", 50_000, marks=pytest.mark.long),
+    ],
+)
 def test_a_study_is_what_peaks_gives(scene, chunk, tmp_path):
     scene = SCENES[scene]()
     expected = ls.peaks(scene)
