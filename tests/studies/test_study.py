@@ -211,9 +211,10 @@ def test_the_command_refuses_what_cannot_be(folder, arguments, message, capsys):
 
 
 INTERRUPTED = """
-import sys
+import signal, sys
 from linksweep.cli.main import main
 from studies import hang_after
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 hang_after(20)
 sys.exit(main())
 """
