@@ -105,7 +105,7 @@ def test_at_rest_only_what_stands_is_left():
         np.testing.assert_allclose(summed[name], alone[name], rtol=1e-13, atol=1e-13)
 
 
-@pytest.mark.parametrize("solver", ["fast", "superposed"])
+@pytest.mark.parametrize("solver", long_but(["fast", "superposed"], "superposed"))
 @pytest.mark.parametrize("count", [1, 3, 4, 6])
 def test_designs_done_abreast_have_the_bits_of_those_interpreted(count, solver, monkeypatch):
     machine = scene(batch(count, "m3"))

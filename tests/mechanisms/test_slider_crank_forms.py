@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from judges import BRANCHES, LinkData, LoadData
+from long import long_but
 from oracle import torque_name
 from oracle_slider_crank import DRIVES, SliderCrankData, mirrored, random_data, random_theta2, to_scene
 
@@ -145,7 +146,7 @@ def engine(P=-900.0, friction=0.2, **changes) -> ls.Scene:
     return ls.Scene(ls.SliderCrank(crank, rod, 0.5, **guide), 40.0, -90.0, (0.4, -9.81), loads)
 
 
-@pytest.mark.parametrize("way", [-1, np.inf])
+@pytest.mark.parametrize("way", long_but([-1, np.inf], np.inf))
 def test_the_force_on_the_slider_is_the_same_in_every_form(way, monkeypatch):
     """A number, a function, an array over the sweep's angles: equal bits, for a constant and for one that changes."""
     monkeypatch.setattr(run, "COMPILE_AFTER", way)

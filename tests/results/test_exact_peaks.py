@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from long import long_but
 from scipy.optimize import minimize_scalar
 
 import linksweep as ls
@@ -189,7 +190,7 @@ def loaded() -> ls.Scene:
 OF = ["F32", "T12", "theta4", "T12_mean", "F32_bound"]
 
 
-@pytest.mark.parametrize("scene", [several, loaded])
+@pytest.mark.parametrize("scene", long_but([several, loaded], several))
 def test_a_design_alone_has_the_bits_that_it_has_among_others(scene):
     scene = scene()
     whole = ls.peaks(scene, of=OF, threads=2)

@@ -62,6 +62,7 @@ def waiting() -> subprocess.Popen:
     return subprocess.Popen([sys.executable, "-c", KILLED], stdin=subprocess.PIPE, env=environment, text=True)
 
 
+@pytest.mark.long
 def test_killed_at_random_moments_it_ends_as_the_same_file(tmp_path):
     """Each time some chunks further than the last, and a moment more."""
     path, rng = tmp_path / "study.nc", random.Random(7)
