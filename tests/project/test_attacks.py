@@ -7,6 +7,7 @@ from benchmarks.stress.attacks import Attack, attacks
 
 SMALL = [attack for attack in attacks() if attack.small]
 
+
 @pytest.mark.long
 @pytest.mark.parametrize("attack", SMALL, ids=lambda attack: attack.name)
 def test_nothing_breaks(attack: Attack):
