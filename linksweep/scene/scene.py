@@ -18,6 +18,7 @@ from linksweep.base.validate import (
     Rule,
     choice_problems,
     is_array,
+    is_lazy,
     pair_problems,
     parameter,
     problems,
@@ -110,6 +111,8 @@ class Scene(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        for word in MOTION:
+            object.__setattr__(self, word, _own_label(word, getattr(self, word)))
         sound = isinstance(self.mechanism, MECHANISMS)
         known = " or ".join(kind.__name__ for kind in MECHANISMS)
         found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
@@ -368,6 +371,12 @@ class Scene(ByContent):
         for k, load in enumerate(self.loads, 1):
             named |= load.parameters(f"load{k}", named)
         return named
+
+
+def _own_label(word: str, value: Any) -> Any:
+    """Return an array over a dim of its own name with its values as labels: in a file it is this dim's coordinate."""
+    own = isinstance(value, xr.DataArray) and value.dims == (word,) and word not in value.coords
+    return value.assign_coords({word: value.values}) if own and not is_lazy(value) else value
 
 
 def _left_out(word: Any) -> bool:

@@ -174,3 +174,10 @@ def test_what_a_file_cannot_hold_is_refused_before_anything_is_written(tmp_path)
     with pytest.raises(ValueError, match=r"a.toml: its ending must be .nc or .csv"):
         ls.save(ls.sweep(ls.example("press"), 12), tmp_path / "a.toml")
     assert not [*tmp_path.iterdir()]
+
+
+def test_an_array_over_a_dim_of_its_own_name_comes_back_equal(tmp_path):
+    """NetCDF holds it as the coordinate of that dim."""
+    scene = replace(ls.example("press"), omega2=xr.DataArray([10.0, 20.0, 30.0], dims="omega2"))
+    ls.save(ls.peaks(scene, of=["T12"]), tmp_path / "peaks.nc")
+    assert ls.load_scene(tmp_path / "peaks.nc") == scene
