@@ -3,9 +3,11 @@
 from itertools import combinations
 
 import matplotlib as mpl
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
 from matplotlib.offsetbox import AnnotationBbox, TextArea
 
 
