@@ -11,7 +11,6 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.validate import did_you_mean, refuse, said
-from linksweep.files.apart import read_apart
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.seal import SAVED, mark_of, seal, sealed
 from linksweep.files.table import to_csv
@@ -133,6 +132,8 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
 def _loaded(path: Path) -> xr.Dataset:
     """All of a NetCDF file; one without our seal is read where HDF5 can do no harm."""
     if not (mark := mark_of(path)):
+        from linksweep.files.apart import read_apart  # here: it also runs as a program, which imports this
+
         return read_apart(path)
     sealed(path, mark)  # which refuses a file that is damaged
     with NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
