@@ -151,7 +151,7 @@ def _single(nine: Callable[[Design, Array], Array]) -> Bind:
 
 def _rival(module: str) -> Bind:
     """Imported where it is measured, for its package may be missing."""
-    return lambda q, theta2: import_module(f"{__package__}.rivals.{module}").bind(q, theta2)
+    return lambda q, theta2: import_module(f"benchmarks.rivals.{module}").bind(q, theta2)
 
 
 NINE_BY = {

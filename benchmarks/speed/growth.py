@@ -37,7 +37,7 @@ def _decades(least: int, largest: int) -> list[int]:
 
 def _fresh(call: str) -> str:
     """What a function of this module prints in a fresh process."""
-    command = [sys.executable, "-c", f"from benchmarks import growth; growth.{call}"]
+    command = [sys.executable, "-c", f"from {__package__} import growth; growth.{call}"]
     return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 

@@ -132,7 +132,8 @@ def test_a_spoiled_scene_file_is_computed_or_refused_with_its_line(raw):
         assert_sound(scene)
 
 
-EXAMPLE_FILES = [path.read_bytes() for path in sorted(Path(file.__file__).with_name("examples").glob("*.toml"))]
+EXAMPLES = Path(file.__file__).parents[1] / "examples"
+EXAMPLE_FILES = [path.read_bytes() for path in sorted(EXAMPLES.glob("*.toml"))]
 PIECES = st.sampled_from(
     [b"\n", b"[", b"]", b"{", b"}", b"[[loads]]\n", b"=", b'"', b"'", b"-", b"1e400", b" cm", b"\xff", b"\0", b"#"]
 )
@@ -178,6 +179,6 @@ def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, conte
     ],
 )
 def test_what_chance_seldom_finds(line, message):
-    rest = (Path(file.__file__).parent / "examples" / "press.toml").read_text().split('omega2 = "300 rpm"\n')[1]
+    rest = (EXAMPLES / "press.toml").read_text().split('omega2 = "300 rpm"\n')[1]
     with in_finite_time(), pytest.raises(ValueError, match=rf"^scene\.toml:{re.escape(message)}"):
         parse_scene(f"{line}\n{rest}", "scene.toml")
