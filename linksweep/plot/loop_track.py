@@ -10,6 +10,7 @@ import xarray as xr
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.style import BLACK, BLUE, GREY, SHADE, VERMILION, grid, small_type
+from linksweep.results.peaks import peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,16 +88,31 @@ def draw_force(ax: Axes, ds: xr.Dataset) -> None:
         ax.xaxis.set_major_locator(MultipleLocator(90.0))
         ax.xaxis.set_minor_locator(MultipleLocator(30.0))
         ax.set_xlim(angles[0], max(360.0, angles[-1]))
-    for sign, said in ((1.0, "max"), (-1.0, "min")):
-        found = signals.peak(angles, sign * force)
-        if found and np.nanmin(force) < np.nanmax(force):
-            value = sign * found.value
-            ax.plot([found.angle], [value], "o", color=BLUE, markersize=4.5, clip_on=False, label=f"_{said}")
-            text = f"{said} {signals.number(value)} N at {signals.angle_text(found.angle)}"
-            label(ax, found.angle, value, (text, BLUE))
+    for said, (angle, value) in _extremes(ds, angles, force).items():
+        ax.plot([angle], [value], "o", color=BLUE, markersize=4.5, clip_on=False, label=f"_{said}")
+        label(ax, angle, value, (f"{said} {signals.number(value)} N at {signals.angle_text(angle)}", BLUE))
     ax.margins(y=0.18)
     ax.set_xlabel("position $\\theta$ [°]")
     ax.set_ylabel("force of the track $F_N$ [N]")
+
+
+def _extremes(ds: xr.Dataset, angles: np.ndarray, force: np.ndarray) -> dict[str, tuple[float, float]]:
+    """Return position and force of the extremes: exact for a whole lap, else of the samples; none of an even force."""
+    if not np.nanmin(force, initial=np.inf) < np.nanmax(force, initial=-np.inf):
+        return {}
+    exact = _exact_extremes(ds) if signals.full_turn(angles) else None
+    samples = {"max": int(np.nanargmax(force)), "min": int(np.nanargmin(force))}
+    return exact or {said: (angles[k], force[k]) for said, k in samples.items()}
+
+
+def _exact_extremes(ds: xr.Dataset) -> dict[str, tuple[float, float]] | None:
+    """Return the extremes of the scene that a Dataset holds; None where it holds none, or more than one design."""
+    try:
+        found = peaks(scene_of(ds), of=["normal_force"])
+        words = {said: f"normal_force_{said}" for said in ("max", "min")}
+        return {said: (found[f"{name}_at"].item(), found[name].item()) for said, name in words.items()}
+    except ValueError:
+        return None
 
 
 def draw_track(ax: Axes, ds: xr.Dataset) -> np.ndarray:

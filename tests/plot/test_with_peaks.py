@@ -174,3 +174,13 @@ def test_one_of_several_designs_is_marked_exactly():
     scene = replace(pump(), omega2=xr.DataArray([20.0, 40.0], {"speed": [1, 2]}, "speed"))
     said = said_at_peaks(ls.plot.torque(ls.sweep(scene, 90).isel(speed=1)), "N m")
     assert f"max {number(float(ls.peaks(pump()).T12_max))} at" in said
+
+
+def test_a_lap_marks_the_extremes_between_its_samples():
+    """m (v²/R ± g), at the bottom and at the top."""
+    car = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, gravity=(0.0, -9.81))
+    figure = ls.sweep(car, 7).linksweep.loop()
+    (ax,) = (ax for ax in figure.axes if ax.get_ylabel().startswith("force"))
+    marks = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_label() in ("_max", "_min")}
+    np.testing.assert_allclose(marks["_max"], [0.0, 700.0 * (1e4 / 30.0 + 9.81)], rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(marks["_min"], [180.0, 700.0 * (1e4 / 30.0 - 9.81)], rtol=1e-12, atol=1e-4)
