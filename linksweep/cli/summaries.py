@@ -46,9 +46,14 @@ def bearing_table(found: xr.Dataset) -> str:
     of_pins = np.broadcast_to(status.values, found.sizes["pin"])
     rows = [("pin", *columns, "status")]
     for k, pin in enumerate(found["pin"].values):
-        numbers = (signals.number(float(column[k])) for column in columns.values())
+        numbers = (_number(float(column[k])) for column in columns.values())
         rows.append((str(pin), *numbers, words[of_pins[k]] if of_pins[k] else ""))
     return _table([row if of_pins.any() else row[:-1] for row in rows])
+
+
+def _number(value: float) -> str:
+    """Return a number as figures show it, but infinity in letters that every terminal has."""
+    return f"{value:g}" if np.isinf(value) else signals.number(value)
 
 
 def _summed(found: xr.Dataset, name: str, how: str) -> np.ndarray:

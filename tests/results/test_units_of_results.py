@@ -34,7 +34,9 @@ def inverted_slider_crank(length=1.0, mass=1.0, time=1.0):
     crank, rocker = link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass), link(0.3, 0.7, 3e-3, 0.1, -10.0, length, mass)
     block = {"block_mass": 0.4 * mass, "block_inertia": 1e-4 * mass * length**2}
     block |= {"block_cg_distance": 0.02 * length, "block_cg_angle": -50.0}
-    mechanism = ls.InvertedSliderCrank(crank, rocker, 0.2 * length, **block, offset=0.02 * length, ground_angle=15.0)
+    mechanism = ls.InvertedSliderCrank(
+        crank, rocker, 0.2 * length, **block, offset=0.02 * length, ground_angle=15.0, friction=0.1
+    )
     return scene(mechanism, "rocker", "block", length, mass, time)
 
 

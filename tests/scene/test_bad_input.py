@@ -94,7 +94,7 @@ def test_the_table_has_every_number_of_every_constructor():
     for role, cls in (("coupler", ls.Link), ("crank", ls.Bar), ("rocker", ls.Disk)):
         assert {f"{role}.{name}" for name in ruled(cls)} <= named
     assert ruled(FourBar) | ruled(ls.LoopTrack) | ruled(Scene) | {f"loads[2].{name}" for name in ruled(Load)} <= named
-    pairs = {item.name for cls in (Scene, Load) for item in fields(cls) if "tuple[Number, Number]" in str(item.type)}
+    pairs = {item.name for cls in (Scene, Load) for item in fields(cls) if "Sequence[Number]" in str(item.type)}
     assert pairs == {"gravity", "force", "at"}
 
 

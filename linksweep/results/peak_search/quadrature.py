@@ -179,7 +179,7 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, th
     for halvings in range(HALVINGS):
         rules = _rules(group, integrands, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
-        rest = sought & _disagree(rules, scale[:, pieces.path])
+        rest = sought & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
         rest = _burst(rules, rest, scale, pieces.path) if halvings >= NARROW else rest
         done += _by_owner(np.where(sought & ~rest, rules.outer, 0.0), pieces.path, count)
         unsettled = rest.any(axis=0)
@@ -199,15 +199,18 @@ def _burst(rules: Rules, rest: Array, scale: Array, path: Array) -> Array:
     return rest & ~diverges[:, path]
 
 
-def _disagree(rules: Rules, scale: Array) -> Array:
+def _disagree(rules: Rules, scale: Array, beside_toggles: bool) -> Array:
     """Where the rules differ by more than rounding, and by too much of the whole.
 
     QUADPACK's smaller estimate of the error holds where the integrand is smooth, not at the kinks of friction and of
-    power that is fed. What no more digits can better is left, or infinite beside a pole.
+    power that is fed. On arcs it is taken all the same: nearer to their ends samples have fewer digits than the rules.
+    What no more digits can better is left, or infinite beside a pole.
     """
     difference = np.abs(rules.outer - rules.inner)
     above_rounding = difference > ROUNDING * rules.size  # beside a pole a piece may be larger than the rest together
-    rest = above_rounding & (difference > TOLERANCE * scale)
+    share = difference / scale
+    rest = above_rounding & (share > TOLERANCE)
+    rest &= (200.0 * share) ** 1.5 > TOLERANCE if beside_toggles else True
     blurred = rest & (difference <= rules.blur)
     poles = blurred & (difference > POLE * rules.size)
     rules.outer[poles] = np.copysign(np.inf, rules.outer[poles])
