@@ -24,7 +24,7 @@ class ByContent:
 
 
 def content(value: Any) -> Any:
-    """What makes two values equal, as nested tuples; names, attributes and other coordinates of arrays do not."""
+    """Return what makes two values equal, as nested tuples: no names, attributes or other coordinates of arrays."""
     if is_dataclass(value):
         return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
     if is_array(value):

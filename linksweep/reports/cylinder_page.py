@@ -1,4 +1,4 @@
-"""What a report tells of an engine of several cylinders: how they stand, peaks, drive, mains, figures."""
+"""Write the report of an engine of several cylinders: how they stand, peaks, drive, mains, figures."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ def _rates() -> list[Row | Total]:
 
 
 def _transmission() -> list[Row | Total]:
-    """What the rocker has of the crank's velocity and torque, and how the ratios change with the crank's angle."""
+    """Give the rocker's share of the crank's velocity and torque, and how the ratios change with the crank's angle."""
     line = ("ratio4", "slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
     return [
         *crank_pin_slope_rows(),

@@ -1,4 +1,4 @@
-"""What an engine of several cylinders has together: sums over its cylinders, and what is made of such sums.
+"""Sum quantities over the cylinders of an engine, and compute others from such sums.
 
 Cylinder k is the engine's slider-crank turned by its bank angle β about A, its crank ahead by its crank angle φ. In
 axes that turn with the cylinder its crank stands at θ2 + φ − β: each cylinder is thus the same cycle at other angles,
@@ -40,7 +40,7 @@ class Throw(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """What each throw adds, of the quantities `sources` of its cylinder."""
+    """Return the contribution of each throw, from the quantities `sources` of its cylinder."""
 
     sources: tuple[str, ...]
     part: Callable[..., Any]
@@ -48,7 +48,7 @@ class Sum(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What a function makes of sums."""
+    """Return a function's value of sums."""
 
     sources: tuple[str, ...]
     function: Callable[..., Any]

@@ -143,7 +143,7 @@ class MultiCylinder(ByContent):
 
     @property
     def in_memory(self) -> MultiCylinder:
-        """The same engine, its numbers computed where they are lazy."""
+        """Return a copy whose lazy numbers are computed."""
         return replace(self, engine=in_memory(self.engine))
 
     @property

@@ -1,4 +1,4 @@
-"""What changes over the revolution: functions and DataArrays of theta2, brought to the angles of a sweep."""
+"""Bring functions and DataArrays of theta2, which change over the revolution, to the angles of a sweep."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class ChangingLoad(Action):
 
     @property
     def changing(self) -> tuple[Any, ...]:
-        """Those of its numbers that may change over the revolution."""
+        """Return its numbers that may change over the revolution."""
         raise NotImplementedError
 
     def __post_init__(self) -> None:
