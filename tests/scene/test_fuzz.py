@@ -164,6 +164,7 @@ def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, conte
     ("line", "message"),
     [
         ("a = " + "[" * 5000 + "]" * 5000, "1: not TOML of a scene: tables or lists are nested too deep"),
+        ("a = " + "[" * 150 + "]" * 150, "1: not TOML of a scene: tables or lists are nested too deep"),
         (".".join("a" * 3000) + " = 1", "1: not TOML of a scene: tables or lists are nested too deep"),
         ("omega2 = " + "9" * 5000, "1: not TOML of a scene: a number has too many digits"),
         ('omega2 = {csv = "\\u0000"}', '1: omega2.csv = "\\u0000": must be the name of a file'),

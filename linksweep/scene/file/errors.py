@@ -117,12 +117,16 @@ class Log:
         return "\n".join(f"{name}:{number}: {problem}" for number, problem in placed)
 
 
+DEEPEST = 100
+"""Tables and lists inside each other; no scene goes so deep, and all that follows would."""
+
+
 def document(text: str, name: str) -> dict[str, Any]:
     """Parse the TOML; an error says file, line and, for the commonest slip, what to write."""
     try:
         raw = tomllib.loads(text)
-        for _ in _places(raw):  # all that follows goes as deep
-            pass
+        if any(len(place) > DEEPEST for place, _ in _places(raw)):
+            raise RecursionError
         return raw
     except RecursionError:
         raise ValueError(f"{name}:1: not TOML of a scene: tables or lists are nested too deep") from None
