@@ -80,7 +80,7 @@ def parameter(kind: str, default: Any = MISSING, **bounds: Any) -> Any:
     return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
 
 
-def problems(owner: Any, prefix: str = "") -> list[str]:
+def field_problems(owner: Any, prefix: str = "") -> list[str]:
     """What is wrong with the ruled fields of a dataclass, each with its path; None is for the owner to judge."""
     return [
         problem
@@ -92,7 +92,7 @@ def problems(owner: Any, prefix: str = "") -> list[str]:
 
 def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) -> list[str]:
     if not (isinstance(pair, tuple | list) and len(pair) == 2):
-        return [f"{path} = {said(pair)}: must be a pair {meaning}"]
+        return [f"{path} = {quote(pair)}: must be a pair {meaning}"]
     return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
 
 
@@ -105,7 +105,7 @@ def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
 def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
     """Return the problems of a tuple that must hold plain numbers."""
     if not isinstance(values, tuple):
-        return [f"{path} = {said(values)}: must be a list, each item {rule.number}"]
+        return [f"{path} = {quote(values)}: must be a list, each item {rule.number}"]
     items = [(f"{path}[{k}]", value) for k, value in enumerate(values, 1)]
     arrays = [f"{at} is an array: must be {rule.number}, for all designs the same" for at, x in items if is_array(x)]
     return arrays + [p for at, x in items if not is_array(x) for p in number_problems(at, x, rule)]
@@ -118,19 +118,19 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     if is_array(value):
         return _array_problems(path, value, rule)
     if callable(value):
-        function = f"{path} = {said(value)}: must be {rule.number}, not a function; {_over_angle_only()}"
+        function = f"{path} = {quote(value)}: must be {rule.number}, not a function; {_over_angle_only()}"
         return [] if rule.over_angle else [function]
     if isinstance(value, np.ndarray | list | tuple):
         scalar = isinstance(value, np.ndarray) and value.ndim == 0
         named = 'name its dimensions, as in xarray.DataArray(values, dims="design")'
-        return [f"{path} = {said(value)} is a bare array: {'write float(...) of it' if scalar else named}"]
+        return [f"{path} = {quote(value)} is a bare array: {'write float(...) of it' if scalar else named}"]
     if isinstance(value, bool | np.bool_):
         return [f"{path} = {value}: must be {rule.number}, not a truth value"]
     if isinstance(value, str):
         return [f"{path} = {value!r}: must be {rule.number}, not text; numbers with units stand in scene files"]
     number = as_float(value)
     if number is None:
-        return [f"{path} = {said(value)}: must be {rule.number}, or an xarray.DataArray of them"]
+        return [f"{path} = {quote(value)}: must be {rule.number}, or an xarray.DataArray of them"]
     if rule.broken_by(np.asarray(number)):
         return [f"{path} = {rule.measured(number)}: must be {rule.allowed(number)}"]
     return []
@@ -166,8 +166,8 @@ def as_float(value: Any) -> float | None:
         return np.inf if real > 0 else -np.inf
 
 
-def said(value: Any) -> str:
-    """A value in one short line of a message, the same in every run."""
+def quote(value: Any) -> str:
+    """Return a value in one short line of a message, the same in every run."""
     try:
         text = re.sub(r" at 0x\w+", "", " ".join(repr(value).split()))
     except Exception:  # an int of too many digits, or whatever somebody's class does
@@ -184,22 +184,22 @@ def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
         return [f"{path} holds {value.dtype} values: each must be {rule.number}"]
     if value.size == 0:
         return [f"{path} is empty, {dict(value.sizes)}: give each dimension at least one value"]
-    found = []
+    problems = []
     if "theta2" in value.dims:
         problem = f"{path} depends on theta2: it must be the same at every angle; {_over_angle_only()}"
-        found += _angle_problems(path, value) if rule.over_angle else [problem]
+        problems += _angle_problems(path, value) if rule.over_angle else [problem]
     if "branch" in value.dims:
-        found.append(f'{path} has a dimension "branch": that name is kept for branch="both"; rename it')
+        problems.append(f'{path} has a dimension "branch": that name is kept for branch="both"; rename it')
     if len(set(value.dims)) < len(value.dims):
-        return [*found, f"{path} has dimensions {value.dims}: each name may appear once; rename one"]
+        return [*problems, f"{path} has dimensions {value.dims}: each name may appear once; rename one"]
     if is_lazy(value):
-        return found
+        return problems
     broken = rule.broken_by(np.asarray(value.values, dtype=float))
     if broken.any():
         first = np.unravel_index(int(np.argmax(broken)), broken.shape)
         worst = float(value.values[first])
-        found.append(f"{path} = {rule.measured(worst)}{_place(value, first, broken)}: must be {rule.allowed(worst)}")
-    return found
+        problems.append(f"{path} = {rule.measured(worst)}{_place(value, first, broken)}: must be {rule.allowed(worst)}")
+    return problems
 
 
 def _place(array: Any, first: tuple, broken: np.ndarray) -> str:
@@ -218,7 +218,7 @@ def _angle_problems(path: str, value: Any) -> list[str]:
         return []  # its values are those of the sweep's own angles
     angles = value.coords["theta2"].values
     if angles.dtype.kind not in "fiu" or not np.isfinite(angles).all():
-        return [f"{path} has theta2 = {said(angles.tolist())}: its coordinate must hold finite angles in degrees"]
+        return [f"{path} has theta2 = {quote(angles.tolist())}: its coordinate must hold finite angles in degrees"]
     different, counts = np.unique(angles, return_counts=True)
     twice = different[counts > 1]
     return [f"{path} has theta2 = {twice[0]:.15g} more than once: give one value for each angle"] if twice.size else []
@@ -229,14 +229,14 @@ def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
     allowed = list(allowed)
     if isinstance(value, str) and value in allowed:
         return []
-    return [f"{path} = {said(value)}: must be one of {', '.join(allowed)}{did_you_mean(value, allowed)}"]
+    return [f"{path} = {quote(value)}: must be one of {', '.join(allowed)}{did_you_mean(value, allowed)}"]
 
 
 def count_problems(path: str, value: Any) -> list[str]:
     """A whole number of things, 1 or more; None is for the owner to judge."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     sound = value is None or (whole and value >= 1)
-    return [] if sound else [f"{path} = {said(value)}: must be a whole number, 1 or more"]
+    return [] if sound else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
 
 
 def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
@@ -244,7 +244,7 @@ def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
     known = list(known)
     if isinstance(name, str) and name in known:
         return []
-    return [f"{path}: nothing is named {said(name)}{did_you_mean(name, known) or '; there are ' + ', '.join(known)}"]
+    return [f"{path}: nothing is named {quote(name)}{did_you_mean(name, known) or '; there are ' + ', '.join(known)}"]
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
@@ -253,7 +253,7 @@ def did_you_mean(word: Any, known: Iterable[str]) -> str:
     return f'; did you mean "{spelled[close[0]]}"?' if close else ""
 
 
-def refuse(found: list[str]) -> None:
+def refuse(problems: list[str]) -> None:
     """Raise ValueError with one problem a line, if there are any."""
-    if found:
-        raise ValueError("\n".join(found))
+    if problems:
+        raise ValueError("\n".join(problems))

@@ -10,7 +10,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import did_you_mean, refuse, said
+from linksweep.base.validate import did_you_mean, quote, refuse
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.seal import SAVED, mark_of, seal, sealed
 from linksweep.files.table import to_csv
@@ -84,7 +84,7 @@ def _as_dataset(scene: Scene) -> xr.Dataset:
 def _unstorable(ds: xr.Dataset) -> list[str]:
     """Return the names and the coordinates of a Dataset that a file cannot hold."""
     names = {name: name_problem(name) for name in (*ds.dims, *ds.variables)}
-    found = [f"ds has {said(name)}: {problem}; rename it" for name, problem in names.items() if problem]
+    found = [f"ds has {quote(name)}: {problem}; rename it" for name, problem in names.items() if problem]
     labels = {name: label_problem(values.variable) for name, values in ds.coords.items()}
     return found + [f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem]
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, is_lazy, parameter, problems, refuse
+from linksweep.base.validate import Number, field_problems, is_lazy, parameter, refuse
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
@@ -106,7 +106,7 @@ class FourBar(CrankDriven):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(link_problems(self, *self.links) + problems(self) + self.branch_problems())
+        refuse(link_problems(self, *self.links) + field_problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def lengths(self) -> dict[str, Number]:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, parameter, problems, refuse
+from linksweep.base.validate import Number, field_problems, parameter, refuse
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
@@ -125,7 +125,7 @@ class InvertedSliderCrank(CrankDriven):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(link_problems(self, "crank", "rocker") + problems(self) + self.branch_problems())
+        refuse(link_problems(self, "crank", "rocker") + field_problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def lengths(self) -> tuple[Number, Number, Number]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, overflow_problems, parameter, problems, said
+from linksweep.base.validate import Number, field_problems, overflow_problems, parameter, quote
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,18 +132,18 @@ class Disk(ByContent):
 
 def link_problems(mechanism: Any, *roles: str) -> list[str]:
     """What is wrong with the links that a mechanism has in these roles."""
-    found = []
+    problems = []
     for role in roles:
         link = getattr(mechanism, role)
         sound = isinstance(link, Link | Bar | Disk)
-        found += _link_problems(role, link) if sound else [f"{role} = {said(link)}: must be a Link, Bar or Disk"]
-    return found
+        problems += _link_problems(role, link) if sound else [f"{role} = {quote(link)}: must be a Link, Bar or Disk"]
+    return problems
 
 
 def _link_problems(role: str, link: Link | Bar | Disk) -> list[str]:
-    found = problems(link, role + ".")
+    problems = field_problems(link, role + ".")
     with np.errstate(over="ignore"):
-        return found or overflow_problems(role, link.inertia, "moment of inertia")
+        return problems or overflow_problems(role, link.inertia, "moment of inertia")
 
 
 def link_parameters(role: str, link: Link | Bar | Disk) -> dict[str, Number]:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, parameter, problems, refuse
+from linksweep.base.validate import Number, field_problems, parameter, refuse
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.loop_track_limits import events, lap
@@ -81,7 +81,7 @@ class LoopTrack(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(problems(self))
+        refuse(field_problems(self))
 
     def always_ok(self, drive: str) -> bool:
         """Whether the numbers alone say that every sample is ok: not without its speed."""

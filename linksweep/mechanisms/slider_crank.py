@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.degrees import cos_sin_rests
-from linksweep.base.validate import Number, parameter, problems, refuse
+from linksweep.base.validate import Number, field_problems, parameter, refuse
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.slider_crank_limits import (
@@ -100,7 +100,7 @@ class SliderCrank(CrankDriven):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(link_problems(self, "crank", "rod") + problems(self) + self.branch_problems())
+        refuse(link_problems(self, "crank", "rod") + field_problems(self) + self.branch_problems())
         refuse(self._never_closes())
 
     def _never_closes(self) -> list[str]:

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.memory import require_memory
-from linksweep.base.validate import count_problems, refuse, said
+from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms import LoopTrack
 from linksweep.plot import loop_track as loop_plot
@@ -88,11 +88,11 @@ def animate(
     24
     """
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
-    require_memory(f"frames = {said(frames)}", float(frames * math.prod(SIZE) * DPI**2))
+    require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
     if isinstance(ds_or_scene, MultiCylinder):
         from linksweep.plot.cylinder_film import film_of_cylinders  # here: it takes what is below
 
-        refuse([f"point = {said(point)}: must be left out for several cylinders"] if point is not None else [])
+        refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
         with small_type():
             return film_of_cylinders(ds_or_scene.in_memory, frames)
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)

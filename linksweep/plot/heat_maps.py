@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import has_peaks
-from linksweep.base.validate import name_problems, refuse, said
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.designs import (
     color_bar,
@@ -156,7 +156,7 @@ def _side(ds: xr.Dataset, name: str, dim: str) -> Side:
     order = np.argsort(found.values)
     places = found.values[order]
     if len(places) < 2 or not (np.diff(places) > 0.0).all():
-        refuse([f"{name} has {said(places.tolist())} along {dim}: must be two numbers or more, all different"])
+        refuse([f"{name} has {quote(places.tolist())} along {dim}: must be two numbers or more, all different"])
     middles = 0.5 * (places[1:] + places[:-1])
     ends = 2.0 * places[[0, -1]] - middles[[0, -1]]
     return Side(dim, name, found.text, order, places, np.array([ends[0], *middles, ends[1]]), found.words)

@@ -70,9 +70,9 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     if largest and largest.value > 0.0:
         _largest(ax, name, largest, signals.tip(x, y), shown, signals.unit(ds[f"{name}x"], "N"))
     ax.margins(0.14)
-    for axis, said in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
+    for axis, set_label in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
         words = "shaking force " if name == "Fs" else "force "
-        said(f"{words}$F_{{{name[1:]}{axis}}}$ [{signals.unit(ds[name + axis], 'N')}]")
+        set_label(f"{words}$F_{{{name[1:]}{axis}}}$ [{signals.unit(ds[name + axis], 'N')}]")
     return ax
 
 

@@ -225,11 +225,11 @@ def parallel_coordinates(
 
 
 def _problems(ds: xr.Dataset, wanted: list[str], color: Any, best: Any) -> list[str]:
-    found = [problem for name in wanted for problem in variable_problems(ds, "names", name)]
-    found += [] if color is None else variable_problems(ds, "color", color)
+    problems = [problem for name in wanted for problem in variable_problems(ds, "names", name)]
+    problems += [] if color is None else variable_problems(ds, "color", color)
     if not 2 <= len(wanted) <= MOST_AXES:
-        found.append(f"names: there are {len(wanted)}, {wanted}; must be from 2 to {MOST_AXES}")
-    return found + ([] if best == 0 else count_problems("best", best))
+        problems.append(f"names: there are {len(wanted)}, {wanted}; must be from 2 to {MOST_AXES}")
+    return problems + ([] if best == 0 else count_problems("best", best))
 
 
 def _axis_names(ds: xr.Dataset) -> list[str]:

@@ -137,9 +137,9 @@ def _right(results: Results) -> Iterator[Markup]:
 def _part_problems(part: Any, period: float) -> list[str]:
     if part is None:
         return []
-    found = pair_problems("theta2", part, (Rule("angle"), Rule("angle")), "(first, last) crank angle in degrees")
-    if found:
-        return found
+    problems = pair_problems("theta2", part, (Rule("angle"), Rule("angle")), "(first, last) crank angle in degrees")
+    if problems:
+        return problems
     first, last = part
     bounds = f"must be the first and the last angle, at most {period:g} degrees on"
     return [] if first < last <= first + period else [f"theta2 = ({first:g}, {last:g}): {bounds}"]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from linksweep.base.validate import choice_problems, count_problems, refuse, said
+from linksweep.base.validate import choice_problems, count_problems, quote, refuse
 from linksweep.engine.kernel.writer import Reduction
 from linksweep.engine.quantity import Quantity, opposite_of
 from linksweep.engine.run import Field, Grid, reduce_rows
@@ -113,7 +113,7 @@ def peaks(
         refuse(
             []
             if theta2 is None
-            else [f"theta2 = {said(theta2)}: must be left out: peaks of several cylinders are exact"]
+            else [f"theta2 = {quote(theta2)}: must be left out: peaks of several cylinders are exact"]
         )
         return peaks_of_cylinders(scene.in_memory, of, threads)
     require_scene(scene)

@@ -43,5 +43,5 @@ def array_unit_problems(path: str, number: Number, kind: str) -> list[str]:
     if not is_array(number):
         return []
     angles = number.coords["theta2"].attrs if "theta2" in number.coords else {}
-    found = unit_problems(path, number.attrs.get("units"), kind)
-    return found + unit_problems(f"{path}.theta2", angles.get("units"), "angle")
+    problems = unit_problems(path, number.attrs.get("units"), kind)
+    return problems + unit_problems(f"{path}.theta2", angles.get("units"), "angle")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import said
+from linksweep.base.validate import quote
 from linksweep.scene.storable import label_problem, name_problem
 
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
@@ -69,7 +69,7 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
 def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
     path = next(iter(sharing))
     if problem := name_problem(dim):
-        yield f"{path} has a dimension {said(dim)}: {problem}; rename it"
+        yield f"{path} has a dimension {quote(dim)}: {problem}; rename it"
     elif ANGLE.fullmatch(re.sub(r"[\W_]", "", unicodedata.normalize("NFKC", str(dim)).casefold())):
         yield f'{path} has a dimension "{dim}": rename it; did you mean "{index}"?'
     elif dim in results:

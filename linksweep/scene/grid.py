@@ -10,7 +10,7 @@ import numpy as np
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.degrees import cos_sin_rests
 from linksweep.base.memory import require_memory
-from linksweep.base.validate import refuse, said
+from linksweep.base.validate import quote, refuse
 from linksweep.engine.run import Grid
 from linksweep.scene.units import unit_problems
 
@@ -24,8 +24,8 @@ def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
     """
     if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
         if theta2 < 1:
-            raise ValueError(f"theta2 = {said(theta2)}: a count of angles must be at least 1")
-        require_memory(f"{dim} = {said(theta2)}", 8.0 * theta2 * (1 + len(NAMES)))
+            raise ValueError(f"theta2 = {quote(theta2)}: a count of angles must be at least 1")
+        require_memory(f"{dim} = {quote(theta2)}", 8.0 * theta2 * (1 + len(NAMES)))
         return _uniform(int(theta2), period, dim)
     return _grid(_angles(theta2), 0.0, dim)
 
@@ -50,9 +50,9 @@ def _angles(theta2: Any) -> np.ndarray:
     except ValueError:  # rows that differ in length
         angles = np.empty(0)
     if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:
-        raise ValueError(f"theta2 = {said(theta2)}: must be a count of angles, or a list of angles in degrees")
+        raise ValueError(f"theta2 = {quote(theta2)}: must be a count of angles, or a list of angles in degrees")
     if angles.ndim == 0:
-        raise ValueError(f"theta2 = {said(theta2)}: a count is a whole number; for one angle write [{angles}]")
+        raise ValueError(f"theta2 = {quote(theta2)}: a count is a whole number; for one angle write [{angles}]")
     angles = angles.astype(float)
     sound = np.isfinite(angles)
     if not sound.all():

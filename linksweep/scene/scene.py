@@ -17,13 +17,13 @@ from linksweep.base.validate import (
     Number,
     Rule,
     choice_problems,
+    field_problems,
     is_array,
     is_lazy,
     pair_problems,
     parameter,
-    problems,
+    quote,
     refuse,
-    said,
 )
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid, evaluate
@@ -115,8 +115,8 @@ class Scene(ByContent):
             object.__setattr__(self, word, _own_label(word, getattr(self, word)))
         sound = isinstance(self.mechanism, MECHANISMS)
         known = " or ".join(kind.__name__ for kind in MECHANISMS)
-        found = [] if sound else [f"mechanism = {said(self.mechanism)}: must be a {known}"]
-        found += problems(self)
+        found = [] if sound else [f"mechanism = {quote(self.mechanism)}: must be a {known}"]
+        found += field_problems(self)
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += self._take_motion() if sound else []
         found += self._take_loads()
@@ -134,7 +134,7 @@ class Scene(ByContent):
         kind, given = type(self.mechanism), [word for word in MOTION if not _left_out(getattr(self, word))]
         own = ", ".join((*kind.motion, "gravity"))
         found = [
-            f"{word} = {said(getattr(self, word))}: is no word of {kind.__name__}; give its own: {own}"
+            f"{word} = {quote(getattr(self, word))}: is no word of {kind.__name__}; give its own: {own}"
             for word in given
             if word not in kind.motion
         ]
@@ -168,13 +168,13 @@ class Scene(ByContent):
         """Any collection of loads as a tuple; a single load counts as one."""
         loads = (self.loads,) if isinstance(self.loads, Action) else self.loads
         if isinstance(loads, str | Mapping | np.ndarray) or is_array(loads) or not isinstance(loads, Iterable):
-            return [f"loads = {said(loads)}: must be a Load, or a list of them"]
+            return [f"loads = {quote(loads)}: must be a Load, or a list of them"]
         object.__setattr__(self, "loads", tuple(loads))
         found: list[str] = []
         links = self._of_mechanism("links")  # a mechanism without any takes no loads, as has been said
         for path, load in self._loads() if links else ():
             sound = isinstance(load, Action)
-            found += load.problems(path, links) if sound else [f"{path} = {said(load)}: must be a Load"]
+            found += load.problems(path, links) if sound else [f"{path} = {quote(load)}: must be a Load"]
         return found
 
     def _loads(self) -> list[tuple[str, Action]]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.validate import said
+from linksweep.base.validate import quote
 
 NAME = re.compile(r"(\w|[^\x00-\x7f])([^\x00-\x1f/\x7f]*[^\x00-\x20/\x7f])?", re.ASCII)
 LONGEST = 255
@@ -52,11 +52,11 @@ def label_problem(variable: Any) -> str:
 def _text_problem(labels: list[Any]) -> str:
     others = [label for label in labels if type(label) not in TEXTS]
     if others:
-        return f"the label {said(others[0])}: must be a text, or all an array of numbers, truth values or times"
+        return f"the label {quote(others[0])}: must be a text, or all an array of numbers, truth values or times"
     if _is_sound("".join(labels)):
         return ""
     broken = next(label for label in labels if not _is_sound(label))
-    return f"the label {said(broken)}: must be Unicode without NUL"
+    return f"the label {quote(broken)}: must be Unicode without NUL"
 
 
 def _time_problem(times: np.ndarray) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import refuse, said
+from linksweep.base.validate import quote, refuse
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.selection import selected
 from linksweep.studies.job import Job
@@ -41,7 +41,7 @@ def client_of(given: Any) -> Any:
 
 
 def _no_client(given: Any) -> str:
-    return f"client = {said(given)}: must be a client of dask.distributed; make one with distributed.Client(...)"
+    return f"client = {quote(given)}: must be a client of dask.distributed; make one with distributed.Client(...)"
 
 
 def on_cluster(

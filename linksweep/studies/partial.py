@@ -19,7 +19,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import refuse, said
+from linksweep.base.validate import quote, refuse
 from linksweep.files.atomic import SUFFIX, whole
 from linksweep.files.packed import packed, unpacked
 
@@ -132,7 +132,7 @@ def _other(begun: Path, manifest: Mapping[str, Any]) -> list[str]:
 
 def differing(there: Any, wanted: Any) -> str:
     """What differs, unless it is a digest."""
-    return "" if len(str(wanted)) == 64 else f" ({said(there)}, not {said(wanted)})"
+    return "" if len(str(wanted)) == 64 else f" ({quote(there)}, not {quote(wanted)})"
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import refuse, said
+from linksweep.base.validate import quote, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms import INDICES
 from linksweep.scene.designs.choose import chosen, design_labels, places
@@ -47,7 +47,7 @@ def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, 
     if isinstance(study, Scene):
         return chosen(study, wanted)
     if not isinstance(study, xr.Dataset):
-        raise ValueError(f"study = {said(study)}: must be a Dataset of linksweep, or a Scene")
+        raise ValueError(f"study = {quote(study)}: must be a Dataset of linksweep, or a Scene")
     known = _labels(study)
     one = study.isel(places({dim: label for dim, label in wanted.items() if dim in known}, known))
     scene = scene_of(one)

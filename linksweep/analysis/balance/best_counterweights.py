@@ -24,7 +24,7 @@ import xarray as xr
 from linksweep.analysis.balance.compare import sizes_named
 from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, own_links, regressor
-from linksweep.base.validate import Rule, name_problems, refuse, said
+from linksweep.base.validate import Rule, name_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
 from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
@@ -127,7 +127,7 @@ def best_counterweights(
 def _wanted(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
     """Weights by quantity and kind of size."""
     form = 'must be weights by name, as {"F32_peak": 1.0, "T12_ripple": 0.5}'
-    refuse([f"minimize = {said(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
+    refuse([f"minimize = {quote(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
     sizes = sizes_named("minimize", scene, minimize)
     weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
     return dict(zip(sizes, map(float, weights), strict=True))

@@ -31,11 +31,11 @@ from linksweep.base.validate import (
     Number,
     Rule,
     choice_problems,
+    field_problems,
     pair_problems,
     parameter,
-    problems,
+    quote,
     refuse,
-    said,
 )
 from linksweep.mechanisms import FourBar, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Link
@@ -80,10 +80,10 @@ class Counterweight(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        named = f'link = {said(self.link)}: must be a name, such as "crank"'
+        named = f'link = {quote(self.link)}: must be a name, such as "crank"'
         refuse(
             [named] * (not isinstance(self.link, str))
-            + problems(self)
+            + field_problems(self)
             + pair_problems("at", self.at, AT, "(distance in m, angle in degrees)")
         )
         refuse(said_unit_problems(self))
@@ -116,7 +116,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     require_scene(scene)
     weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
     refuse(
-        [f"counterweights = {said(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]
+        [f"counterweights = {quote(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]
     )
     carriers = own_links(scene.mechanism)
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
@@ -192,7 +192,7 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
     kind = type(mechanism).__name__
     refuse([f"scene is of a {kind}, which has no links: give another"] if isinstance(mechanism, LoopTrack) else [])
     slides = isinstance(mechanism, SliderCrank)
-    wholly = f"fraction = {said(fraction)}: must be left out, a {kind} is balanced wholly"
+    wholly = f"fraction = {quote(fraction)}: must be left out, a {kind} is balanced wholly"
     refuse([wholly] if fraction is not None and not slides else [])
     share = checked_number("fraction", 0.5 if fraction is None else fraction, Rule("dimensionless"))
     lacking = _lacking(mechanism, share)

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.degrees import cos_sin
-from linksweep.base.validate import count_problems, name_problems, refuse, said
+from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import INDICES
 from linksweep.results.compute import requested
 from linksweep.scene.grid import whole_turns
@@ -57,7 +57,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     >>> found.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
     [4460.0, 820.0]
     """
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset, as from ls.sweep"])
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
     names = requested("of", of)
     index = next((dim for dim in INDICES if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])
@@ -66,7 +66,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     angles = ds[index].values.astype(float)
     period = _period(angles, index)
     most = len(angles) * TURN / period / 2.0
-    few = f"n = {said(n)}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
+    few = f"n = {quote(n)}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
     refuse([] if n < most else [few])
     order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
     waves = [xr.DataArray(wave, dims=("order", index)) for wave in cos_sin(np.multiply.outer(order, angles))]

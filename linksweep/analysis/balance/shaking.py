@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import Rule, refuse, said
+from linksweep.base.validate import Rule, quote, refuse
 from linksweep.scene.checked_number import checked_pair
 
 POINT = (Rule("length"), Rule("length"))
@@ -37,7 +37,7 @@ def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.Da
     >>> about_d.units, bool((about_d == shaking.Ms - 0.20 * shaking.Fsy).all())
     ('N m', True)
     """
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset, as from ls.sweep"])
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
     missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
     advice = 'sweep with outputs=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems, refuse, said
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.peaks import peaks
 from linksweep.scene.parameters import free, replaced
@@ -132,7 +132,7 @@ def objective(
         refuse([f'minimize: give {"either" if both else "it,"} or maximize, as minimize="F32_peak"'])
     wanted, path = (maximize, "maximize") if minimize is None else (minimize, "minimize")
     if not isinstance(wanted, str) and not callable(wanted):
-        refuse([f"{path} = {said(wanted)}: must be a name, or a function of the Dataset of peaks"])
+        refuse([f"{path} = {quote(wanted)}: must be a name, or a function of the Dataset of peaks"])
     wanted_of = None if of is None else list(of)
     ready = Objective(
         scene, ranges, _measure(wanted, path), constraint, _of(scene, wanted, constraint, wanted_of), options
@@ -168,7 +168,7 @@ def _quantity(name: str) -> str:
 
 def _ranges(scene: Scene, parameters: Any) -> dict[str, tuple[float, float]]:
     if not isinstance(parameters, Mapping) or not parameters:
-        refuse([f'parameters = {said(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}'])
+        refuse([f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}'])
     kinds = {path: kind for path, (_, kind) in free(scene).items()}
     refuse([problem for path in parameters for problem in name_problems("parameters", path, kinds)])
     ranges, problems = {}, []
@@ -183,7 +183,7 @@ def _ranges(scene: Scene, parameters: Any) -> dict[str, tuple[float, float]]:
 
 def _range(ends: Any, kind: str) -> tuple[float, float]:
     if not isinstance(ends, tuple | list) or len(ends) != 2:
-        raise ValueError(f"{said(ends)}: must be a range (low, high)")
+        raise ValueError(f"{quote(ends)}: must be a range (low, high)")
     low, high = (quantity(end, kind) for end in ends)
     if not low < high:
         raise ValueError(f"({low:.15g}, {high:.15g}): low must be less than high")

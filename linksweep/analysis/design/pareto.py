@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems, refuse, said
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.mechanisms import INDICES
 from linksweep.results.compute import requested
 
@@ -111,7 +111,9 @@ def _of_more(costs: np.ndarray) -> np.ndarray:
 
 def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
     """What is asked for, all to be small."""
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset over designs, as from ls.peaks"])
+    refuse(
+        [] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"]
+    )
     wanted = [("minimize", name) for name in requested("minimize", minimize)]
     wanted += [("maximize", name) for name in requested("maximize", maximize)]
     refuse([] if wanted else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.duty import steady_problems
-from linksweep.base.validate import Number, Rule, refuse, said
+from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.sweep import sweep
@@ -113,15 +113,15 @@ def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
-    found = steady_problems(scene)
+    problems = steady_problems(scene)
     if (fluctuation is None) == (inertia is None):
-        found.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
-    return found
+        problems.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
+    return problems
 
 
 def _too_large(fluctuation: Number) -> list[str]:
     """With 2, the crank would stand still at its least speed."""
-    return [f"fluctuation = {said(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
+    return [f"fluctuation = {quote(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
 
 
 def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:

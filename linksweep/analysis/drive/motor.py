@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.conversion import all_to_float64, to_float64
-from linksweep.base.validate import Number, Rule, number_problems, refuse, said
+from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
@@ -55,18 +55,18 @@ class Motor:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inertia", to_float64(self.inertia, INERTIA.kind))
-        found = number_problems("inertia", self.inertia, INERTIA)
+        problems = number_problems("inertia", self.inertia, INERTIA)
         for name, rule in CURVE.items():
             points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
-            found += array_unit_problems(name, getattr(self, name), rule.kind)
-            found += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
+            problems += array_unit_problems(name, getattr(self, name), rule.kind)
+            problems += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
             object.__setattr__(self, name, tuple(points))
         count = len(self.speeds)
         if len(self.torques) != count or count < 2:
-            found.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
-        elif not found and (self.speeds[0] != 0.0 or np.any(np.diff(self.speeds) <= 0.0)):
-            found.append(f"speeds = {said(list(self.speeds))}: must grow from 0")
-        refuse(found)
+            problems.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
+        elif not problems and (self.speeds[0] != 0.0 or np.any(np.diff(self.speeds) <= 0.0)):
+            problems.append(f"speeds = {quote(list(self.speeds))}: must grow from 0")
+        refuse(problems)
 
     def torque_at(self, speed: Any) -> Any:
         """The most torque [N m] that it gives at a speed [rad/s], in either direction."""
@@ -120,7 +120,7 @@ def motor_load(
     require_scene(scene)
     refuse(_problems(scene, motor))
     ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
-    refuse([f"efficiency = {said(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
+    refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
     omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
     cycle = sweep(scene, theta2, outputs=[torque, omega, alpha])
@@ -143,8 +143,8 @@ def motor_load(
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:
-    found = [] if isinstance(motor, Motor) else [f"motor = {said(motor)}: must be a Motor"]
+    problems = [] if isinstance(motor, Motor) else [f"motor = {quote(motor)}: must be a Motor"]
     torque = scene.mechanism.drives.get(scene.drive)
     if torque not in DRIVEN:
-        found.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
-    return found
+        problems.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
+    return problems

@@ -20,11 +20,11 @@ from linksweep.base.validate import (
     Number,
     choice_problems,
     count_problems,
+    field_problems,
     name_problems,
     parameter,
-    problems,
+    quote,
     refuse,
-    said,
 )
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import angles_missing, require_scene
@@ -90,7 +90,7 @@ class Bearing(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(problems(self) + choice_problems("kind", self.kind, EXPONENTS))
+        refuse(field_problems(self) + choice_problems("kind", self.kind, EXPONENTS))
         refuse(said_unit_problems(self))
 
     @property
@@ -207,10 +207,10 @@ def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[s
 def bearing_problems(given: Any, pins: Iterable[str]) -> list[str]:
     """List what is wrong with bearings by pin."""
     if not isinstance(given, Mapping | None):
-        return [f'given = {said(given)}: must be as {{"B": ls.Bearing(...)}}']
+        return [f'given = {quote(given)}: must be as {{"B": ls.Bearing(...)}}']
     wrong = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
     return wrong + [
-        f"given.{pin} = {said(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
+        f"given.{pin} = {quote(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
     ]
 
 
@@ -314,7 +314,7 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
     sound = isinstance(found, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*found}
     refuse([] if sound else ["found: must be what ls.bearings returns, with F, rotation_share and life_status"])
     refuse(count_problems("classes", classes))
-    require_memory(f"classes = {said(classes)}", 8.0 * classes * found.sizes.get("pin", 1))
+    require_memory(f"classes = {quote(classes)}", 8.0 * classes * found.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(
         lambda force, share: _histogram(force, share, classes),
         *xr.broadcast(found["F"], found["rotation_share"]),

@@ -159,9 +159,9 @@ def _problems(scene: Scene) -> list[str]:
     if kind == LoopTrack.__name__:
         return [f"scene.mechanism is a {kind}, which has no crank"]
     advice = "take ls.peaks with an array of omega2 instead"
-    found = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
+    problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
     dampers = [k for k, load in enumerate(scene.loads, 1) if hasattr(load, "coefficient")]
-    return found + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
+    return problems + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
 
 
 def _branch_problems(scene: Scene) -> list[str]:

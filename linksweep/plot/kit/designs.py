@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import has_peaks
-from linksweep.base.validate import name_problems, refuse, said
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.mechanisms import INDICES
 from linksweep.plot.kit.signals import symbol
 
@@ -74,13 +74,15 @@ def designs_of(ds: xr.Dataset, names: Iterable[str]) -> Designs:
 
 
 def require_study(ds: Any) -> None:
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {said(ds)}: must be a Dataset over designs, as from ls.peaks"])
+    refuse(
+        [] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"]
+    )
 
 
 def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: bool = False) -> list[str]:
     """What is wrong with a name that must stand for one number of each design, or one word where these will do."""
-    if found := name_problems(path, name, map(str, ds.variables)):
-        return found
+    if problems := name_problems(path, name, map(str, ds.variables)):
+        return problems
     if numbers and ds[name].dtype.kind not in "fiub":
         return [f"{path}: {name} holds {ds[name].dtype} values, which must be numbers"]
     over = [dim for dim in INDICES if dim in ds[name].dims]

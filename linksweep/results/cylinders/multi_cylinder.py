@@ -17,7 +17,7 @@ import xarray as xr
 from linksweep.base.conversion import to_float64
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Rule, is_array, name_problems, number_problems, refuse, said
+from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
 from linksweep.mechanisms import SliderCrank
 from linksweep.results.compute import requested
@@ -100,7 +100,7 @@ class MultiCylinder(ByContent):
         """Numbers of the cylinders as a tuple, one for each."""
         value: Any = getattr(self, word)
         if _no_list(value):
-            return [f"{word} = {said(value)}: must be a list of numbers, one for each cylinder"]
+            return [f"{word} = {quote(value)}: must be a list of numbers, one for each cylinder"]
         numbers = tuple(to_float64(number, rule.kind) for number in value)
         if word != "crank_angles":
             numbers = numbers or (0.0,) * len(self.crank_angles)
@@ -116,14 +116,16 @@ class MultiCylinder(ByContent):
         """Take the places of the main bearings; what is wrong with them."""
         value: Any = self.main_positions
         if _no_list(value):
-            return [f"main_positions = {said(value)}: must be a list of numbers, one for each main bearing"]
+            return [f"main_positions = {quote(value)}: must be a list of numbers, one for each main bearing"]
         places = tuple(to_float64(number, LENGTH.kind) for number in value)
         object.__setattr__(self, "main_positions", places)
         found = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
         if found or not places:
             return found
         if len(places) < 2 or not np.all(np.diff(places) > 0.0):
-            return [f"main_positions = {said(list(places))}: must be two places or more, in order along the crankshaft"]
+            return [
+                f"main_positions = {quote(list(places))}: must be two places or more, in order along the crankshaft"
+            ]
         return [
             f"positions[{k}] = {z:g} m: must lie between the first and the last main bearing, at {places[0]:g} m and "
             f"{places[-1]:g} m"
@@ -209,7 +211,7 @@ class MultiCylinder(ByContent):
         found = together(wanted, self.makers, self.throws, cycles)
         status = found.pop("status").assign_attrs(cycles[0]["status"].attrs)
         labelled = {name: self._labelled(name, values.where(status == 0)) for name, values in found.items()}
-        command = f"linksweep.MultiCylinder(...).sweep(theta2={said(theta2)})"
+        command = f"linksweep.MultiCylinder(...).sweep(theta2={quote(theta2)})"
         ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
         return ds.assign_coords(index_coordinate(self.engine, grid))
 
@@ -249,9 +251,11 @@ def _engine_problems(engine: Any) -> list[str]:
     if not isinstance(engine, Scene) or not isinstance(engine.mechanism, SliderCrank):
         return [f"engine is a {type(engine).__name__}: must be a Scene of a SliderCrank"]
     moving = [word for word in ("omega2", "alpha2") if _over_angle(getattr(engine, word))]
-    found = [f"engine.{word} = {said(getattr(engine, word))}: must be the same at every crank angle" for word in moving]
+    problems = [
+        f"engine.{word} = {quote(getattr(engine, word))}: must be the same at every crank angle" for word in moving
+    ]
     wrong = f'engine.drive = "{engine.drive}": must be "crank", which all cylinders share'
-    return found + ([wrong] if engine.drive != "crank" else [])
+    return problems + ([wrong] if engine.drive != "crank" else [])
 
 
 def _no_list(value: Any) -> bool:

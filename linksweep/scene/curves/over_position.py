@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import Rule, is_array, number_problems, refuse, said
+from linksweep.base.validate import Rule, is_array, number_problems, quote, refuse
 from linksweep.scene.curves.interpolation import curve_through
 
 POSITION = "position"
@@ -38,7 +38,7 @@ def table_problems(path: str, value: Any) -> list[str]:
         return [f'{path} has {shape}, "{POSITION}")']
     places = value[POSITION].values
     if places.dtype.kind not in "fiu" or not np.isfinite(places).all() or np.unique(places).size < max(2, places.size):
-        return [f"{path} has {POSITION} = {said(places.tolist())}: must hold two or more different finite numbers"]
+        return [f"{path} has {POSITION} = {quote(places.tolist())}: must hold two or more different finite numbers"]
     return []
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import did_you_mean, refuse, said
+from linksweep.base.validate import did_you_mean, quote, refuse
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -52,20 +52,20 @@ def _place(label: Any, labels: np.ndarray) -> int:
     """Position of a label: where it is exactly, or for a number to twelve digits."""
     wanted = np.asarray(getattr(label, "values", label))
     if wanted.ndim or isinstance(label, slice):
-        raise ValueError(f"{said(label)}: must be one label")
+        raise ValueError(f"{quote(label)}: must be one label")
     numeric = wanted.dtype.kind in "fiu" and labels.dtype.kind in "fiu"
     found = np.flatnonzero(labels == wanted)
     if numeric and not found.size:
         found = np.flatnonzero(np.isclose(labels, wanted, rtol=1e-12, atol=0.0))
     if found.size == 1:
         return int(found[0])
-    said_label = said(wanted.item())
+    said_label = quote(wanted.item())
     if found.size:
         raise ValueError(f"{said_label}: {found.size} designs have this label; give them labels of their own")
     nearest = (
         f"nearest is {labels[np.argmin(abs(labels - wanted))]}"
         if numeric
-        else f"first is {said(labels[:1].tolist()[0])}"
+        else f"first is {quote(labels[:1].tolist()[0])}"
     )
     raise ValueError(f"{said_label}: must be one of its {labels.size} labels, of which the {nearest}")
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from linksweep.base.validate import as_float, is_quantity, said
+from linksweep.base.validate import as_float, is_quantity, quote
 from linksweep.scene.units import quantity
 
 
@@ -102,7 +102,7 @@ class _Range:
 
     def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
         if len(self.ends) != 2:
-            raise ValueError(f"{said(self.ends)}: must be a range (low, high); a list [...] is a choice among values")
+            raise ValueError(f"{quote(self.ends)}: must be a range (low, high); a list [...] is a choice among values")
         return _between("", *self.ends, levels, kind)
 
 
@@ -144,7 +144,7 @@ def spread_of(given: Any) -> Spread:
     quantiles = getattr(given, "ppf", None) or getattr(given, "icdf", None)
     if quantiles is None or isinstance(given, type):
         raise ValueError(
-            f"{said(given)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
+            f"{quote(given)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
             "distribution of scipy.stats"
         )
     return _Scipy(quantiles)
@@ -168,4 +168,4 @@ def _value(name: str, value: Any, kind: str) -> float:
 def _positive(name: str, value: Any) -> float:
     if (number := as_float(value)) is not None and number > 0.0:
         return number
-    raise ValueError(f"{name} = {said(value)}: must be greater than 0")
+    raise ValueError(f"{name} = {quote(value)}: must be greater than 0")

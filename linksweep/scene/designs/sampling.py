@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.memory import require_memory
-from linksweep.base.validate import choice_problems, count_problems, name_problems, refuse, said
+from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
 from linksweep.scene.designs.distributions import spread_of
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
@@ -63,7 +63,7 @@ def sample(
     refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
     own = free(scene)
     refuse(_problems(scene, parameters, n, method, seed, dim, own))
-    require_memory(f"n = {said(n)}", 2.0 * 8.0 * n * len(parameters))
+    require_memory(f"n = {quote(n)}", 2.0 * 8.0 * n * len(parameters))
     points = _points(method, len(parameters), int(n), seed)
     values, problems = {}, []
     for levels, (path, given) in zip(points, parameters.items(), strict=True):
@@ -81,24 +81,24 @@ def sample(
 def _drawn(given: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
     spread = spread_of(given)
     if spread.around and (own is None or (callable(own) and not hasattr(own, "dims"))):
-        raise ValueError(f"{said(given)} is around the scene's own value, {said(own)}: give it a number")
+        raise ValueError(f"{quote(given)} is around the scene's own value, {quote(own)}: give it a number")
     drawn = xr.DataArray(spread.at(levels, kind), {dim: np.arange(len(levels))}, dim)
     return own + drawn if spread.around else drawn
 
 
 def _problems(scene: Scene, parameters: Any, n: Any, method: Any, seed: Any, dim: Any, own: Mapping) -> list[str]:
     if not isinstance(parameters, Mapping) or not parameters:
-        return [f'parameters = {said(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}']
-    found = [problem for path in parameters for problem in name_problems("parameters", path, own)]
-    found += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
-    found += choice_problems("method", method, METHODS)
+        return [f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}']
+    problems = [problem for path in parameters for problem in name_problems("parameters", path, own)]
+    problems += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
+    problems += choice_problems("method", method, METHODS)
     whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
     if seed is not None and not (whole and seed >= 0):
-        found.append(f"seed = {said(seed)}: must be a whole number, 0 or more, or None")
+        problems.append(f"seed = {quote(seed)}: must be a whole number, 0 or more, or None")
     taken = {dim for array in scene.arrays.values() for dim in array.dims}
     if dim in taken | {scene.mechanism.index, *scene.mechanism.coordinates()}:
-        found.append(f'dim = {said(dim)}: the scene has this dimension already; give another name, as dim="other"')
-    return found
+        problems.append(f'dim = {quote(dim)}: the scene has this dimension already; give another name, as dim="other"')
+    return problems
 
 
 def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, Rule, is_lazy, problems
+from linksweep.base.validate import Number, Rule, field_problems, is_lazy
 from linksweep.engine.run import Grid
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.load_forms import Form
@@ -59,7 +59,7 @@ class Action(ByContent):
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         """What is wrong with it on a machine of these links; by default, what is with its numbers."""
-        return problems(self, path + ".")
+        return field_problems(self, path + ".")
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Why a mechanism does not take it, sound as it is in itself."""

@@ -22,7 +22,7 @@ import xarray as xr
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, as_float, is_lazy, parameter, problems, said
+from linksweep.base.validate import Number, as_float, field_problems, is_lazy, parameter, quote
 from linksweep.mechanisms import SliderCrank
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.scene.dimensions import dims_of
@@ -69,7 +69,7 @@ class OttoCycle(ByContent):
         return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
-        found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
         found = found or _compression_problems(path, self)
         end = "" if found else _below(self.peak_pressure, _compressed(self))
         return found or ([f"{path}.peak_pressure = {end}"] if end else [])
@@ -119,7 +119,7 @@ class DieselCycle(ByContent):
         return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
-        found = problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        found = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
         found = found or _compression_problems(path, self)
         over = False if found else self.cutoff_ratio > self.compression_ratio
         if not is_lazy(over) and np.any(over):
@@ -218,4 +218,4 @@ def _below(peak: Number, compressed: Number) -> str:
 def _stroke_problems(path: str, strokes: object) -> list[str]:
     if as_float(strokes) in (2.0, 4.0):
         return []
-    return [f"{path}.strokes = {said(strokes)}: must be 4 or 2"]
+    return [f"{path}.strokes = {quote(strokes)}: must be 4 or 2"]

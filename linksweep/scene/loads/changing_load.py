@@ -11,7 +11,7 @@ from linksweep.base.validate import (
     choice_problems,
     is_array,
     plain_numbers_problems,
-    said,
+    quote,
 )
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.interpolation import INTERPOLATIONS
@@ -39,14 +39,14 @@ class ChangingLoad(Action):
 
     def changing_problems(self, path: str) -> list[str]:
         """Return what is wrong with the breaks and the interpolation of a load at this path."""
-        found = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
+        problems = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
         if self.interpolation is None:
-            return found
-        found += choice_problems(f"{path}.interpolation", self.interpolation, INTERPOLATIONS)
-        others = [f"one is {said(other)}" for other in self._of_arrays() if other != self.interpolation]
+            return problems
+        problems += choice_problems(f"{path}.interpolation", self.interpolation, INTERPOLATIONS)
+        others = [f"one is {quote(other)}" for other in self._of_arrays() if other != self.interpolation]
         others += ["one is a function" for number in self.changing if callable(number) and not is_array(number)]
-        kind = f"{path}.interpolation = {said(self.interpolation)}: is that of all its arrays, but"
-        return found + [f"{kind} {other}; give that a load of its own" for other in others[:1]]
+        kind = f"{path}.interpolation = {quote(self.interpolation)}: is that of all its arrays, but"
+        return problems + [f"{kind} {other}; give that a load of its own" for other in others[:1]]
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return the breaks, and the crank angles [degree] at which its arrays jump, or bend."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from linksweep.base.validate import Number, Rule, overflow_problems, parameter, problems
+from linksweep.base.validate import Number, Rule, field_problems, overflow_problems, parameter
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import LoadForm
@@ -84,10 +84,10 @@ class GasPressure(ChangingLoad):
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
         of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
-        found = problems(given, path + ".")
+        problems = field_problems(given, path + ".")
         with np.errstate(over="ignore"):
-            found = found or overflow_problems(f"{path}.bore", self.bore * self.bore, "square")
-        return found + of_cycle + self.changing_problems(path)
+            problems = problems or overflow_problems(f"{path}.bore", self.bore * self.bore, "square")
+        return problems + of_cycle + self.changing_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if not isinstance(mechanism, SliderCrank):

@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.base.conversion import PAIRS, as_pair
 from linksweep.base.degrees import cos_sin
-from linksweep.base.validate import Number, Rule, choice_problems, pair_problems, parameter, problems, said
+from linksweep.base.validate import Number, Rule, choice_problems, field_problems, pair_problems, parameter, quote
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, CrankDriven
 from linksweep.mechanisms.rows.load_forms import LoadForm
@@ -127,7 +127,7 @@ class Load(ChangingLoad):
             found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), FORCE_PAIR)
         return (
             found
-            + problems(self, path + ".")
+            + field_problems(self, path + ".")
             + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
         )
 
@@ -136,20 +136,20 @@ class Load(ChangingLoad):
             return []
         machine = cast(CrankDriven, mechanism)
         if machine.branch not in BRANCH_SIGN:
-            return [f'{path}.over = {said(self.over)}: is a position of one branch; give branch="open" or "crossed"']
-        found = choice_problems(f"{path}.over", self.over, machine.strokes)
-        if found:
-            return found
+            return [f'{path}.over = {quote(self.over)}: is a position of one branch; give branch="open" or "crossed"']
+        problems = choice_problems(f"{path}.over", self.over, machine.strokes)
+        if problems:
+            return problems
         stroke = machine.strokes[self.over]
         for at, number in self._changing_at(path):
             said_unit = number[POSITION].attrs.get("units") if is_table(number) else None
-            found += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
-        return found + ([] if self.while_ is None else choice_problems(f"{path}.while_", self.while_, stroke.words))
+            problems += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
+        return problems + ([] if self.while_ is None else choice_problems(f"{path}.while_", self.while_, stroke.words))
 
     def _position_problems(self, path: str) -> list[str]:
         if self.over is None:
             advice = 'give the position that it means, as in over="slider.position"'
-            return [] if self.while_ is None else [f"{path}.while_ = {said(self.while_)}: {advice}"]
+            return [] if self.while_ is None else [f"{path}.while_ = {quote(self.while_)}: {advice}"]
         known = self.interpolation is None or self.interpolation in POSITION_KINDS
         periodic = [] if known else choice_problems(f"{path}.interpolation", self.interpolation, POSITION_KINDS)
         return periodic + [p for at, number in self._changing_at(path) for p in table_problems(at, number)]

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from linksweep.base.degrees import cos_sin
-from linksweep.base.validate import Number, Rule, choice_problems, number_problems, parameter, problems, said
+from linksweep.base.validate import (
+    Number,
+    Rule,
+    choice_problems,
+    field_problems,
+    number_problems,
+    parameter,
+    quote,
+)
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.spring_forms import (
     GROUND,
@@ -35,7 +43,7 @@ class _Line(Action):
         ends = {f"{path}.from_": self.from_, f"{path}.to": self.to}
         found = [problem for at, end in ends.items() for problem in _end_problems(at, end, links)]
         same = [] if found else _same_link(f"{path}.to[1]", self.from_[0], self.to[0])
-        return found + same + problems(self, path + ".")
+        return found + same + field_problems(self, path + ".")
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
         return (approach(name),)
@@ -118,7 +126,9 @@ class _Turning(Action):
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         found = choice_problems(f"{path}.from_", self.from_, (GROUND, *links))
         found += choice_problems(f"{path}.to", self.to, (GROUND, *links))
-        return found + ([] if found else _same_link(f"{path}.to", self.from_, self.to)) + problems(self, path + ".")
+        return (
+            found + ([] if found else _same_link(f"{path}.to", self.from_, self.to)) + field_problems(self, path + ".")
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,10 +213,10 @@ def _end(name: str, end: End) -> dict[str, Number]:
 def _end_problems(path: str, end: Any, links: tuple[str, ...]) -> list[str]:
     if not (isinstance(end, tuple | list) and len(end) == 3):
         wanted = '("ground", x, y) in m, or (link, distance in m, angle in degrees)'
-        return [f"{path} = {said(end)}: must be {wanted}"]
+        return [f"{path} = {quote(end)}: must be {wanted}"]
     rules = POINT if isinstance(end[0], str) and end[0] == GROUND else AT
-    found = choice_problems(f"{path}[1]", end[0], (GROUND, *links))
-    return found + [p for k in (0, 1) for p in number_problems(f"{path}[{k + 2}]", end[k + 1], rules[k])]
+    problems = choice_problems(f"{path}[1]", end[0], (GROUND, *links))
+    return problems + [p for k in (0, 1) for p in number_problems(f"{path}[{k + 2}]", end[k + 1], rules[k])]
 
 
 def _same_link(path: str, first: str, second: str) -> list[str]:
