@@ -115,7 +115,7 @@ def _flat(random: Random, n: int) -> tuple[float, Array, Array]:
 
 def change_point(random: Random, n: int) -> Designs:
     """Parallelogram, kite, a + d = b + c and a + b = c + d (in 1/1024, so that it holds to the last bit), near flat."""
-    theta2, turned, pinch_sin = _flat(random, n)
+    theta2, turned, psi_sin = _flat(random, n)
     p, q, r = (random.integers(200, 2000, n) / 1024.0 for _ in range(3))
     q = np.where(p == q, q + 0.25, q)
     kind = random.integers(0, 4, n)
@@ -124,7 +124,7 @@ def change_point(random: Random, n: int) -> Designs:
     shapes = [(p, q, p, q), (p, p, q, q), (p, b, p + d - b, d), (p, q, r + q + 0.25, r + p + 0.25)]
     a, b, c, d = (np.choose(kind, [shape[k] for shape in shapes]) for k in range(4))
     designs = four_bar_of(random, (a, b, c, d), theta2, turned)
-    through = ((a == c) & (b == d) | (a == b) & (c == d)) & (pinch_sin < 0.0)
+    through = ((a == c) & (b == d) | (a == b) & (c == d)) & (psi_sin < 0.0)
     return replace(designs, sides=np.where(through, -designs.branch, designs.branch))
 
 

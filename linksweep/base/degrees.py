@@ -1,6 +1,6 @@
 """Trigonometry in degrees: cos and sin exact at multiples of 90, as accurate at a million turns as at none.
 
-`cos_sin_rests` gives them to about 90 bits, as sums of two doubles: near a toggle the digits that a crank angle has
+`cos_sin_low_words` gives them to about 90 bits, as sums of two doubles: near a toggle the digits that a crank angle has
 beyond its cosine's 53 bits decide. An angle is taken apart exactly into quarter turns, steps of 1/64 degree, whose cos
 and sin are tabulated, and a small rest t:  cos(x + t) = cos x − t·sin x − …,  with t·sin x as exact products of halves.
 """
@@ -24,23 +24,23 @@ COS_SIGNS, SIN_SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.
 
 def cos_sin(degrees):
     """Cosine and sine of an angle [degree]: a number, an array or a DataArray; two of the same kind come back."""
-    return cos_sin_rests(degrees)[:2]
+    return cos_sin_low_words(degrees)[:2]
 
 
-def cos_sin_rests(degrees: Any) -> tuple[Any, ...]:
+def cos_sin_low_words(degrees: Any) -> tuple[Any, ...]:
     """Cosine and sine of an angle [degree], rounded, and what each was rounded by; four of the kind given."""
     if hasattr(degrees, "dims"):
-        return tuple(degrees.copy(data=values) for values in cos_sin_rests(degrees.values))
+        return tuple(degrees.copy(data=values) for values in cos_sin_low_words(degrees.values))
     turned = np.fmod(np.asarray(degrees, dtype=float), 360.0)
     quarter = np.rint(turned / 90.0)
-    cos, sin, cos_rest, sin_rest = _within_an_eighth(turned - 90.0 * quarter)
+    cos, sin, cos_lo, sin_lo = _within_an_eighth(turned - 90.0 * quarter)
     quadrant = quarter.astype(np.int64) % 4
     odd, sign_of_cos, sign_of_sin = quadrant % 2 == 1, COS_SIGNS[quadrant], SIN_SIGNS[quadrant]
     values = (
         np.where(odd, sin, cos) * sign_of_cos + 0.0,  # + 0.0 turns -0.0 into 0.0
         np.where(odd, cos, sin) * sign_of_sin + 0.0,
-        np.where(odd, sin_rest, cos_rest) * sign_of_cos + 0.0,
-        np.where(odd, cos_rest, sin_rest) * sign_of_sin + 0.0,
+        np.where(odd, sin_lo, cos_lo) * sign_of_cos + 0.0,
+        np.where(odd, cos_lo, sin_lo) * sign_of_sin + 0.0,
     )
     return values if np.ndim(degrees) else tuple(map(float, values))
 
@@ -54,29 +54,29 @@ def arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
 def _within_an_eighth(angle: np.ndarray) -> tuple[np.ndarray, ...]:
     """cos, sin and their rests for angles [degree] from −45 to 45."""
     step = np.rint(angle * STEPS)
-    cos, sin, cos_rest, sin_rest = (row[step.astype(np.int64) + 45 * STEPS] for row in _table())
+    cos, sin, cos_lo, sin_lo = (row[step.astype(np.int64) + 45 * STEPS] for row in _table())
     t, rest = _radians(angle - step / STEPS)
     whole, square = t + rest, 0.5 * t * t  # exact
     half = 0.5 * whole * whole
     versine = _coarse(square, 52)  # 1 − cos(t + rest)
-    versine_rest = (square - versine) + (rest * (t + 0.5 * rest) - half * half * (1.0 / 6.0 - half / 90.0))
+    versine_lo = (square - versine) + (rest * (t + 0.5 * rest) - half * half * (1.0 / 6.0 - half / 90.0))
     lag = whole * half * (1.0 / 3.0 - half / 30.0) - rest  # t − sin(t + rest)
     cos_a, sin_a = _coarse(cos, 26), _coarse(sin, 26)  # whose products with t and versine are exact
-    cos_b, sin_b = (cos - cos_a) + cos_rest, (sin - sin_a) + sin_rest
-    cos_rest += sin * lag - sin_b * t - cos_b * versine - cos * versine_rest
-    sin_rest += cos_b * t - cos * lag - sin_b * versine - sin * versine_rest
-    cos, cos_rest = _summed(cos, -sin_a * t, -cos_a * versine, cos_rest)
-    sin, sin_rest = _summed(sin, cos_a * t, -sin_a * versine, sin_rest)
-    return cos, sin, cos_rest, sin_rest
+    cos_b, sin_b = (cos - cos_a) + cos_lo, (sin - sin_a) + sin_lo
+    cos_lo += sin * lag - sin_b * t - cos_b * versine - cos * versine_lo
+    sin_lo += cos_b * t - cos * lag - sin_b * versine - sin * versine_lo
+    cos, cos_lo = _summed(cos, -sin_a * t, -cos_a * versine, cos_lo)
+    sin, sin_lo = _summed(sin, cos_a * t, -sin_a * versine, sin_lo)
+    return cos, sin, cos_lo, sin_lo
 
 
 def _radians(degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """At most half a step, as its first 26 bits and the rest."""
-    radian, radian_rest = _pair(DEGREE)
+    radian, radian_lo = _pair(DEGREE)
     coarse, factor = _coarse(degrees, 33), _coarse(radian, 31)
     product = coarse * factor  # exact
     t = _coarse(product, 38)
-    return t, (product - t) + ((degrees - coarse) * radian + coarse * ((radian - factor) + radian_rest))
+    return t, (product - t) + ((degrees - coarse) * radian + coarse * ((radian - factor) + radian_lo))
 
 
 def _summed(x: np.ndarray, y: np.ndarray, z: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -31,7 +31,7 @@ from linksweep.mechanisms.rows.crank import (
     between_rows,
     frame_parameters,
     in_range,
-    pinch_rows,
+    near_toggle_rows,
     straight_rows,
     turned,
 )
@@ -145,7 +145,7 @@ class FourBar(CrankDriven):
         return numbers
 
     @property
-    def pinch_angle(self) -> Number:
+    def near_toggle_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
 
@@ -217,7 +217,7 @@ class FourBar(CrankDriven):
 @lru_cache(maxsize=64)
 def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool) -> Table:
     rows = [
-        *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *(near_toggle_rows("ground") if turned else straight_rows("cos2", "sin2")),
         *_position(),
         Row(four_bar.side_of_diagonal, ("side",)) if goes_through else Row(planar.same, ("side",), ("branch_sign",)),
         *_rates(),
@@ -231,12 +231,12 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool
 
 def _position() -> list[Row | Total]:
     return [
-        Row(four_bar.pinch_widths, ("pinch_near", "pinch_far")),
+        Row(four_bar.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(four_bar.closure_unit, ("closure_unit",)),
-        Row(four_bar.least_factors, ("least_low", "least_low_rest", "least_high", "least_high_rest")),
+        Row(four_bar.least_factors, ("least_low", "least_low_lo", "least_high", "least_high_lo")),
         Row(four_bar.sums_unit, ("sums_unit",)),
-        Row(four_bar.toggle_cosines, ("folded_cos", "folded_cos_rest", "stretched_cos", "stretched_cos_rest")),
+        Row(four_bar.toggle_cosines, ("folded_cos", "folded_cos_lo", "stretched_cos", "stretched_cos_lo")),
         Row(four_bar.change_points, ("folded_noise", "stretched_noise", "parallel")),
         Row(crank_angle.versines, ("versine", "vercosine")),
         Row(four_bar.diagonal, ("BDx", "BDy")),

@@ -157,7 +157,7 @@ class InvertedSliderCrank(CrankDriven):
         return numbers | link_parameters("crank", self.crank) | link_parameters("rocker", self.rocker)
 
     @property
-    def pinch_angle(self) -> Number:
+    def near_toggle_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
 

@@ -77,7 +77,7 @@ class LoopTrack(ByContent):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
-    pinch_angle: ClassVar[float] = 0.0
+    near_toggle_angle: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -154,8 +154,8 @@ def _table() -> Table:
     gated = ("squared_speed", "normal_force", "a_tangential")
     rows: list[Row | Total] = [
         *straight_rows("cos2", "sin2"),
-        Row(planar.same, ("pinch_near",), (1.0,)),
-        Row(planar.same, ("pinch_far",), (1.0,)),
+        Row(planar.same, ("near_toggle_near",), (1.0,)),
+        Row(planar.same, ("near_toggle_far",), (1.0,)),
         Row(loop_track.gravity_on_track, ("gravity_forward", "gravity_inward")),
         Row(loop_track.squared_speed, ("raw_squared_speed",)),
         Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.validate import Number, field_problems, parameter, refuse
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.limits.finding import Checks
@@ -114,7 +114,7 @@ class SliderCrank(CrankDriven):
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
-        guide_cos, guide_sin, cos_rest, sin_rest = cos_sin_rests(self.slide_angle)
+        guide_cos, guide_sin, cos_lo, sin_lo = cos_sin_low_words(self.slide_angle)
         numbers: dict[str, Any] = {
             "offset": self.offset,
             "friction": self.friction,
@@ -122,9 +122,9 @@ class SliderCrank(CrankDriven):
             "guide_cos": guide_cos,
             "guide_sin": guide_sin,
             "upright_cos": -guide_sin,
-            "upright_cos_rest": -sin_rest,
+            "upright_cos_lo": -sin_lo,
             "upright_sin": guide_cos,
-            "upright_sin_rest": cos_rest,
+            "upright_sin_lo": cos_lo,
             "r4x": guide_cos,
             "r4y": guide_sin,
             "branch_sign": self.branch_sign,
@@ -133,7 +133,7 @@ class SliderCrank(CrankDriven):
         return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
 
     @property
-    def pinch_angle(self) -> Number:
+    def near_toggle_angle(self) -> Number:
         """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return 90.0 + self.slide_angle
 

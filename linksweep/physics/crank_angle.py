@@ -20,19 +20,19 @@ END = 2.0**-950
 """What the squares of lengths keep away from the least and the largest number by."""
 
 
-def angle_from_pinch(
+def psi_from_crank_angle(
     cos2: Number,
-    cos2_rest: Number,
+    cos2_lo: Number,
     sin2: Number,
-    sin2_rest: Number,
+    sin2_lo: Number,
     middle_cos: Number,
-    middle_cos_rest: Number,
+    middle_cos_lo: Number,
     middle_sin: Number,
-    middle_sin_rest: Number,
+    middle_sin_lo: Number,
 ) -> tuple[Number, Number, Number]:
     """cos(θ2 − middle), its rest, and sin(θ2 − middle)."""
-    crank = (cos2, cos2_rest), (sin2, sin2_rest)
-    middle = (middle_cos, middle_cos_rest), (middle_sin, middle_sin_rest)
+    crank = (cos2, cos2_lo), (sin2, sin2_lo)
+    middle = (middle_cos, middle_cos_lo), (middle_sin, middle_sin_lo)
     return *dot(*crank, *middle), cross(*middle, *crank)
 
 
@@ -51,9 +51,9 @@ def angle_from_x(cos: Number, sin: Number, middle_cos: Number, middle_sin: Numbe
     return cos * middle_cos - sin * middle_sin, sin * middle_cos + cos * middle_sin
 
 
-def versines(pinch_cos: Number, pinch_cos_rest: Number) -> tuple[Number, Number]:
+def versines(psi_cos: Number, psi_cos_lo: Number) -> tuple[Number, Number]:
     """1 − cos ψ and 1 + cos ψ, with all their digits."""
-    return (1.0 - pinch_cos) - pinch_cos_rest, (1.0 + pinch_cos) + pinch_cos_rest
+    return (1.0 - psi_cos) - psi_cos_lo, (1.0 + psi_cos) + psi_cos_lo
 
 
 def one_turn(cos2: Number, sin2: Number) -> Number:
@@ -62,13 +62,13 @@ def one_turn(cos2: Number, sin2: Number) -> Number:
     return where(angle < 0.0, angle + 2.0 * math.pi, angle)
 
 
-def unknown_of_cosine(miss: Number, noise: Number, pinch_sin: Number) -> Number:
+def unknown_of_cosine(miss: Number, noise: Number, psi_sin: Number) -> Number:
     """By how much cos ψ must differ from a toggle's for the mechanism to be told from one at its toggle.
 
     The angle may be off by its last digit. Where the toggle's cosine misses ±1 by so little that rounded lengths may
     be the cause (`noise`), the mechanism is meant to lie flat there, and what the miss alone decides is not known.
     """
-    return ULP * abs(pinch_sin) + FLATTEST + where(abs(miss) < noise, 2.0 * abs(miss), 0.0)
+    return ULP * abs(psi_sin) + FLATTEST + where(abs(miss) < noise, 2.0 * abs(miss), 0.0)
 
 
 def beyond_range(square: Number) -> Number:

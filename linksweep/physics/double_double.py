@@ -62,14 +62,14 @@ def difference(p: Pair, q: Pair) -> Number:
 
 def dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
     """px·qx + py·qy, to twice the digits of its terms."""
-    (x, x_rest), (y, y_rest) = two_product(px[0], qx[0]), two_product(py[0], qy[0])
+    (x, x_lo), (y, y_lo) = two_product(px[0], qx[0]), two_product(py[0], qy[0])
     high, rest = two_sum(x, y)
     mixed = (px[0] * qx[1] + px[1] * qx[0]) + (py[0] * qy[1] + py[1] * qy[0])
-    return ordered_sum(high, rest + ((x_rest + y_rest) + mixed))
+    return ordered_sum(high, rest + ((x_lo + y_lo) + mixed))
 
 
 def cross(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Number:
     """px·qy − py·qx as one number, with all its digits where it cancels."""
-    (x, x_rest), (y, y_rest) = two_product(px[0], qy[0]), two_product(py[0], qx[0])
+    (x, x_lo), (y, y_lo) = two_product(px[0], qy[0]), two_product(py[0], qx[0])
     mixed = (px[0] * qy[1] + px[1] * qy[0]) - (py[0] * qx[1] + py[1] * qx[0])
-    return (x - y) + ((x_rest - y_rest) + mixed)
+    return (x - y) + ((x_lo - y_lo) + mixed)

@@ -41,10 +41,10 @@ def diagonal(
     ground_cos: Number,
     ground_sin: Number,
     versine: Number,
-    pinch_sin: Number,
+    psi_sin: Number,
 ) -> tuple[Number, Number]:
     """The vector B→D, from its shares along the frame line and across, which keep their digits where B is near D."""
-    along, across = (ground_length - crank_length) + crank_length * versine, -(crank_length * pinch_sin)
+    along, across = (ground_length - crank_length) + crank_length * versine, -(crank_length * psi_sin)
     return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
 
@@ -52,13 +52,13 @@ def crank_on_diagonal(
     crank_length: Number,
     ground_length: Number,
     versine: Number,
-    pinch_sin: Number,
+    psi_sin: Number,
     inverse_2ff: Number,
     half_inverse_root: Number,
 ) -> tuple[Number, Number, Number]:
     """p and q, which keep their digits where the links lie flat, and q over the share across of coupler and rocker."""
     along = (ground_length - crank_length) / ground_length - versine
-    return along * inverse_2ff, pinch_sin * inverse_2ff, 2.0 * pinch_sin * half_inverse_root
+    return along * inverse_2ff, psi_sin * inverse_2ff, 2.0 * psi_sin * half_inverse_root
 
 
 def least_factors(
@@ -81,10 +81,10 @@ def sums_unit(
 
 
 def toggle_cosines(
-    least_low: Number, least_low_rest: Number, least_high: Number, least_high_rest: Number
+    least_low: Number, least_low_lo: Number, least_high: Number, least_high_lo: Number
 ) -> tuple[Number, Number, Number, Number]:
     """cos ψ_f and cos ψ_s, each with its rest."""
-    return *add((1.0, 0.0), (least_low, least_low_rest)), *add((-1.0, 0.0), (-least_high, -least_high_rest))
+    return *add((1.0, 0.0), (least_low, least_low_lo)), *add((-1.0, 0.0), (-least_high, -least_high_lo))
 
 
 def closure_unit(crank_length: Number, ground_length: Number) -> Number:
@@ -93,17 +93,17 @@ def closure_unit(crank_length: Number, ground_length: Number) -> Number:
 
 
 def closure_factors(
-    pinch_cos: Number,
-    pinch_cos_rest: Number,
+    psi_cos: Number,
+    psi_cos_lo: Number,
     folded_cos: Number,
-    folded_cos_rest: Number,
+    folded_cos_lo: Number,
     stretched_cos: Number,
-    stretched_cos_rest: Number,
+    stretched_cos_lo: Number,
 ) -> tuple[Number, Number]:
     """low and high, as the module's equations write them."""
-    cosine = pinch_cos, pinch_cos_rest
-    low = difference((folded_cos, folded_cos_rest), cosine)
-    return low, difference(cosine, (stretched_cos, stretched_cos_rest))
+    cosine = psi_cos, psi_cos_lo
+    low = difference((folded_cos, folded_cos_lo), cosine)
+    return low, difference(cosine, (stretched_cos, stretched_cos_lo))
 
 
 def change_points(
@@ -126,9 +126,9 @@ def change_points(
     return folded_noise, stretched_noise, parallel
 
 
-def side_of_diagonal(parallel: Number, pinch_sin: Number, branch_sign: Number) -> Number:
+def side_of_diagonal(parallel: Number, psi_sin: Number, branch_sign: Number) -> Number:
     """1 with C to the left of the line B→D, −1 to its right."""
-    return where(parallel * pinch_sin < 0.0, -branch_sign, branch_sign)
+    return where(parallel * psi_sin < 0.0, -branch_sign, branch_sign)
 
 
 def closure_noise(
@@ -137,14 +137,14 @@ def closure_noise(
     folded_noise: Number,
     least_high: Number,
     stretched_noise: Number,
-    pinch_sin: Number,
+    psi_sin: Number,
     sums_unit: Number,
 ) -> tuple[Number, Number]:
     """What low and high cannot tell from zero."""
     beyond = beyond_range(closure_unit) + sums_unit * beyond_range(sums_unit * sums_unit)
     return (
-        unknown_of_cosine(least_low, folded_noise, pinch_sin) + beyond,
-        unknown_of_cosine(least_high, stretched_noise, pinch_sin) + beyond,
+        unknown_of_cosine(least_low, folded_noise, psi_sin) + beyond,
+        unknown_of_cosine(least_high, stretched_noise, psi_sin) + beyond,
     )
 
 
@@ -198,7 +198,7 @@ def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number
     return where(largest_low < 0.0, 2.0, where(largest_high < 0.0, 2.0, partly))
 
 
-def pinch_widths(
+def near_toggle_widths(
     crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
 ) -> tuple[Number, Number]:
     """How narrow forces may peak about ψ = 0 and 180°: low and high are x + y·tan², and zero at tan = ±i·√(x/y)."""

@@ -26,14 +26,22 @@ def ratios(
 
 
 def rocker_equation(
-    pinch_cos: Number, pinch_sin: Number, K1: Number, K2: Number, K3: Number
+    psi_cos: Number, psi_sin: Number, K1: Number, K2: Number, K3: Number
 ) -> tuple[Number, Number, Number]:
     """A, B and C of document 2."""
-    return pinch_cos - K1 - K2 * pinch_cos + K3, -2.0 * pinch_sin, K1 - (K2 + 1.0) * pinch_cos + K3
+    return (
+        psi_cos - K1 - K2 * psi_cos + K3,
+        -2.0 * psi_sin,
+        K1 - (K2 + 1.0) * psi_cos + K3,
+    )
 
 
 def coupler_equation(
-    pinch_cos: Number, pinch_sin: Number, K1: Number, K4: Number, K5: Number
+    psi_cos: Number, psi_sin: Number, K1: Number, K4: Number, K5: Number
 ) -> tuple[Number, Number, Number]:
     """D, E and F of document 2."""
-    return pinch_cos - K1 + K4 * pinch_cos + K5, -2.0 * pinch_sin, K1 + (K4 - 1.0) * pinch_cos + K5
+    return (
+        psi_cos - K1 + K4 * psi_cos + K5,
+        -2.0 * psi_sin,
+        K1 + (K4 - 1.0) * psi_cos + K5,
+    )

@@ -18,21 +18,21 @@ from linksweep.physics.double_double import Pair, add, difference, divide, multi
 from linksweep.physics.planar import cross, dot
 
 
-def versine(pinch_cos: Number, pinch_cos_rest: Number) -> Number:
+def versine(psi_cos: Number, psi_cos_lo: Number) -> Number:
     """1 − cos ψ, which keeps its digits as ψ tends to 0."""
-    return difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
+    return difference((1.0, 0.0), (psi_cos, psi_cos_lo))
 
 
 def block_from_rocker_pivot(
     crank_length: Number,
     ground_length: Number,
-    pinch_versine: Number,
-    pinch_sin: Number,
+    psi_versine: Number,
+    psi_sin: Number,
     ground_cos: Number,
     ground_sin: Number,
 ) -> tuple[Number, Number]:
     """w = D→B in ground axes."""
-    along, across = (crank_length - ground_length) - crank_length * pinch_versine, crank_length * pinch_sin
+    along, across = (crank_length - ground_length) - crank_length * psi_versine, crank_length * psi_sin
     return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
 
@@ -44,9 +44,9 @@ def toggle_cosine(crank_length: Number, ground_length: Number, offset: Number) -
     return add((1.0, 0.0), divide(least, two_product(2.0 * a, d)))
 
 
-def slide_cosine(pinch_cos: Number, pinch_cos_rest: Number, toggle_cos: Number, toggle_cos_rest: Number) -> Number:
+def slide_cosine(psi_cos: Number, psi_cos_lo: Number, toggle_cos: Number, toggle_cos_lo: Number) -> Number:
     """cos ψ_t − cos ψ."""
-    return difference((toggle_cos, toggle_cos_rest), (pinch_cos, pinch_cos_rest))
+    return difference((toggle_cos, toggle_cos_lo), (psi_cos, psi_cos_lo))
 
 
 def slide_squared(crank_length: Number, ground_length: Number, slide_cosine: Number) -> Number:
@@ -54,12 +54,12 @@ def slide_squared(crank_length: Number, ground_length: Number, slide_cosine: Num
     return 2.0 * crank_length * ground_length * slide_cosine
 
 
-def slide_leverage(crank_length: Number, ground_length: Number, pinch_sin: Number) -> Number:
+def slide_leverage(crank_length: Number, ground_length: Number, psi_sin: Number) -> Number:
     """r2 × w, as the module's equation writes it."""
-    return crank_length * ground_length * pinch_sin
+    return crank_length * ground_length * psi_sin
 
 
-def pinch_width(crank_length: Number, ground_length: Number, offset: Number, friction: Number) -> Number:
+def near_toggle_width(crank_length: Number, ground_length: Number, offset: Number, friction: Number) -> Number:
     """How narrow forces may peak about ψ = 0: s² is x + y·tan²(ψ/2) there, zero at tan = ±i·√(x/y).
 
     Friction wedges where s² = μ²e², that is where B is |e|·√(1 + μ²) from D.
@@ -73,15 +73,15 @@ def closure_noise(
     ground_length: Number,
     offset: Number,
     toggle_cos: Number,
-    toggle_cos_rest: Number,
-    pinch_sin: Number,
+    toggle_cos_lo: Number,
+    psi_sin: Number,
 ) -> Number:
     """What s² cannot tell from zero."""
     a, d, e = crank_length, ground_length, abs(offset)
     length, twice_ad = 2.0**-52 * (a + d + e), 2.0 * a * d
-    miss = difference((toggle_cos, toggle_cos_rest), (1.0, 0.0))
+    miss = difference((toggle_cos, toggle_cos_lo), (1.0, 0.0))
     noise = length * (abs(d - a) + e + length) / twice_ad
-    return twice_ad * (unknown_of_cosine(miss, noise, pinch_sin) + beyond_range(twice_ad))
+    return twice_ad * (unknown_of_cosine(miss, noise, psi_sin) + beyond_range(twice_ad))
 
 
 def assembly(crank_length: Number, ground_length: Number, offset: Number) -> Number:

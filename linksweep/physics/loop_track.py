@@ -29,13 +29,13 @@ def squared_speed(
     gravity_x: Number,
     gravity_y: Number,
     sin2: Number,
-    pinch_cos: Number,
-    pinch_cos_rest: Number,
+    psi_cos: Number,
+    psi_cos_lo: Number,
     radians2: Number,
     work_counts: Number,
 ) -> Number:
     """v²; `work_counts` is 1 where work and energy decide and 0 where the speed is the same everywhere."""
-    rise = difference((1.0, 0.0), (pinch_cos, pinch_cos_rest))
+    rise = difference((1.0, 0.0), (psi_cos, psi_cos_lo))
     work = thrust / mass * radians2 + (gravity_x * sin2 + gravity_y * rise)
     return entry_speed * entry_speed + work_counts * (2.0 * radius * work)
 

@@ -18,11 +18,11 @@ from linksweep.physics.planar import cross, dot
 
 
 def guide_shares(
-    crank_length: Number, offset: Number, pinch_cos: Number, pinch_sin: Number
+    crank_length: Number, offset: Number, psi_cos: Number, psi_sin: Number
 ) -> tuple[Number, Number, Number]:
     """The crank's shares along and across the guide, and the rod's share across."""
-    crank_across = crank_length * pinch_cos
-    return -(crank_length * pinch_sin), crank_across, offset - crank_across
+    crank_across = crank_length * psi_cos
+    return -(crank_length * psi_sin), crank_across, offset - crank_across
 
 
 def toggle_cosines(crank_length: Number, rod_length: Number, offset: Number) -> tuple[Number, Number, Number, Number]:
@@ -33,17 +33,17 @@ def toggle_cosines(crank_length: Number, rod_length: Number, offset: Number) -> 
 
 def closure_factors(
     crank_length: Number,
-    pinch_cos: Number,
-    pinch_cos_rest: Number,
+    psi_cos: Number,
+    psi_cos_lo: Number,
     low_cos: Number,
-    low_cos_rest: Number,
+    low_cos_lo: Number,
     high_cos: Number,
-    high_cos_rest: Number,
+    high_cos_lo: Number,
 ) -> tuple[Number, Number]:
     """low and high, as the module's equations write them."""
-    cosine = pinch_cos, pinch_cos_rest
-    low = crank_length * difference(cosine, (low_cos, low_cos_rest))
-    return low, crank_length * difference((high_cos, high_cos_rest), cosine)
+    cosine = psi_cos, psi_cos_lo
+    low = crank_length * difference(cosine, (low_cos, low_cos_lo))
+    return low, crank_length * difference((high_cos, high_cos_lo), cosine)
 
 
 def closure_noise(
@@ -51,20 +51,20 @@ def closure_noise(
     rod_length: Number,
     offset: Number,
     low_cos: Number,
-    low_cos_rest: Number,
+    low_cos_lo: Number,
     high_cos: Number,
-    high_cos_rest: Number,
-    pinch_sin: Number,
+    high_cos_lo: Number,
+    psi_sin: Number,
 ) -> tuple[Number, Number]:
     """What low and high cannot tell from zero."""
-    low_miss = difference((low_cos, low_cos_rest), (-1.0, 0.0))
-    high_miss = difference((high_cos, high_cos_rest), (1.0, 0.0))
+    low_miss = difference((low_cos, low_cos_lo), (-1.0, 0.0))
+    high_miss = difference((high_cos, high_cos_lo), (1.0, 0.0))
     noise = 2.0**-52 * (crank_length + rod_length + abs(offset)) / crank_length
     crank_beyond = crank_length * beyond_range(crank_length * crank_length)
     beyond = crank_beyond + rod_length * beyond_range(rod_length * rod_length)
     return (
-        crank_length * unknown_of_cosine(low_miss, noise, pinch_sin) + beyond,
-        crank_length * unknown_of_cosine(high_miss, noise, pinch_sin) + beyond,
+        crank_length * unknown_of_cosine(low_miss, noise, psi_sin) + beyond,
+        crank_length * unknown_of_cosine(high_miss, noise, psi_sin) + beyond,
     )
 
 
@@ -79,7 +79,9 @@ def assembly(crank_length: Number, rod_length: Number, offset: Number) -> Number
     return where(reach + crank_length < 0.0, 0.0, where(reach - crank_length < 0.0, 1.0, 2.0))
 
 
-def pinch_widths(crank_length: Number, rod_length: Number, offset: Number, friction: Number) -> tuple[Number, Number]:
+def near_toggle_widths(
+    crank_length: Number, rod_length: Number, offset: Number, friction: Number
+) -> tuple[Number, Number]:
     """How narrow forces may peak about φ = 90 and −90°: high and low are there x + y·tan², zero at tan = ±i·√(x/y).
 
     Friction wedges where μ·tan ψ = 1, that is where the rod's share across the guide is b/√(1 + μ²).

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.conversion import all_to_float64
-from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import quote, refuse
 from linksweep.engine.run import Grid
 from linksweep.scene.units import unit_problems
 
-NAMES = ("cos2", "sin2", "cos2_rest", "sin2_rest", "radians2")
+NAMES = ("cos2", "sin2", "cos2_lo", "sin2_lo", "radians2")
 
 
 def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
@@ -67,5 +67,5 @@ def in_order(grid: Grid) -> Grid:
 
 
 def _grid(angles: np.ndarray, period: float, dim: str) -> Grid:
-    table = np.array([*cos_sin_rests(angles), np.radians(np.mod(angles, 360.0))])
+    table = np.array([*cos_sin_low_words(angles), np.radians(np.mod(angles, 360.0))])
     return Grid(dim, angles, period, NAMES, table)

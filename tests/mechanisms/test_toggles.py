@@ -16,7 +16,7 @@ from judges import LinkData, largest_force, mp
 from oracle import FourBarData, random_data, solve, to_scene
 
 import linksweep as ls
-from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.degrees import cos_sin_low_words
 from linksweep.physics import double_double as pairs
 
 FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
@@ -118,10 +118,10 @@ def angles_of_all_sizes() -> np.ndarray:
 
 def test_cosines_and_sines_with_their_rests_against_60_digits():
     angles = angles_of_all_sizes()
-    cos, sin, cos_rest, sin_rest = cos_sin_rests(angles)
+    cos, sin, cos_lo, sin_lo = cos_sin_low_words(angles)
     for k, angle in enumerate(angles.tolist()):
         turn = mp.expjpi(mp.mpf(angle) / 180)
-        for exact, high, rest in ((turn.real, cos[k], cos_rest[k]), (turn.imag, sin[k], sin_rest[k])):
+        for exact, high, rest in ((turn.real, cos[k], cos_lo[k]), (turn.imag, sin[k], sin_lo[k])):
             assert abs(exact - mp.mpf(float(high)) - mp.mpf(float(rest))) < 2.0**-87, angle
             assert abs(float(exact) - high) <= np.spacing(abs(high)), angle
             assert abs(rest) <= 0.51 * np.spacing(abs(high)), angle
@@ -129,20 +129,20 @@ def test_cosines_and_sines_with_their_rests_against_60_digits():
 
 def test_what_a_cosine_lacks_of_one_is_known_to_the_last_digit():
     for angle in 10.0 ** np.linspace(-12.0, 1.5, 60):
-        cos, _, rest, _ = cos_sin_rests(float(angle))
+        cos, _, rest, _ = cos_sin_low_words(float(angle))
         lacks = 1 - mp.cospi(mp.mpf(float(angle)) / 180)
         assert abs((1.0 - cos) - rest - lacks) < 4.0 * EPS * lacks
 
 
-def test_round_angles_have_no_rest():
-    assert [cos_sin_rests(angle) for angle in (0.0, 90.0, 180.0, -90.0)] == [
+def test_round_angles_have_no_lo():
+    assert [cos_sin_low_words(angle) for angle in (0.0, 90.0, 180.0, -90.0)] == [
         (1.0, 0.0, 0.0, 0.0),
         (0.0, 1.0, 0.0, 0.0),
         (-1.0, 0.0, 0.0, 0.0),
         (0.0, -1.0, 0.0, 0.0),
     ]
-    assert cos_sin_rests(60.0)[0] == 0.5
-    assert cos_sin_rests(1e6 * 360.0 + 30.0)[1] == 0.5
+    assert cos_sin_low_words(60.0)[0] == 0.5
+    assert cos_sin_low_words(1e6 * 360.0 + 30.0)[1] == 0.5
 
 
 # ---- pairs of numbers -----

@@ -170,7 +170,7 @@ def wired(x: dict, mechanism) -> dict:
     found |= {"cos2": x["theta2"].x, "sin2": x["theta2"].y, "gravity_x": x["gravity"].x, "gravity_y": x["gravity"].y}
     found |= {"ground_length": x["ground"]} if "ground" in x else {}
     given = {name: Exact(number) for name, number in mechanism.parameters().items() if name not in found}
-    rests = dict.fromkeys(("cos2_rest", "sin2_rest"), Exact(0))
+    rests = dict.fromkeys(("cos2_lo", "sin2_lo"), Exact(0))
     return given | rests | found | {"branch_sign": Exact(x["side"])}
 
 

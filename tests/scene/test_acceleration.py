@@ -44,7 +44,7 @@ def over_two_turns(t):
     return -20.0 + np.cos(0.5 * t), -0.5 * np.sin(0.5 * t)
 
 
-def from_rest_to_rest(t):
+def from_rest_to_lo(t):
     """ω² is smooth where ω is not: dω/dθ has no limit at 0, ω·dω/dθ has."""
     return 10.0 * np.abs(np.sin(0.5 * t)), 5.0 * np.cos(0.5 * t) * np.sign(np.sin(0.5 * t))
 
@@ -57,7 +57,7 @@ def from_rest_to_rest(t):
         (narrow_pulse, 2e-9),
         (order_45, 1e-10),
         (over_two_turns, 1e-12),
-        (from_rest_to_rest, 1e-11),
+        (from_rest_to_lo, 1e-11),
     ],
 )
 @pytest.mark.parametrize("theta2", [720, np.linspace(3.0, 357.0, 997)])

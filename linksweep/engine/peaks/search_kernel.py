@@ -19,7 +19,7 @@ ARGUMENTS = (
 )
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that say where a sample is: the tangent of half its angle from the middle of its half turn, and which half."""
-NEAR_WIDTH, FAR_WIDTH = "pinch_near", "pinch_far"
+NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Quantities that say how narrow the pinches in those middles are."""
 FOUND = (*range(search.BEST_ROWS), "evaluations")
 """What is stored of each signal."""

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.degrees import cos_sin_rests
+from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.equality import ByContent
 from linksweep.base.validate import Number, choice_problems
 from linksweep.engine.quantity import Row
@@ -28,9 +28,9 @@ OverDesigns = tuple[tuple[Callable[..., Mapping[str, Any]], tuple[Number, ...]],
 """Functions of arrays of numbers, broadcast over the designs, that return arrays by name; and what each takes."""
 
 
-CRANK = ("cos2", "cos2_rest", "sin2", "sin2_rest")
+CRANK = ("cos2", "cos2_lo", "sin2", "sin2_lo")
 """The crank's angle from x, as a grid tabulates it."""
-PINCH = ("pinch_cos", "pinch_cos_rest", "pinch_sin")
+PSI = ("psi_cos", "psi_cos_lo", "psi_sin")
 """Its angle from the pinch; the rest says by what the cosine is rounded."""
 
 
@@ -121,29 +121,29 @@ class CrankDriven(ByContent):
 
 def frame_parameters(name: str, angle: Number) -> dict[str, Number]:
     """Cosine and sine of the angle [degree] at which a frame lies, under the names that the physics wires by."""
-    parts = ("cos", "sin", "cos_rest", "sin_rest")
-    return {f"{name}_{part}": number for part, number in zip(parts, cos_sin_rests(angle), strict=True)}
+    parts = ("cos", "sin", "cos_lo", "sin_lo")
+    return {f"{name}_{part}": number for part, number in zip(parts, cos_sin_low_words(angle), strict=True)}
 
 
-def pinch_rows(middle: str) -> list[Row]:
+def near_toggle_rows(middle: str) -> list[Row]:
     """The crank's angle from the pinch that lies at the angle of this name."""
-    pinch = tuple(f"{middle}_{part}" for part in ("cos", "cos_rest", "sin", "sin_rest"))
-    return [Row(crank_angle.angle_from_pinch, PINCH, (*CRANK, *pinch))]
+    pinch = tuple(f"{middle}_{part}" for part in ("cos", "cos_lo", "sin", "sin_lo"))
+    return [Row(crank_angle.psi_from_crank_angle, PSI, (*CRANK, *pinch))]
 
 
 def straight_rows(cos: str, sin: str, minus_sin: bool = False) -> list[Row]:
     """The same bits where cosine and sine from the pinch are tabulated numbers themselves."""
-    made = (cos, f"{cos}_rest", sin)
+    made = (cos, f"{cos}_lo", sin)
     turns = (planar.same, planar.same, planar.opposite if minus_sin else planar.same)
-    return [Row(turn, (name,), (number,)) for turn, name, number in zip(turns, PINCH, made, strict=True)]
+    return [Row(turn, (name,), (number,)) for turn, name, number in zip(turns, PSI, made, strict=True)]
 
 
 def between_rows(middle_cos: str | float, middle_sin: str | float) -> tuple[Row, ...]:
     """Rows that make all this from half-angle tangents, and what a grid has in its table."""
     middle = (middle_cos, middle_sin)
     return (
-        Row(crank_angle.angle_from_tangent, PINCH),
-        Row(crank_angle.angle_from_x, ("cos2", "sin2"), ("pinch_cos", "pinch_sin", *middle)),
+        Row(crank_angle.angle_from_tangent, PSI),
+        Row(crank_angle.angle_from_x, ("cos2", "sin2"), ("psi_cos", "psi_sin", *middle)),
         Row(crank_angle.one_turn, ("radians2",)),
     )
 

@@ -17,7 +17,7 @@ from linksweep.mechanisms.rows.bodies import (
     on_crank_pin,
     position_quantities,
 )
-from linksweep.mechanisms.rows.crank import between_rows, pinch_rows, straight_rows
+from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, coulomb, crank_driven, dyad_rpr, inverted_slider_crank, planar
@@ -58,7 +58,7 @@ DRIVES = {
 def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
     """Return the table for a drive, loads of these forms, and a frame line that may be turned."""
     rows = [
-        *(pinch_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *(near_toggle_rows("ground") if turned else straight_rows("cos2", "sin2")),
         *_position(),
         *_rates(),
         *_forces(drive),
@@ -66,7 +66,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         Row(planar.product, ("friction_power",), ("friction_force", "slide_velocity")),
     ]
     rows += machine_rows(BODIES, PINS, loads) + _transmission()
-    rows += [rounding_error.row(slide_cosine=1.0, pinch_versine=1.0), *arm_rows(2, "R12", "R32"), *_arms()]
+    rows += [rounding_error.row(slide_cosine=1.0, psi_versine=1.0), *arm_rows(2, "R12", "R32"), *_arms()]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 
@@ -94,11 +94,11 @@ def _arms() -> list[Row | Total]:
 
 def _position() -> list[Row | Total]:
     return [
-        Row(inverted_slider_crank.pinch_width, ("pinch_near",)),
-        Row(planar.same, ("pinch_far",), (1.0,)),
+        Row(inverted_slider_crank.near_toggle_width, ("near_toggle_near",)),
+        Row(planar.same, ("near_toggle_far",), (1.0,)),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_rest")),
-        Row(inverted_slider_crank.versine, ("pinch_versine",)),
+        Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_lo")),
+        Row(inverted_slider_crank.versine, ("psi_versine",)),
         Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
         Row(inverted_slider_crank.slide_cosine, ("slide_cosine",)),
         Row(inverted_slider_crank.slide_squared, ("slide_squared",)),

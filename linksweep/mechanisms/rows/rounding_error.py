@@ -14,7 +14,7 @@ EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "br
 def row(**closure: str | float) -> Row:
     """The row that bounds the pin forces' error, of a machine that makes these numbers of its closure, and the angle
     in its own frame, of cosines in more than double precision; with the units that a cosine has in each."""
-    certain = {"pinch_cos": 1.0, "pinch_cos_rest": 1.0, "pinch_sin": 1.0, **closure}
+    certain = {"psi_cos": 1.0, "psi_cos_lo": 1.0, "psi_sin": 1.0, **closure}
     n = len(certain)
 
     def error_bound(*nodes: Node) -> Node:

@@ -15,7 +15,7 @@ from linksweep.mechanisms.rows.bodies import (
     on_crank_pin,
     position_quantities,
 )
-from linksweep.mechanisms.rows.crank import between_rows, pinch_rows, straight_rows
+from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, coulomb, crank_driven, dyad_rrp, planar, slider_crank
@@ -45,7 +45,7 @@ BODIES = (
 def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
     """Return the table for a drive, loads of these forms, and a guide that may be turned."""
     rows = [
-        *(pinch_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
+        *(near_toggle_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
         *_position(),
         *_rates(),
         *_forces(drive),
@@ -61,9 +61,9 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
 
 def _position() -> list[Row | Total]:
     return [
-        Row(slider_crank.pinch_widths, ("pinch_near", "pinch_far")),
+        Row(slider_crank.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_rest", "high_cos", "high_cos_rest")),
+        Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_lo", "high_cos", "high_cos_lo")),
         Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
         Row(slider_crank.closure_factors, ("low", "high")),
         Row(slider_crank.closure_noise, ("low_noise", "high_noise")),

@@ -187,7 +187,7 @@ def _turned(scene: Scene, peak: Peak) -> Found:
     """A peak with its angle [degree], of which the search knows the half-angle tangent."""
     dims, value = peak.value
     away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
-    angle = away + laid(scene.mechanism.pinch_angle, dims)
+    angle = away + laid(scene.mechanism.near_toggle_angle, dims)
     angle = np.where(np.isnan(value), np.nan, _place(angle, scene.period))
     return Found(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
 

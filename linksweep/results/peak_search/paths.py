@@ -130,14 +130,14 @@ def _samples_of_period(group: Group) -> Array:
     """Samples (design, sample) graded about the pinches of every turn [degree], in order."""
     turn = group.scene.mechanism.period
     rounds = range(round(group.scene.period / turn))
-    return np.concatenate([np.sort(in_period(_pinched(group), turn), axis=1) + turn * k for k in rounds], axis=1)
+    return np.concatenate([np.sort(in_period(_near_toggle(group), turn), axis=1) + turn * k for k in rounds], axis=1)
 
 
-def _pinched(group: Group) -> Array:
+def _near_toggle(group: Group) -> Array:
     """Graded samples of one turn [degree] about both pinches of each design."""
-    middle = group.number(group.scene.mechanism.pinch_angle)
+    middle = group.number(group.scene.mechanism.near_toggle_angle)
     table = 2.0 * np.degrees(np.arctan(grades()))
-    near, far = (table[_grades_of(widths)] for widths in group.constants("pinch_near", "pinch_far"))
+    near, far = (table[_grades_of(widths)] for widths in group.constants("near_toggle_near", "near_toggle_far"))
     return middle[:, None] + np.concatenate([near, far + 180.0], axis=1)
 
 
@@ -296,7 +296,7 @@ def _arc_samples(group: Group, middle: Array, half: Array, closely: bool) -> tup
     even = _even_on_arc()
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
-    given = _pinched(group), _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
+    given = _near_toggle(group), _sides(_breaks(group)), _sides(_for_each(group, jump_angles(group)))
     pinched, sides, jumps = (_anywhere_beyond(_on_arc(angles, middle, half)) for angles in given)
     quick = _on_arc(_quick_and_even(group), middle, half)
     close = _on_arc(_at_approaches(group, middle[:, None] + half[:, None] * np.sin(even)), middle, half)

@@ -120,7 +120,7 @@ def _known(group: Group, signals: tuple[str, ...]) -> Places:
 
 def _change_points(group: Group) -> Places:
     """The middles of the pinches of these designs where they cannot be told from toggles."""
-    middle = group.number(group.scene.mechanism.pinch_angle)
+    middle = group.number(group.scene.mechanism.near_toggle_angle)
     row, angle = np.tile(np.arange(len(middle)), 2), np.concatenate([middle, middle + 180.0])
     (status,) = group.values(("status",), row, angle)
     there, steps = np.flatnonzero(status == TOGGLE), np.array(CLOSEST_TO_TOGGLE)
