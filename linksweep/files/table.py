@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.files.atomic import ending_of, whole
-from linksweep.mechanisms import INDICES
+from linksweep.mechanisms import indices
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +40,7 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     """
     import pandas as pd  # here: it comes with xarray, but takes its time
 
-    sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in INDICES)}  # angles innermost
+    sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in indices())}  # angles innermost
     known = ds.assign_coords({dim: np.arange(n) for dim, n in sizes.items() if dim not in ds.coords})
     names = [*sizes, *(name for name in known.coords if name not in sizes), *known.data_vars]
     return pd.DataFrame({_header(known[name]): _column(known[name].variable, sizes) for name in names})

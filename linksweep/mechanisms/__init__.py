@@ -1,11 +1,21 @@
-"""Which machines there are: each a frozen dataclass and a table of what can be computed of it."""
+"""Which machines there are: each a frozen dataclass and a table of what can be computed of it.
+
+To add one, see `Mechanism`: derive from it and `register` the class.
+"""
 
 from linksweep.mechanisms.four_bar import FourBar
 from linksweep.mechanisms.inverted_slider_crank import InvertedSliderCrank
 from linksweep.mechanisms.loop_track import LoopTrack
+from linksweep.mechanisms.mechanism import MECHANISMS, Mechanism, indices, register
 from linksweep.mechanisms.slider_crank import SliderCrank
 
-Mechanism = FourBar | SliderCrank | InvertedSliderCrank | LoopTrack
-MECHANISMS = (FourBar, SliderCrank, InvertedSliderCrank, LoopTrack)
-INDICES = tuple(dict.fromkeys(kind.index for kind in MECHANISMS))
-"""What a sweep's own dimension may be called."""
+__all__ = [
+    "MECHANISMS",
+    "FourBar",
+    "InvertedSliderCrank",
+    "LoopTrack",
+    "Mechanism",
+    "SliderCrank",
+    "indices",
+    "register",
+]

@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, field_problems, is_lazy, parameter, refuse
+from linksweep.base.validate import Number, is_lazy, parameter
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters, link_problems
+from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows import rounding_error
 from linksweep.mechanisms.rows.bodies import (
     Body,
@@ -27,7 +28,6 @@ from linksweep.mechanisms.rows.bodies import (
 )
 from linksweep.mechanisms.rows.crank import (
     BRANCH_SIGN,
-    CrankDriven,
     between_rows,
     frame_parameters,
     in_range,
@@ -63,8 +63,9 @@ CLOSED = (
 )
 
 
+@register
 @dataclass(frozen=True, eq=False)
-class FourBar(CrankDriven):
+class FourBar(Mechanism):
     """A four-bar linkage.
 
     Parameters
@@ -102,12 +103,6 @@ class FourBar(CrankDriven):
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
-    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        refuse(link_problems(self, *self.links) + field_problems(self) + self.branch_problems())
-        refuse(self._never_closes())
 
     def lengths(self) -> dict[str, Number]:
         return {
@@ -117,8 +112,8 @@ class FourBar(CrankDriven):
             "ground": self.ground,
         }
 
-    def _never_closes(self) -> list[str]:
-        """A single design whose longest link cannot be spanned by the others; in a batch it only spoils itself."""
+    def closure_problems(self) -> list[str]:
+        """Return why a single design cannot be assembled: its longest link is longer than the others together."""
         lengths = self.lengths()
         if any(hasattr(length, "dims") for length in lengths.values()):
             return []
@@ -140,8 +135,8 @@ class FourBar(CrankDriven):
             **frame_parameters("ground", self.ground_angle),
             "branch_sign": self.branch_sign,
         }
-        for role in self.links:
-            numbers |= link_parameters(role, getattr(self, role))
+        for role, link in self.parts().items():
+            numbers |= link_parameters(role, link)
         return numbers
 
     @property
@@ -165,10 +160,6 @@ class FourBar(CrankDriven):
     def unknowns(self, drive: str) -> tuple[str, ...]:
         """The nine unknowns of the 9×9, in the textbook's order."""
         return (*UNKNOWN_FORCES, self.drives[drive])
-
-    def dynamics(self, drive: str) -> tuple[str, ...]:
-        """What a sweep gives besides the kinematics."""
-        return self.unknowns(drive)
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
         """The 9×9 of document 2 (ME 470), row by row."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, field_problems, parameter, refuse
+from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
@@ -20,12 +20,12 @@ from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
+from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters
+from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.rows.crank import (
     BRANCH_SIGN,
     STATUS_OF_SLIDER,
-    CrankDriven,
     frame_parameters,
     in_range,
     turned,
@@ -45,8 +45,9 @@ SLIDE_FORCES = {
 moments about the centres of gravity of block and rocker."""
 
 
+@register
 @dataclass(frozen=True, eq=False)
-class InvertedSliderCrank(CrankDriven):
+class InvertedSliderCrank(Mechanism):
     """An inverted slider-crank: a shaper's quick-return, Whitworth's, a cylinder-driven rocker.
 
     Parameters
@@ -123,16 +124,12 @@ class InvertedSliderCrank(CrankDriven):
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        refuse(link_problems(self, "crank", "rocker") + field_problems(self) + self.branch_problems())
-        refuse(self._never_closes())
-
     def lengths(self) -> tuple[Number, Number, Number]:
         """What decides how it moves: crank, ground, offset."""
         return self.crank.length, self.ground, self.offset
 
-    def _never_closes(self) -> list[str]:
+    def closure_problems(self) -> list[str]:
+        """Return why a single design cannot be assembled: the offset is beyond the reach of crank and ground."""
         a, d, e = self.lengths()
         if any(hasattr(number, "dims") for number in (a, d, e)) or abs(e) <= a + d:
             return []

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, field_problems, parameter, refuse
+from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.loop_track_limits import events, lap
+from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.mechanisms.rows.crank import OverDesigns, between_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals, Pins
 from linksweep.physics import loop_track, planar
 
 UNKNOWNS = ("normal_force", "a_tangential")
 
 
+@register
 @dataclass(frozen=True, eq=False)
-class LoopTrack(ByContent):
+class LoopTrack(Mechanism):
     """A car, small against the loop, on the inside of a vertical loop; its drive pushes along the track.
 
     Parameters
@@ -62,38 +62,29 @@ class LoopTrack(ByContent):
     mass: Number = parameter("mass", above=0.0)
 
     index: ClassVar[str] = "theta"
-    period: ClassVar[float] = 360.0
     position: ClassVar[str] = "position on the loop from the bottom, positive counter-clockwise"
     spot: ClassVar[str] = "position"
     pace: ClassVar[str] = "speed"
     motion: ClassVar[tuple[str, ...]] = ("speed", "thrust", "profile")
     defaults: ClassVar[Mapping[str, Any]] = {"thrust": 0.0, "profile": "constant"}
     profiles: ClassVar[Mapping[str, float]] = {"constant": 0.0, "energy": 1.0}
-    drives: ClassVar[dict[str, str]] = {}
-    links: ClassVar[tuple[str, ...]] = ()
-    pins: ClassVar[Pins] = {}
-    journals: ClassVar[Journals] = {}
-    bodies: ClassVar[tuple[Any, ...]] = ()
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
-    near_toggle_angle: ClassVar[float] = 0.0
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        refuse(field_problems(self))
+    @classmethod
+    def choices(cls) -> Mapping[str, Collection[str]]:
+        """Return the allowed profiles."""
+        return {"profile": cls.profiles}
 
-    def always_ok(self, drive: str) -> bool:
-        """Whether the numbers alone say that every sample is ok: not without its speed."""
-        return False
+    def motion_parameters(self, given: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the entry speed, the thrust, and 1 or 0 for work that counts or not."""
+        work_counts = self.profiles[given["profile"]]
+        return {"entry_speed": given["speed"], "thrust": given["thrust"], "work_counts": work_counts}
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name."""
         return {"radius": self.radius, "mass": self.mass}
-
-    def coordinates(self) -> dict[str, list[str]]:
-        """It brings no dimension of its own."""
-        return {}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         """All that can be computed; nothing drives it but the scene's thrust."""
@@ -115,20 +106,6 @@ class LoopTrack(ByContent):
             Equation("sum F along t over m", {"a_tangential": 1.0}, "raw_a_tangential"),
         )
 
-    def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
-        """Return the unknowns and rows of the square system as document 3 prints it."""
-        return self.unknowns(drive), self.equations(drive)
-
-    def findings(self) -> Checks:
-        """Nothing can be said of the loop alone."""
-        return ()
-
-    def jumps(self) -> tuple[Number, ...]:
-        return ()
-
-    def kinks(self) -> tuple[str, ...]:
-        return ()
-
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Where the car leaves the track or stalls [rad], from the bottom."""
         return ((events, self._numbers(motion)),)
@@ -136,10 +113,6 @@ class LoopTrack(ByContent):
     def driven_findings(self, motion: Mapping[str, Number]) -> Checks:
         """What becomes of the car in one lap."""
         return ((lap, self._numbers(motion)),)
-
-    def output_findings(self) -> Checks:
-        """Nothing is transmitted."""
-        return ()
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("normal_force",)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.degrees import cos_sin_low_words
-from linksweep.base.validate import Number, field_problems, parameter, refuse
+from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.slider_crank_limits import (
@@ -21,9 +21,10 @@ from linksweep.mechanisms.limits.slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters, link_problems
+from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters
+from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, CrankDriven, in_range, turned
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.rows.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
@@ -40,8 +41,9 @@ SLIDER = {
 """The slider as a body that does not turn, so that any inertia would do; its axes lie along and across the guide."""
 
 
+@register
 @dataclass(frozen=True, eq=False)
-class SliderCrank(CrankDriven):
+class SliderCrank(Mechanism):
     """A slider-crank: engine, pump, compressor.
 
     Parameters
@@ -98,12 +100,8 @@ class SliderCrank(CrankDriven):
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        refuse(link_problems(self, "crank", "rod") + field_problems(self) + self.branch_problems())
-        refuse(self._never_closes())
-
-    def _never_closes(self) -> list[str]:
+    def closure_problems(self) -> list[str]:
+        """Return why a single design cannot be assembled: crank and rod do not reach the guide."""
         a, b, e = self.crank.length, self.rod.length, self.offset
         if any(hasattr(number, "dims") for number in (a, b, e)) or abs(e) <= a + b:
             return []

@@ -96,7 +96,7 @@ def _transmission(results: Results) -> Iterator[Check]:
 def _friction(results: Results) -> Iterator[Check]:
     found = results.check
     jams = bool(np.isfinite(found["jam_angle"]).any()) and (results.part is None or not results.sound)
-    least, given = float(found["friction_to_jam"]), float(results.scene.mechanism.friction)  # type: ignore[union-attr]
+    least, given = float(found["friction_to_jam"]), float(results.scene.mechanism.friction)
     if np.isfinite(least):
         said = joined("wedges the slide from ", number(least), " on; here ", number(given, text=f"{given:g}"))
         yield Check("friction", said, not jams)

@@ -103,7 +103,7 @@ def geometry(results: Results) -> Markup:
 def _reversals(results: Results) -> Iterable[float]:
     """Crank angles at which it turns round, on its own branch."""
     found: xr.DataArray = results.geometry["reversal_angle"]  # type: ignore[index]
-    branch = results.scene.mechanism.branch  # type: ignore[union-attr]
+    branch = results.scene.mechanism.branch
     labels = found[found.dims[0]].values
     own = [label for label in labels if str(label).startswith(branch)] or list(labels)
     return found.sel({found.dims[0]: own}).values

@@ -113,9 +113,8 @@ class Scene(ByContent):
         super().__post_init__()
         for word in MOTION:
             object.__setattr__(self, word, _own_label(word, getattr(self, word)))
-        sound = isinstance(self.mechanism, MECHANISMS)
-        known = " or ".join(kind.__name__ for kind in MECHANISMS)
-        found = [] if sound else [f"mechanism = {quote(self.mechanism)}: must be a {known}"]
+        sound = isinstance(self.mechanism, Mechanism)
+        found = [] if sound else [f"mechanism = {quote(self.mechanism)}: must be a {' or '.join(MECHANISMS)}"]
         found += field_problems(self)
         found += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
         found += self._take_motion() if sound else []
@@ -142,14 +141,14 @@ class Scene(ByContent):
             found.append(f"{kind.motion[0]}: missing; give {kind.__name__} {_rule(kind.motion[0]).number}")
         for word in kind.defaults.keys() - {*given}:
             object.__setattr__(self, word, kind.defaults[word])
-        for word, allowed in {"drive": kind.drives, "profile": kind.profiles}.items():
-            found += choice_problems(word, getattr(self, word), allowed) if word in kind.motion else []
+        for word, allowed in kind.choices().items():
+            found += choice_problems(word, getattr(self, word), allowed)
         return found
 
     def _index_problems(self) -> list[str]:
-        """Parameters over the index of a mechanism of which nothing may change on the way round."""
+        """Return a line for each parameter over the index of a machine that is not the crank's angle."""
         index = self.mechanism.index
-        over = [path for path, array in self.arrays.items() if index in array.dims and "omega2" not in self.motion]
+        over = [path for path, array in self.arrays.items() if index in array.dims and index != "theta2"]
         return [f"{path} depends on {index}: it must be the same at every {self.mechanism.spot}" for path in over]
 
     def _interpolation_problems(self) -> list[str]:
@@ -161,7 +160,7 @@ class Scene(ByContent):
 
     def _of_mechanism(self, words: str) -> tuple[str, ...]:
         """The mechanism's drives or links; of an unsound one, those of any."""
-        kinds = (type(self.mechanism),) if isinstance(self.mechanism, MECHANISMS) else MECHANISMS
+        kinds = (type(self.mechanism),) if isinstance(self.mechanism, Mechanism) else tuple(MECHANISMS.values())
         return tuple(dict.fromkeys(word for kind in kinds for word in getattr(kind, words)))
 
     def _take_loads(self) -> list[str]:
@@ -358,12 +357,9 @@ class Scene(ByContent):
     @cached_property
     def motion(self) -> dict[str, Any]:
         """The numbers of its motion under the names that the physics wires by."""
-        profile = self.mechanism.profiles.get(self.profile)
-        steady = 0.0 if "alpha2" in self.mechanism.motion else None
-        alpha2 = steady if self.alpha2 is None else self.alpha2
-        named = {"omega2": self.omega2, "alpha2": alpha2, "entry_speed": self.speed, "thrust": self.thrust}
-        named |= {"work_counts": profile, "gravity_x": self.gravity[0], "gravity_y": self.gravity[1]}
-        return {name: number for name, number in named.items() if number is not None}
+        given = {word: getattr(self, word) for word in MOTION}
+        gravity = {"gravity_x": self.gravity[0], "gravity_y": self.gravity[1]}
+        return self.mechanism.motion_parameters(given) | gravity
 
     def _named_values(self) -> dict[str, Any]:
         named = {**self.motion, **self.mechanism.parameters()}

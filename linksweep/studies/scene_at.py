@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.base.validate import quote, refuse
 from linksweep.files.netcdf import scene_of
-from linksweep.mechanisms import INDICES
+from linksweep.mechanisms import indices
 from linksweep.scene.designs.choose import chosen, design_labels, places
 from linksweep.scene.scene import Scene
 
@@ -65,5 +65,5 @@ def _chosen_already(scene: Scene, one: xr.Dataset, wanted: Mapping[str, Any]) ->
 
 def _labels(ds: xr.Dataset) -> dict[str, np.ndarray]:
     """The labels of a Dataset's design dims; positions where a dim has none."""
-    sizes = {str(dim): n for dim, n in ds.sizes.items() if dim not in INDICES}
+    sizes = {str(dim): n for dim, n in ds.sizes.items() if dim not in indices()}
     return {dim: ds[dim].values if dim in ds.coords else np.arange(n) for dim, n in sizes.items()}

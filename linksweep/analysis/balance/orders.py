@@ -16,7 +16,7 @@ import xarray as xr
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, name_problems, quote, refuse
-from linksweep.mechanisms import INDICES
+from linksweep.mechanisms import indices
 from linksweep.results.compute import requested
 from linksweep.scene.grid import whole_turns
 
@@ -59,7 +59,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     """
     refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
     names = requested("of", of)
-    index = next((dim for dim in INDICES if dim in ds.dims), "theta2")
+    index = next((dim for dim in indices() if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])
     known = [str(name) for name in ds.data_vars if name != "status"]
     refuse([problem for name in names for problem in name_problems("of", name, known)] + count_problems("n", n))

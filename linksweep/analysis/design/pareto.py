@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import name_problems, quote, refuse
-from linksweep.mechanisms import INDICES
+from linksweep.mechanisms import indices
 from linksweep.results.compute import requested
 
 FRONT = "front"
@@ -126,7 +126,7 @@ def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
 def _variable_problems(path: str, values: xr.DataArray) -> list[str]:
     if values.dtype.kind not in "fiu":
         return [f"{path}: {values.name} holds {values.dtype} values, which must be numbers"]
-    over = [dim for dim in INDICES if dim in values.dims]
+    over = [dim for dim in indices() if dim in values.dims]
     advice = f'ls.peaks(scene, of=["{values.name}"]) has one number for each design; take those'
     return [f"{path}: {values.name} depends on {over[0]}, and must not; {advice}"] if over else []
 

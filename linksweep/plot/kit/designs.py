@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.analysis.design.pareto import has_peaks
 from linksweep.base.validate import name_problems, quote, refuse
-from linksweep.mechanisms import INDICES
+from linksweep.mechanisms import indices
 from linksweep.plot.kit.signals import symbol
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: bool = Fals
         return problems
     if numbers and ds[name].dtype.kind not in "fiub":
         return [f"{path}: {name} holds {ds[name].dtype} values, which must be numbers"]
-    over = [dim for dim in INDICES if dim in ds[name].dims]
+    over = [dim for dim in indices() if dim in ds[name].dims]
     advice = f'ls.peaks(scene, of=["{name}"]) has one number for each design; take those'
     return [f"{path}: {name} depends on {over[0]}, and must not; {advice}"] if over else []
 

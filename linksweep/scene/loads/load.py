@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, cast
+from typing import Any
 
 import xarray as xr
 
@@ -13,7 +13,7 @@ from linksweep.base.conversion import PAIRS, as_pair
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import Number, Rule, choice_problems, field_problems, pair_problems, parameter, quote
 from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, CrankDriven
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import LoadForm
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
@@ -134,13 +134,12 @@ class Load(ChangingLoad):
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if self.over is None:
             return []
-        machine = cast(CrankDriven, mechanism)
-        if machine.branch not in BRANCH_SIGN:
+        if mechanism.branch not in BRANCH_SIGN:
             return [f'{path}.over = {quote(self.over)}: is a position of one branch; give branch="open" or "crossed"']
-        problems = choice_problems(f"{path}.over", self.over, machine.strokes)
+        problems = choice_problems(f"{path}.over", self.over, mechanism.strokes)
         if problems:
             return problems
-        stroke = machine.strokes[self.over]
+        stroke = mechanism.strokes[self.over]
         for at, number in self._changing_at(path):
             said_unit = number[POSITION].attrs.get("units") if is_table(number) else None
             problems += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
@@ -179,7 +178,7 @@ class Load(ChangingLoad):
         return with_values(self, **values) if self.over is None else with_values(self, **values, **AT_ANGLES)
 
     def _stroke(self, mechanism: Mechanism) -> Stroke:
-        return cast(CrankDriven, mechanism).strokes[str(self.over)]
+        return mechanism.strokes[str(self.over)]
 
     def _positions(self, revolution: Revolution) -> tuple[str, xr.DataArray, Number]:
         """Kind of the positions, these over the angles, and where it acts: 1 on its way, 0 on the other."""

@@ -1,0 +1,215 @@
+"""The base class of every machine, and the register in which all machines stand."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, TypeVar
+
+import numpy as np
+
+from linksweep.base.equality import ByContent
+from linksweep.base.validate import Number, choice_problems, field_problems, refuse
+from linksweep.engine.quantity import Table
+from linksweep.engine.run import Field
+from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.links import Bar, Disk, Link, link_problems
+from linksweep.mechanisms.rows.bodies import Body, Equation
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, OverDesigns
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.pins import Journals, Pins
+from linksweep.mechanisms.strokes import Stroke
+
+Kind = TypeVar("Kind", bound="type[Mechanism]")
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism(ByContent, ABC):
+    """A machine: a frozen dataclass of its numbers, and a table of the quantities that can be computed of it.
+
+    Unless it states otherwise, its crank turns as a scene prescribes with `omega2` and `alpha2`, and the results are
+    over the crank angle `theta2`. Derive a dataclass, implement the abstract methods, and register it::
+
+        @register
+        @dataclass(frozen=True, eq=False)
+        class ScotchYoke(Mechanism):
+            crank: Link | Bar | Disk
+            yoke_mass: Number = parameter("mass", at_least=0.0)
+
+            links = ("crank", "yoke")
+            ...
+
+    Scenes, scene files, sweeps, checks, peaks and studies then take it like the machines of this package.
+    """
+
+    index: ClassVar[str] = "theta2"
+    """The dimension of a sweep."""
+    period: ClassVar[float] = 360.0
+    """One turn, in units of the index [degree]."""
+    position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
+    """Description of the index in results."""
+    spot: ClassVar[str] = "crank angle"
+    """One value of the index, in a sentence."""
+    pace: ClassVar[str] = "omega2"
+    """The quantity that states how quickly the index changes."""
+    motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
+    """Parameters of a scene that the machine takes besides gravity; the first is required."""
+    defaults: ClassVar[Mapping[str, Any]] = {"drive": "crank"}
+    """Values of those parameters of `motion` that a scene leaves out."""
+    drives: ClassVar[Mapping[str, str]] = {}
+    """Names of the unknown torque or force, by the part that can be driven."""
+    links: ClassVar[tuple[str, ...]] = ()
+    """Roles of the moving links, on which loads may act."""
+    pins: ClassVar[Pins] = {}
+    """Numbers of the two links of each pin, by its letter."""
+    journals: ClassVar[Journals] = {}
+    """Number of the link that carries the journal of each pin."""
+    bodies: ClassVar[tuple[Body, ...]] = ()
+    """The moving links as bodies with mass."""
+    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
+    """Meaning of each value of `status`."""
+    round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
+    """Description of the status of peaks."""
+    round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
+    """Meaning of each value of the status of peaks."""
+    branch = "open"
+    """The assembly: "open", "crossed" or "both"; a machine with a single assembly has no such parameter."""
+    friction = 0.0
+    """Coefficient of Coulomb friction of the part that slides; a machine without one has no such parameter."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        own_links = link_problems(self, *self.parts())
+        refuse(own_links + field_problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both")))
+        refuse(self.closure_problems())
+
+    @abstractmethod
+    def parameters(self) -> dict[str, Any]:
+        """Return the numbers of the machine under the names that the physics takes; a Field where it adds a dim."""
+
+    @abstractmethod
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        """Return the table of all quantities that can be computed for this drive and loads of these forms."""
+
+    @abstractmethod
+    def kinematics(self) -> tuple[str, ...]:
+        """Return the names of the kinematic quantities that a sweep computes by default."""
+
+    @abstractmethod
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        """Return the unknowns of the square system of equations."""
+
+    @abstractmethod
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """Return the rows of the square system of equations."""
+
+    @abstractmethod
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        """Return the names of the quantities whose peaks are computed by default."""
+
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        """Return the names of the forces and torques that a sweep computes by default."""
+        return self.unknowns(drive)
+
+    def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
+        """Return unknowns and rows of the square system as the source document prints them."""
+        return self.unknowns(drive), self.equations(drive)
+
+    @classmethod
+    def choices(cls) -> Mapping[str, Collection[str]]:
+        """Return the allowed values of each parameter of `motion` that is a choice."""
+        return {"drive": cls.drives}
+
+    def motion_parameters(self, given: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the numbers of the motion under the names that the physics takes.
+
+        `given` are a scene's parameters by name.
+        """
+        alpha2 = given["alpha2"]
+        return {"omega2": given["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
+
+    def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
+        """Return functions that derive further numbers of the physics from the design and its motion."""
+        return ()
+
+    def parts(self) -> dict[str, Link | Bar | Disk]:
+        """Return the links that are parameters of the machine, by role."""
+        own = {item.name for item in fields(self)}
+        return {role: getattr(self, role) for role in self.links if role in own}
+
+    def closure_problems(self) -> list[str]:
+        """Return why a single design cannot be assembled at any angle; one of a batch only has no values."""
+        return []
+
+    @property
+    def branch_sign(self) -> float | Field:
+        """1 for open, -1 for crossed; for both, the two over the dim `branch`."""
+        return BRANCH_SIGN.get(self.branch, Field(("branch",), np.array(list(BRANCH_SIGN.values()))))
+
+    def coordinates(self) -> dict[str, list[str]]:
+        """Return the labels of each dim that the machine itself adds to results."""
+        return {"branch": list(BRANCH_SIGN)} if self.branch == "both" else {}
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        """Positions of links that a load may follow, by name. For one branch only."""
+        return {}
+
+    @property
+    def near_toggle_angle(self) -> Number:
+        """Angle [degree] about which, and opposite to which, the machine comes nearest to a toggle."""
+        return 0.0
+
+    @property
+    def closes_everywhere(self) -> bool:
+        """Whether every design closes at every angle, with a margin far above rounding."""
+        return False
+
+    def always_ok(self, drive: str) -> bool:
+        """Return whether the numbers alone ensure status 0 at every sample; a drive beyond the crank has dead
+        centres."""
+        return drive == "crank" and self.closes_everywhere
+
+    def jumps(self) -> tuple[Number, ...]:
+        """Return the crank angles [degree] at which a force may jump."""
+        return ()
+
+    def kinks(self) -> tuple[str, ...]:
+        """Return the quantities at whose change of sign others have a kink."""
+        return ()
+
+    def findings(self) -> Checks:
+        """Return the closed-form checks of the machine alone, each with its numbers."""
+        return ()
+
+    def dead_centre_findings(self, drive: str) -> Checks:
+        """Return the checks for angles at which the driven part stands still; a crank never does."""
+        return ()
+
+    def output_findings(self) -> Checks:
+        """Return the checks for angles at which the output stands still, where its force is unbounded."""
+        return self.dead_centre_findings("rocker")
+
+    def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
+        """Return the closed-form checks that depend on the motion and its drive."""
+        return self.dead_centre_findings(motion["drive"])
+
+
+MECHANISMS: dict[str, type[Mechanism]] = {}
+"""Every registered machine by the name of its class, which is its `type` in a scene file."""
+
+
+def register(kind: Kind) -> Kind:
+    """Add a machine to `MECHANISMS`; a decorator of its dataclass, or one call.
+
+    Scene, scene files and results look machines up in `MECHANISMS` at the moment of use, so that a machine may be
+    registered at any time; ``del MECHANISMS["ScotchYoke"]`` removes it.
+    """
+    MECHANISMS[kind.__name__] = kind
+    return kind
+
+
+def indices() -> tuple[str, ...]:
+    """Return the names that the dimension of a sweep may have."""
+    return tuple(dict.fromkeys(kind.index for kind in MECHANISMS.values()))
