@@ -1,14 +1,16 @@
-"""Results of scenes whose numbers are yet to be computed: Datasets of dask arrays, one task a block of designs.
+"""Compute scenes of lazy numbers block by block: Datasets of dask arrays, one task a block of designs.
 
-A block's task makes the scene of its designs, checks it at the door, and does with it what is done with any scene: so
-the numbers are the same, to the bit. What results look like is known from one design of made-up numbers.
+A block's task makes the scene of its designs, checks it in the constructor, and calls the function that any scene goes
+to: so the numbers are the same, to the bit. One design of made-up numbers shows what the results look like.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from functools import wraps
+from inspect import unwrap
+from typing import Any, NamedTuple, ParamSpec
 
 import numpy as np
 import xarray as xr
@@ -25,61 +27,87 @@ Dims = Mapping[Any, tuple[Any, ...]]
 Known = Mapping[Any, xr.Variable]
 
 
+P = ParamSpec("P")
+Function = Callable[P, xr.Dataset]
+
+
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What is done with the numbers of a block: all that the results of two requests may differ in.
+    """A function and its arguments, for the numbers of one block: all that two requests may differ in.
 
     dask takes it as it is, where it would look into a tuple, and for a Scene, which has a hash by content, among its
     keys.
     """
 
     scene: Scene
-    function: Callable
+    function: Callable[..., xr.Dataset]
+    arguments: tuple[Any, ...]
     options: Mapping[str, Any]
     dims: Dims
     sizes: Mapping[Any, int]
     labels: list[Any]
 
     def __call__(self, numbers: xr.Dataset) -> xr.Dataset:
-        """The result of one block, each variable over the dims that it has in the whole."""
+        """Return the result of one block, each variable over the dims that it has in the whole."""
         index = self.scene.mechanism.index
         arrays = {path: _renamed(numbers[path], _along(path), index) for path in self.scene.arrays}
-        found = self.function(replaced(self.scene, arrays), **self.options)
+        ds = self.function(replaced(self.scene, arrays), *self.arguments, **self.options)
         sizes = {**self.sizes, **numbers.sizes}
         shapes = {name: {dim: sizes[dim] for dim in dims} for name, dims in self.dims.items()}
-        variables = {name: found[name].variable.set_dims(shape) for name, shape in shapes.items()}
-        return xr.Dataset(variables, {name: found[name].variable for name in self.labels})
+        variables = {name: ds[name].variable.set_dims(shape) for name, shape in shapes.items()}
+        return xr.Dataset(variables, {name: ds[name].variable for name in self.labels})
 
 
-def by_blocks(function: Callable, scene: Scene, of_samples: bool, **options: Any) -> xr.Dataset:
-    """function(scene, **options); where some of the scene's numbers are lazy, block by block, when they are asked for.
+def by_blocks(*, of_samples: bool) -> Callable[[Function[P]], Function[P]]:
+    """Decorate a function of a scene: where numbers of the scene are lazy, so is the Dataset that it returns.
 
     Blocks are the chunks of the lazy parameters, each computed by one thread unless `threads` says otherwise. A lazy
-    number without dims, or one over a dim of its own name, which xarray holds in memory, is computed at once.
+    number without dims, or one over a dim of its own name, which xarray holds in memory, is computed at once. The
+    function checks its arguments itself: it is called at once in any case, for one design where numbers are lazy.
 
     Parameters
     ----------
-    function : of a scene and options, that gives a Dataset
-    of_samples : whether its numbers are of one sample each. Then what designs share is what any of them has. Otherwise
-        dims along which they share something are not cut; and the dims of `status` depend on the numbers: lazy, it has
-        all that it could have
+    of_samples : bool
+        True where each number belongs to one sample: designs that share a variable then share its non-NaN value.
+        Otherwise dims along which designs share something are not cut, and the dims of `status` depend on the numbers:
+        lazy, it has all that it could have.
     """
-    lazy = lazy_paths(scene)
-    at_once = [path for path in lazy if scene.arrays[path].dims in ((), (path,))]
-    scene = in_memory(scene, at_once)
-    if lazy == at_once:
-        return function(scene, **options)
-    options["threads"] = options["threads"] or 1
-    one, order, judged = _looks(function, scene, options)
+
+    def decorate(function: Function[P]) -> Function[P]:
+        @wraps(function)
+        def computed(*arguments: P.args, **options: P.kwargs) -> xr.Dataset:
+            scene = arguments[0] if arguments else options.get("scene")
+            if not isinstance(scene, Scene) or not lazy_paths(scene):
+                return function(*arguments, **options)
+            others = {name: _reusable(value) for name, value in options.items() if name != "scene"}
+            return _lazily(computed, scene, arguments[1:], others, of_samples)
+
+        return computed
+
+    return decorate
+
+
+def _reusable(value: Any) -> Any:
+    return list(value) if isinstance(value, Iterator) else value
+
+
+def _lazily(
+    function: Callable, scene: Scene, arguments: tuple[Any, ...], options: dict[str, Any], of_samples: bool
+) -> xr.Dataset:
+    scene = in_memory(scene, [path for path in lazy_paths(scene) if scene.arrays[path].dims in ((), (path,))])
+    if not lazy_paths(scene):
+        return function(scene, *arguments, **options)
+    options["threads"] = 1 if options.get("threads") is None else options["threads"]
+    one, order, deciding = _looks(lambda scene: unwrap(function)(scene, *arguments, **options), scene)
     known = _known(scene, one)
     dims: Dims = {name: v.dims for name, v in one.variables.items() if name not in known}
     dims = dims if of_samples else {**dims, "status": order}
-    shared = {name: [dim for dim in judged if dim not in own] for name, own in dims.items()}
+    shared = {name: [dim for dim in deciding if dim not in own] for name, own in dims.items()}
     numbers = _numbers(scene, uncut=() if of_samples else {dim for beyond in shared.values() for dim in beyond})
     spread = {name: (*own, *shared[name]) for name, own in dims.items()}
-    task = Task(stand_in(scene), function, options, spread, dict(one.sizes), list(one.indexes))
-    found = xr.map_blocks(_done, numbers, kwargs={"task": task}, template=_template(one, spread, known, numbers))
-    variables = known | {name: _any(found[name].variable, shared[name]) for name in dims}
+    task = Task(stand_in(scene), function, arguments, options, spread, dict(one.sizes), list(one.indexes))
+    blocks = xr.map_blocks(_compute, numbers, kwargs={"task": task}, template=_template(one, spread, known, numbers))
+    variables = known | {name: _any(blocks[name].variable, shared[name]) for name in dims}
     data, coordinates = ({name: variables[name] for name in part} for part in (one.data_vars, one.coords))
     return xr.Dataset(data, coordinates, _attributes(scene, one))
 
@@ -89,26 +117,26 @@ class Looks(NamedTuple):
 
     one: xr.Dataset
     order: tuple[str, ...]
-    judged: tuple[str, ...]
+    deciding: tuple[str, ...]
 
 
-def _looks(function: Callable, scene: Scene, options: Mapping[str, Any]) -> Looks:
+def _looks(function: Callable[[Scene], xr.Dataset], scene: Scene) -> Looks:
     import dask  # here and below: only those who have dask arrays have dask
 
     with dask.config.set(scheduler="synchronous"), np.errstate(all="ignore"):  # no work for a cluster, and no numbers
         first = stand_in(scene)
         inputs = first.at_one_angle.inputs
-        judged = plan(first.table, ("status",), inputs.forms)
-        dims = judged.dims(judged.outputs["status"])
-        return Looks(function(first, **options), tuple(inputs.sizes), tuple(d for d in dims if d != judged.index))
+        request = plan(first.table, ("status",), inputs.forms)
+        dims = request.dims(request.outputs["status"])
+        return Looks(function(first), tuple(inputs.sizes), tuple(dim for dim in dims if dim != request.index))
 
 
-def _done(numbers: xr.Dataset, task: Task) -> xr.Dataset:
-    return task(numbers)  # to dask, two tasks differ by their words, not by their function
+def _compute(numbers: xr.Dataset, task: Task) -> xr.Dataset:
+    return task(numbers)  # to dask, two tasks differ by their arguments, not by their function
 
 
 def _any(variable: xr.Variable, shared: list[str]) -> xr.Variable:
-    """What any of the designs has that share it."""
+    """Reduce over the dims in `shared`, keeping any non-NaN value."""
     if not shared:
         return variable
     import dask.array
@@ -123,13 +151,15 @@ def _not_nan(values: np.ndarray, axis: tuple[int, ...], keepdims: Any) -> np.nda
 
 
 def _known(scene: Scene, one: xr.Dataset) -> dict[Any, xr.Variable]:
-    """What takes no blocks: labels, and the parameters as they were given."""
-    given = design_coordinates(scene)
-    return {name: one.variables[name] for name in one.indexes} | {k: v for k, v in given.items() if k in one.coords}
+    """Return the variables that take no blocks: labels, and the scene's own parameters."""
+    parameters = design_coordinates(scene)
+    return {name: one.variables[name] for name in one.indexes} | {
+        k: v for k, v in parameters.items() if k in one.coords
+    }
 
 
 def _numbers(scene: Scene, uncut: Iterable[str]) -> xr.Dataset:
-    """All arrays of the scene in one Dataset, cut alike along the design dims, but for some, and whole along the index.
+    """Return the arrays of the scene in one Dataset, chunked alike along all design dims but those in `uncut`.
 
     Designs without labels are counted, so that messages say which one it is.
     """
@@ -142,7 +172,7 @@ def _numbers(scene: Scene, uncut: Iterable[str]) -> xr.Dataset:
 
 
 def _along(path: str) -> str:
-    """The dim of one array over the index: each is given at angles of its own."""
+    """Return the dim of one array over the index: each has angles of its own."""
     return f"{path} along the index"
 
 
@@ -151,7 +181,7 @@ def _renamed(array: xr.DataArray, dim: str, name: str) -> xr.DataArray:
 
 
 def _template(one: xr.Dataset, dims: Dims, known: Known, numbers: xr.Dataset) -> xr.Dataset:
-    """What the blocks give together."""
+    """Return a Dataset that looks like all blocks together."""
     import dask.array
 
     sizes = {**one.sizes, **numbers.sizes}
@@ -164,7 +194,7 @@ def _template(one: xr.Dataset, dims: Dims, known: Known, numbers: xr.Dataset) ->
 
 
 def _attributes(scene: Scene, one: xr.Dataset) -> dict[str, Any]:
-    """Those of the whole: with the scene as text, unless some of it is lazy and not among the coordinates."""
+    """Return the attributes of the whole: with the scene as text, unless the coordinates lack a lazy parameter."""
     beside = kept_beside(scene, one.coords)
     if not {*lazy_paths(scene)} <= {*beside}:
         return {name: value for name, value in one.attrs.items() if name != "scene"}

@@ -53,6 +53,7 @@ class Wanted(NamedTuple):
     powers: tuple[Power, ...] = ()
 
 
+@by_blocks(of_samples=False)
 def peaks(
     scene: Scene | MultiCylinder,
     of: str | Iterable[str] | None = None,
@@ -118,57 +119,53 @@ def peaks(
         return peaks_of_cylinders(scene.in_memory, of, threads)
     require_scene(scene)
     names = None if of is None else requested("of", of)
-    return by_blocks(_peaks, scene, of_samples=False, names=names, theta2=theta2, threads=threads, solver=solver)
+    items = _wanted(scene, names)
+    result = _exact(scene, items, threads) if theta2 is None else _of_samples(scene, theta2, items, threads, solver)
+    angles = "" if theta2 is None else f", theta2={len(result.grid.angles)}"
+    by = "" if solver == "fast" else f", solver={solver!r}"
+    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles}{by})"
+    return _dataset(scene, items, result, command, threads)
 
 
-def peaks_of_part(scene: Scene, of: Iterable[str], part: Part) -> xr.Dataset:
+@by_blocks(of_samples=False)
+def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
     """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
-    return by_blocks(_peaks, scene, of_samples=False, names=requested("of", of), part=part)
+    names = requested("of", of)
+    items = _wanted(scene, names)
+    result = _exact(scene, items, threads, part)
+    return _dataset(scene, items, result, f"linksweep.peaks(scene, of={names})", threads)
 
 
 def _solver_problems(solver: Any, theta2: Any) -> list[str]:
     problems = choice_problems("solver", solver, SOLVERS)
-    said = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
-    return problems or ([said] if solver == "superposed" and theta2 is None else [])
+    missing = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
+    return problems or ([missing] if solver == "superposed" and theta2 is None else [])
 
 
-def _peaks(
-    scene: Scene,
-    names: list[str] | None,
-    theta2: Any = None,
-    threads: int | None = None,
-    solver: str = "fast",
-    part: Part | None = None,
-) -> xr.Dataset:
-    """The same of a scene whose numbers are in memory."""
-    asked = _wanted(scene, names)
-    index = scene.mechanism.index
-    if theta2 is None:
-        refuse(angles_missing(scene))
-        turns = round(scene.period / scene.mechanism.period)
-        looked = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
-        grid, sampled = crank_grid(looked, scene.period, index), scene.at_one_angle
-    else:
-        grid = in_order(crank_grid(theta2, scene.period, index))
-        sampled = scene.at(grid)
-    assembly = assembly_of(scene, threads)
-    if theta2 is None:
-        found, averages = _exact(scene, asked, assembly, threads, part)
-        assembly = with_dead_centres(scene, assembly)
-    else:
-        found, averages = _of_samples(sampled, grid, asked, threads, solver)
+Averages = dict[Power, Field]
+
+
+class Result(NamedTuple):
+    """Largest values and means, with the scene at the angles that decide its status, and how far it is assembled."""
+
+    sampled: Scene
+    grid: Grid
+    assembly: Field
+    largest: dict[str, Found]
+    averages: Averages
+
+
+def _dataset(scene: Scene, items: list[Wanted], result: Result, command: str, threads: int | None) -> xr.Dataset:
+    sampled, grid, assembly, largest, averages = result
     order = tuple(sampled.inputs.sizes)
-    status = status_of(scene, sampled, grid, assembly, found, averages, threads)
-    variables: dict[str, xr.Variable] = {}
-    for item in asked:
-        for name, field, units, words in named(item, found, averages, scene.mechanism.spot):
-            variables[name] = variable(field, units, words, order)
-    variables["status"] = status
-    angles = "" if theta2 is None else f", theta2={np.size(grid.angles)}"
-    by = "" if solver == "fast" else f", solver={solver!r}"
-    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles}{by})"
+    status = status_of(scene, sampled, grid, assembly, largest, averages, threads)
+    variables = {
+        name: variable(field, units, meaning, order)
+        for item in items
+        for name, field, units, meaning in named(item, largest, averages, scene.mechanism.spot)
+    }
     coordinates = design_coordinates(sampled)
-    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
+    return xr.Dataset(variables | {"status": status}, coordinates, provenance(scene, command, coordinates))
 
 
 def wanted(
@@ -204,28 +201,36 @@ def _takes(quantity: Quantity, summary: str) -> Wanted:
     return Wanted(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
 
 
-Averages = dict[Power, Field]
+def _signals(items: list[Wanted]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(signal for item in items for signal in item.signals))
 
 
-def _exact(
-    scene: Scene, wanted: list[Wanted], assembly: Field, threads: int | None, part: Part | None
-) -> tuple[dict[str, Found], Averages]:
-    signals = tuple(dict.fromkeys(signal for item in wanted for signal in item.signals))
-    powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
+def _powers(items: list[Wanted]) -> tuple[Power, ...]:
+    return tuple(dict.fromkeys(power for item in items for power in item.powers))
+
+
+def _exact(scene: Scene, items: list[Wanted], threads: int | None, part: Part | None = None) -> Result:
+    refuse(angles_missing(scene))
+    turns = round(scene.period / scene.mechanism.period)
+    angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
+    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    assembly, signals, powers = assembly_of(scene, threads), _signals(items), _powers(items)
     if part is not None:
-        return peaks_within(scene, signals, part, threads), {}
-    found = exact_peaks(scene, signals, assembly, threads) if signals else {}
-    return found, means(scene, powers, threads) if powers else {}
+        largest = peaks_within(scene, signals, part, threads)
+    else:
+        largest = exact_peaks(scene, signals, assembly, threads) if signals else {}
+    averages = means(scene, powers, threads) if powers and part is None else {}
+    return Result(scene.at_one_angle, grid, with_dead_centres(scene, assembly), largest, averages)
 
 
-def _of_samples(
-    sampled: Scene, grid: Grid, wanted: list[Wanted], threads: int | None, solver: str
-) -> tuple[dict[str, Found], Averages]:
-    """The largest of a grid's samples, as they stand."""
-    exact = [f"{item.quantity.name}_{item.summary}" for item in wanted if item.summary in ("bound", "samples")]
+def _of_samples(scene: Scene, theta2: ArrayLike, items: list[Wanted], threads: int | None, solver: str) -> Result:
+    """Return the largest of a grid's samples, as they are."""
+    exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
-    largest = {s: Reduction("largest_sample", s) for item in wanted for s in item.signals}
-    powers = tuple(dict.fromkeys(power for item in wanted for power in item.powers))
+    grid = in_order(crank_grid(theta2, scene.period, scene.mechanism.index))
+    sampled = scene.at(grid)
+    largest = {signal: Reduction("largest_sample", signal) for signal in _signals(items)}
+    powers = _powers(items)
     pace = changing_pace(sampled, sampled.inputs)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
@@ -237,8 +242,9 @@ def _of_samples(
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
         found[signal] = Found(value, angle, value, value)
-    means = {power: reduced[reduction][0] for power, reduction in averages.items()}
-    return found, means | (_over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {})
+    averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
+    averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
+    return Result(sampled, grid, assembly_of(scene, threads), found, averaged)
 
 
 def _over_time(

@@ -20,6 +20,7 @@ from linksweep.scene.scene import Scene
 SOLVERS = ("fast", "superposed", "dense")
 
 
+@by_blocks(of_samples=True)
 def sweep(
     scene: Scene,
     theta2: ArrayLike = 720,
@@ -66,14 +67,8 @@ def sweep(
     """
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
-    wanted = None if outputs is None else requested("outputs", outputs)
-    return by_blocks(_sweep, scene, of_samples=True, theta2=theta2, outputs=wanted, solver=solver, threads=threads)
-
-
-def _sweep(scene: Scene, theta2: Any, outputs: list[str] | None, solver: str, threads: int | None) -> xr.Dataset:
-    """The same of a scene whose numbers are in memory."""
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
-    names = _names(scene, outputs)
+    names = default_names(scene) if outputs is None else _names(scene, requested("outputs", outputs))
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
@@ -92,9 +87,7 @@ def default_names(scene: Scene) -> tuple[str, ...]:
     return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
 
 
-def _names(scene: Scene, names: list[str] | None) -> tuple[str, ...]:
-    if names is None:
-        return default_names(scene)
+def _names(scene: Scene, names: list[str]) -> tuple[str, ...]:
     known = [*scene.table.quantity, "status"]
     refuse([problem for name in names for problem in quantity_problems("outputs", name, known, scene)])
     return tuple(name for name in names if name != "status")
