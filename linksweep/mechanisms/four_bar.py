@@ -210,7 +210,9 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool
     rows = [
         *(near_toggle_rows("ground") if turned else straight_rows("cos2", "sin2")),
         *_position(),
-        Row(four_bar.side_of_diagonal, ("side",)) if goes_through else Row(planar.same, ("side",), ("branch_sign",)),
+        Row(four_bar.side_of_diagonal, ("side",))
+        if goes_through
+        else Row(planar.identity, ("side",), ("branch_sign",)),
         *_rates(),
         *_forces(drive),
         *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
@@ -267,7 +269,7 @@ def _transmission() -> list[Row | Total]:
     radii = ("crank_length", "rocker_length")
     return [
         *crank_pin_slope_rows(),
-        Row(planar.same, ("velocity_ratio",), ("ratio4",)),
+        Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
         Row(advantage.torque_ratio, ("torque_ratio",)),
         Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", *radii)),
     ]

@@ -127,8 +127,8 @@ def _table() -> Table:
     gated = ("squared_speed", "normal_force", "a_tangential")
     rows: list[Row | Total] = [
         *straight_rows("cos2", "sin2"),
-        Row(planar.same, ("near_toggle_near",), (1.0,)),
-        Row(planar.same, ("near_toggle_far",), (1.0,)),
+        Row(planar.identity, ("near_toggle_near",), (1.0,)),
+        Row(planar.identity, ("near_toggle_far",), (1.0,)),
         Row(loop_track.gravity_on_track, ("gravity_forward", "gravity_inward")),
         Row(loop_track.squared_speed, ("raw_squared_speed",)),
         Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),
@@ -138,7 +138,7 @@ def _table() -> Table:
             ("status",),
             ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts"),
         ),
-        Row(loop_track.only_on_track, gated, ("status", "raw_squared_speed", "raw_force", "raw_a_tangential")),
+        Row(loop_track.mask_off_track, gated, ("status", "raw_squared_speed", "raw_force", "raw_a_tangential")),
         Row(loop_track.centripetal, ("a_radial",)),
         Row(planar.root, ("speed",), ("squared_speed",)),
         Row(planar.square, ("a_total_squared",), ("a_radial", "a_tangential")),

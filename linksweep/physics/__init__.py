@@ -1,5 +1,5 @@
-"""What is true: small scalar functions, floats in and floats out, whose argument names are the wiring.
+"""Laws of mechanics as small scalar functions: floats in, floats out; the argument names are the wiring.
 
-They hold arithmetic, `sqrt`, `atan2` and `where` only: no loops, no arrays, nothing raised. The engine
-traces them, so the same source runs compiled, on numpy arrays and on 50-digit numbers.
+They use arithmetic, `sqrt`, `atan2` and `where` only: no loops, no arrays, no exceptions. The engine traces them, so
+one source runs compiled, on numpy arrays and on 50-digit numbers.
 """

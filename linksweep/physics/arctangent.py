@@ -1,12 +1,12 @@
-"""Angle of a vector by + − * / alone: the same bits on any machine, interpreted or compiled.
+"""Angle of a vector by + − * / alone: equal bits on any machine, interpreted or compiled.
 
-In the first eighth of the turn the slope t of the vector is at most 1. Up to tan 22.5° the series
+In the first eighth of a turn the slope t of the vector is at most 1. Up to tan 22.5° the series
 
     arctan t = t + t·t²·P(t²)
 
-holds as it stands; beyond, with (t − 1)/(t + 1), the slope seen from 45°. P is the polynomial of least largest error
-(3e-17) over that range, to ten digits the series −1/3 + t²/5 − …; the rest is symmetry. Errors stay below two units
-in the last place.
+is used directly; beyond, (t − 1)/(t + 1) takes the place of t, the slope seen from 45°. P is the minimax polynomial
+over that range (largest error 3e-17), close to the series −1/3 + t²/5 − …; symmetry covers the other eighths. Errors
+stay below two units in the last place.
 """
 
 import math
@@ -27,21 +27,21 @@ SERIES = (
     0.1999999999999548,
     -0.3333333333333333,
 )
-PI_REST = 1.2246467991473532e-16
-"""What the float math.pi lacks of π."""
+PI_LO = 1.2246467991473532e-16
+"""Low word of π: π − math.pi."""
 
 
 def arctangent(y: Number, x: Number) -> Number:
-    """Angle of the vector (x, y) from x [rad], in (−π, π]."""
+    """Return the angle of the vector (x, y) from x [rad], in (−π, π]."""
     width, height = abs(x), abs(y)
     steep = height > width
     low, high = where(steep, width, height), where(steep, height, width)
     beyond = low > TAN_EIGHTH * high
     slope = where(beyond, low - high, low) / where(beyond, low + high, high)
     bend = slope * (slope * slope * _series(slope * slope))
-    angle = where(beyond, 0.25 * math.pi + (slope + (bend + 0.25 * PI_REST)), slope + bend)
-    angle = where(steep, 0.5 * math.pi - (angle - 0.5 * PI_REST), angle)
-    angle = where(x < 0.0, math.pi - (angle - PI_REST), angle)
+    angle = where(beyond, 0.25 * math.pi + (slope + (bend + 0.25 * PI_LO)), slope + bend)
+    angle = where(steep, 0.5 * math.pi - (angle - 0.5 * PI_LO), angle)
+    angle = where(x < 0.0, math.pi - (angle - PI_LO), angle)
     return where(y < 0.0, -angle, angle)
 
 

@@ -1,13 +1,13 @@
-"""The few operations beyond + - * / that physics may use, on floats and on the engine's traced values alike."""
+"""The few operations beyond + - * / that physics may use, for floats and for the engine's traced values."""
 
 import math
 from typing import Any
 
 Number = Any
-"""A float, or whatever stands in for one: a traced value, a numpy array, a 50-digit number."""
+"""A float, or a stand-in for one: a traced value, a numpy array, a 50-digit number."""
 
 NOISE = 32.0 * 2.0**-52
-"""A cross product of two links, relative to their lengths, below which it is nothing but rounding."""
+"""Bound on the rounding error of a cross product of two links, relative to the product of their lengths."""
 
 
 def sqrt(x: Number) -> Number:
@@ -19,7 +19,7 @@ def atan2(y: Number, x: Number) -> Number:
 
 
 def where(condition: Number, x: Number, y: Number) -> Number:
-    """`x` where the condition holds, else `y`; both are evaluated."""
+    """Return `x` where the condition holds, else `y`; both are evaluated."""
     return (x if condition else y) if isinstance(condition, bool) else condition.where(x, y)
 
 

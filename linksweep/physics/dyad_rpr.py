@@ -1,10 +1,10 @@
 """The dyad of a pin, a slider and a pin (RPR): a block on pin B slides along a line that turns about pin D.
 
-With u the direction of the line and n = u⊥ its left normal, the line passes D at the offset e and B lies on it at s:
+With u the direction of the line and n = u⊥ its left normal, the line passes D at the offset e, and B lies at s on it:
 
     w = D→B = s u + e n,    s = ±√(|w|² − e²),    u = (s w − e w⊥)/|w|²         open branch: s > 0, B ahead of D
 
-s² comes from the mechanism in a form that does not cancel. Block and line turn together, ω3 = ω4.
+The mechanism supplies s² in a form that does not cancel. Block and line turn together, ω3 = ω4.
 """
 
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
@@ -14,7 +14,7 @@ from linksweep.physics.planar import cross, dot
 def rpr_close(
     DBx: Number, DBy: Number, slide_squared: Number, offset: Number, branch_sign: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """s, its inverse, and the line's direction u."""
+    """Return s, 1/s and the line's direction u."""
     root = sqrt(slide_squared)
     slide, inverse = branch_sign * root, 1.0 / (slide_squared + offset * offset)
     along, across = slide * inverse, offset * inverse
@@ -22,12 +22,15 @@ def rpr_close(
 
 
 def rpr_status(slide_squared: Number, noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: D→B square to the line, as far as lengths and angle can tell."""
+    """Return 0 ok, 1 cannot assemble, or 2 toggle: D→B perpendicular to the line within lengths' and angle's error."""
     return where(abs(slide_squared) > noise, where(slide_squared > 0.0, 0.0, 1.0), 2.0)
 
 
 def rpr_velocity_ratios(crank_along: Number, slide_leverage: Number, inverse_slide: Number) -> tuple[Number, Number]:
-    """ω4/ω2 and s'/ω2, from ω2 × r2 = s' u + ω4 × w: across the line, r2·u = s ω4/ω2; along w, r2 × w = s s'/ω2."""
+    """Return ω4/ω2 and s'/ω2, from ω2 × r2 = s' u + ω4 × w.
+
+    Across the line, r2·u = s ω4/ω2; along w, r2 × w = s s'/ω2.
+    """
     return crank_along * inverse_slide, slide_leverage * inverse_slide
 
 
@@ -42,7 +45,7 @@ def rpr_accelerations(
     r3x: Number,
     r3y: Number,
 ) -> tuple[Number, Number]:
-    """α4 and s'', from a_B = s'' u + 2 ω4 × s' u (Coriolis) + α4 × w − ω4² w, across the line and along it."""
+    """Return α4 and s'', from a_B = s'' u + 2 ω4 × s' u (Coriolis) + α4 × w − ω4² w, across the line and along it."""
     square4 = omega4 * omega4
     across = cross(r3x, r3y, aBx, aBy) - 2.0 * (slide_velocity * omega4)
     alpha4 = (across + square4 * offset) * inverse_slide
@@ -50,5 +53,6 @@ def rpr_accelerations(
 
 
 def rpr_transmission_angle(slide: Number, offset: Number) -> Number:
-    """Acute angle between D→B and the line's normal [degree]: 90 where B lies on a line through D, 0 at a toggle."""
+    """Return the acute angle between D→B and the line's normal [degree]: 90 where the line passes through D, 0 at a
+    toggle."""
     return degrees(atan2(abs(slide), abs(offset)))

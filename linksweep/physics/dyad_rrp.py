@@ -1,8 +1,8 @@
 """The dyad of two pins and a slider (RRP): rod r3 = B→C of length b, with C on a straight guide.
 
-In the guide's axes, s along it and n across, C stays at the height e. So the rod's share across, h = r3·n = e −
-r2·n, is known, and its share along is q = r3·s = ±√(b² − h²): open branch +, C ahead of B. The factors low = b − h
-and high = b + h come from the mechanism in a form that does not cancel.
+In the guide's axes, s along it and n across, C stays at the height e. So the rod's component across, h = r3·n = e −
+r2·n, is known, and its component along is q = r3·s = ±√(b² − h²): + on the open branch, C ahead of B. The mechanism
+supplies the factors low = b − h and high = b + h in a form that does not cancel.
 """
 
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
@@ -17,7 +17,7 @@ def rrp_close(
     guide_sin: Number,
     branch_sign: Number,
 ) -> tuple[Number, Number, Number, Number]:
-    """r3 in ground axes, its share along the guide, and the inverse of that."""
+    """Return r3 in ground axes, its component along the guide, and the inverse of that component."""
     root = sqrt(low * high)
     along = branch_sign * root
     return (
@@ -29,7 +29,8 @@ def rrp_close(
 
 
 def rrp_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: the rod square to the guide, as far as lengths and angle can tell."""
+    """Return 0 ok, 1 cannot assemble, or 2 toggle: the rod perpendicular to the guide within the error of lengths and
+    angle."""
     closes = where(low * high > 0.0, 0.0, 1.0)
     return where(abs(low) > low_noise, where(abs(high) > high_noise, closes, 2.0), 2.0)
 
@@ -37,7 +38,7 @@ def rrp_status(low: Number, high: Number, low_noise: Number, high_noise: Number)
 def rrp_velocity_ratios(
     crank_along: Number, crank_across: Number, rod_across: Number, inverse_rod_along: Number
 ) -> tuple[Number, Number]:
-    """ω3/ω2 and v_slider/ω2, from ω2 × r2 + ω3 × r3 = v s."""
+    """Return ω3/ω2 and v_slider/ω2, from ω2 × r2 + ω3 × r3 = v s."""
     ratio3 = -(crank_along * inverse_rod_along)
     return ratio3, -crank_across - ratio3 * rod_across
 
@@ -52,7 +53,7 @@ def rrp_accelerations(
     guide_cos: Number,
     guide_sin: Number,
 ) -> tuple[Number, Number]:
-    """α3 and a_slider, from a_B + α3 × r3 − ω3² r3 = a s."""
+    """Return α3 and a_slider, from a_B + α3 × r3 − ω3² r3 = a s."""
     square3 = omega3 * omega3
     aB_across = guide_cos * aBy - guide_sin * aBx
     alpha3 = (square3 * rod_across - aB_across) * inverse_rod_along
@@ -60,5 +61,6 @@ def rrp_accelerations(
 
 
 def rod_transmission_angle(rod_along: Number, rod_across: Number) -> Number:
-    """Acute angle between the rod and the guide's normal [degree]: 90 with the rod along the guide, 0 at a toggle."""
+    """Return the acute angle between the rod and the guide's normal [degree]: 90 with the rod along the guide, 0 at a
+    toggle."""
     return degrees(atan2(abs(rod_along), abs(rod_across)))

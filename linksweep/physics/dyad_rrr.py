@@ -1,8 +1,8 @@
 """The dyad of three pins (RRR): coupler r3 = B→C of length b and rocker r4 = D→C of length c, closed between B and D.
 
-With f = |BD|, the triangle B, C, D has 16·area² = ((b+c)² − f²)·(f² − (b−c)²) = high·low. Both factors come
-from the mechanism in a form that does not cancel, in units of a square that it chooses; the plain triangle formulas
-lose all digits near a toggle. Everything else follows without another subtraction of nearly equal numbers:
+With f = |BD|, the triangle B, C, D has 16·area² = ((b+c)² − f²)·(f² − (b−c)²) = high·low. The mechanism supplies both
+factors, divided by its closure unit (the square of a length), in a form that does not cancel; the plain triangle
+formulas lose all digits near a toggle. The rest follows without another subtraction of nearly equal numbers:
 
     r3 = (low + 2b(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥          open branch: +, C left of B→D
     r4 = −(low − 2c(b−c))/(2f²) · BD ± √(low·high)/(2f²) · BD⊥
@@ -10,7 +10,7 @@ lose all digits near a toggle. Everything else follows without another subtracti
 """
 
 from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
-from linksweep.physics.crank_driven import slower_or_work
+from linksweep.physics.crank_driven import moments_or_work
 from linksweep.physics.planar import cross, dot
 
 
@@ -24,9 +24,9 @@ def rrr_close(
     side: Number,
     closure_unit: Number,
 ) -> tuple[Number, ...]:
-    """Link vectors r3, r4 and 1/(r4 × r3), by one square root and one division; then their shares along BD, in units
-    of it, and the one across that both have; at last 1/(2f²) and ±1/(2√(low·high)), in the closure's units. `side` is
-    1 with C left of B→D."""
+    """Return link vectors r3, r4 and 1/(r4 × r3), by one square root and one division; then along3 and along4, their
+    components along BD, and `across`, the component across it that both have, in units of |BD|; last 1/(2f²) and
+    ±1/(2√(low·high)) in closure units. `side` is 1 with C left of B→D."""
     difference = coupler_length - rocker_length
     ff = low + difference * difference / closure_unit
     root = side * sqrt(low * high)
@@ -43,7 +43,7 @@ def rrr_close(
 
 
 def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:
-    """0 ok, 1 cannot assemble, 2 toggle: r3 and r4 in one line, as far as lengths and angle can tell."""
+    """Return 0 ok, 1 cannot assemble, or 2 toggle: r3 and r4 in one line within the error of lengths and angle."""
     closes = where(low * high > 0.0, 0.0, 1.0)
     return where(abs(low) > low_noise, where(abs(high) > high_noise, closes, 2.0), 2.0)
 
@@ -51,13 +51,16 @@ def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number)
 def rrr_velocity_ratios(
     along3: Number, along4: Number, crank_along: Number, crank_per_across: Number
 ) -> tuple[Number, Number]:
-    """ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity): r2 × r4 and r2 × r3 over
-    r4 × r3, by the crank's shares along BD and, per that of coupler and rocker, across."""
+    """Return ω3/ω2 and ω4/ω2, from ω2 × r2 + ω3 × r3 = ω4 × r4 (document 2, ME 470, velocity).
+
+    They are r2 × r4 and r2 × r3 over r4 × r3, written with the crank's component along BD (`crank_along`) and with its
+    component across divided by that of coupler and rocker (`crank_per_across`).
+    """
     return along4 * crank_per_across - crank_along, along3 * crank_per_across - crank_along
 
 
 def rrr_leverage(ratio: Number, inverse_r4_cross_r3: Number) -> Number:
-    """r2 × r4 from ω3/ω2, or r2 × r3 from ω4/ω2."""
+    """Return r2 × r4 from ω3/ω2, or r2 × r3 from ω4/ω2."""
     return ratio / inverse_r4_cross_r3
 
 
@@ -71,14 +74,14 @@ def rrr_pin_force(
     BDy: Number,
     inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number]:
-    """F43 from r3 × F43 = −N3 and r4 × F43 = N4: what is left of the 9×9 once the rest is eliminated by hand.
+    """Return F43 from r3 × F43 = −N3 and r4 × F43 = N4: two equations remain of the 9×9 after elimination by hand.
 
-    That is (N4 r3 + N3 r4)/(r4 × r3), by its shares along BD and across: in the ground's axes digits are lost where
-    the links lie nearly in one line.
+    Their solution (N4 r3 + N3 r4)/(r4 × r3) is summed in components along BD and across: in ground axes digits are lost
+    where the links lie nearly in one line.
     """
     n3, n4 = N3 * inverse_r4_cross_r3, N4 * inverse_r4_cross_r3
-    along, aside = n4 * along3 + n3 * along4, (n3 + n4) * across
-    return along * BDx - aside * BDy, along * BDy + aside * BDx
+    force_along, force_across = n4 * along3 + n3 * along4, (n3 + n4) * across
+    return force_along * BDx - force_across * BDy, force_along * BDy + force_across * BDx
 
 
 def rrr_driven_pin_force(
@@ -92,11 +95,11 @@ def rrr_driven_pin_force(
     ratio: Number,
     inverse_r4_cross_r3: Number,
 ) -> tuple[Number, Number, Number, Number]:
-    """F43 from r2 × F43 = moment_r2 and r × F43 = moment, where r is the link that bears no drive: by its shares along
-    r2 and across. Then these shares, that along r2 times r4 × r3, which is a moment.
+    """Return F43 from r2 × F43 = moment_r2 and r × F43 = moment, where r is the link without the drive; then its
+    component along r2 times r4 × r3 (a moment, `pull`) and its component across (`push`), both divided by |r2|.
 
-    All is divided by the driven link's ratio to the crank, which vanishes at a dead centre, once: force and torque have
-    the same error.
+    The driven link's ratio to the crank vanishes at a dead centre and is divided by once only, so that force and torque
+    have the same error.
     """
     across = moment_r2 * (1.0 / (crank_length * crank_length))
     pull = (across * dot(r2x, r2y, rx, ry) - moment) / ratio
@@ -116,9 +119,9 @@ def rrr_rocker_torque(
     ratio4: Number,
     ratio3: Number,
 ) -> Number:
-    """T14, from r4 × F43 = N4 + T14 while the rocker is slower than the coupler, then from virtual work."""
+    """Return T14, from r4 × F43 = N4 + T14 while the rocker is slower than the coupler, then from virtual work."""
     by_moments = push * dot(r2x, r2y, r4x, r4y) - pull * ratio3 - N4
-    return slower_or_work(by_moments, work, ratio4, ratio3)
+    return moments_or_work(by_moments, work, ratio4, ratio3)
 
 
 def rrr_coupler_torque(
@@ -133,16 +136,16 @@ def rrr_coupler_torque(
     ratio3: Number,
     ratio4: Number,
 ) -> Number:
-    """T13, from r3 × F43 = −N3 − T13 while the coupler is slower than the rocker, then from virtual work."""
+    """Return T13, from r3 × F43 = −N3 − T13 while the coupler is slower than the rocker, then from virtual work."""
     by_moments = pull * ratio4 - push * dot(r2x, r2y, r3x, r3y) - N3
-    return slower_or_work(by_moments, work, ratio3, ratio4)
+    return moments_or_work(by_moments, work, ratio3, ratio4)
 
 
 def transmission_angle(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:
-    """Acute angle between coupler and rocker [degree]."""
+    """Return the acute angle between coupler and rocker [degree]."""
     return degrees(atan2(abs(cross(r3x, r3y, r4x, r4y)), abs(dot(r3x, r3y, r4x, r4y))))
 
 
 def transmission_angle_signed(r3x: Number, r3y: Number, r4x: Number, r4y: Number) -> Number:
-    """μ = θ4 − θ3 of document 2 (ME 470) [degree], in (−180, 180]: positive with C to the left of B→D."""
+    """Return μ = θ4 − θ3 of document 2 (ME 470) [degree], in (−180, 180]: positive with C to the left of B→D."""
     return degrees(atan2(cross(r3x, r3y, r4x, r4y), dot(r3x, r3y, r4x, r4y)))

@@ -5,34 +5,34 @@ With ψ the angle from the frame line to the crank, f² = |BD|² = a² + d² −
     low  = f² − (b−c)² = 2ad·(cos ψ_f − cos ψ),    cos ψ_f =  1 + (d−a−b+c)(d−a+b−c)/(2ad)    folded over the rocker
     high = (b+c)² − f² = 2ad·(cos ψ − cos ψ_s),    cos ψ_s = −1 − (b+c−d−a)(b+c+d+a)/(2ad)    stretched out
 
-in units of 2ad, so that nothing goes beyond the square of a length. Open or crossed, the mechanism closes while
-low·high > 0. All that cancels are the differences of cosines, which are therefore sums of two numbers each, and sums
-of lengths, which are exact.
+in units of 2ad, so that no higher power than the square of a length occurs. Open or crossed, the mechanism closes while
+low·high > 0. Only the differences of cosines cancel, so the cosines are kept in double-double; the sums of lengths are
+exact.
 
-With p and q the crank's shares along BD and across it, in units of f, and with those of coupler and rocker (see
-`linksweep.physics.dyad_rrr`), k3 = ω3/ω2 = along4·q/across − p, and k4 likewise. Their derivatives to the crank's angle
-are
+With p and q the crank's components along BD and across it, in units of f, and along3, along4 and across those of
+coupler and rocker (see `linksweep.physics.dyad_rrr`), k3 = ω3/ω2 = along4·q/across − p, and k4 likewise with along3.
+Their derivatives with respect to the crank's angle are
 
     k3' = q (1 − k3 − k4) + along4·g    k4' = q (1 − k3 − k4) + along3·g
     f² (1 − k3 − k4) = d² − a² − (b² − c²)·q/across
     g = (low₀·high·(1 + cos ψ) − high₀·low·(1 − cos ψ)) / (2·√(low·high)³)
 
-with low₀ = low at ψ = 0 and high₀ = high at 180°. With a change point one of them vanishes, in a parallelogram both and
-with them g: as a difference of accelerations over the sine between r3 and r4, g would have no digit left where the
-links lie nearly flat.
+with low₀ = low at ψ = 0 and high₀ = high at 180°. With a change point one of them vanishes; in a parallelogram both do,
+and with them g. This form keeps its digits where the links lie nearly flat: there a difference of accelerations over
+the sine of the angle between r3 and r4 would have none left.
 
 Where ψ_f = 0 or ψ_s = 180° the mechanism has a change point: it passes through its toggle, flat, and can leave it on
 either branch. With both (parallelogram a = c, b = d; kite a = b, c = d) the side of B→D that C is on changes twice a
-turn, and the branch goes through: sin ψ says the side. With one it would take two turns to come round, so C keeps to
-its side.
+turn, and the branch goes through: the sign of sin ψ gives the side. With only one, such a motion would take two turns
+to come round, so C keeps to its side.
 """
 
 from linksweep.physics.arithmetic import Number, sqrt, where
-from linksweep.physics.crank_angle import beyond_range, unknown_of_cosine
+from linksweep.physics.crank_angle import cosine_noise, range_noise
 from linksweep.physics.double_double import add, difference, divide, multiply, two_product, two_sum
 
 LENGTH_NOISE = 2.0**-52
-"""What sums of lengths may be off by, relative to the sum of all: each length is rounded in its last digit."""
+"""Rounding error of a sum of lengths, relative to the sum of all: each length is rounded in its last digit."""
 
 
 def diagonal(
@@ -43,7 +43,8 @@ def diagonal(
     versine: Number,
     psi_sin: Number,
 ) -> tuple[Number, Number]:
-    """The vector B→D, from its shares along the frame line and across, which keep their digits where B is near D."""
+    """Return the vector B→D, from its components along the frame line and across, which stay accurate where B is near
+    D."""
     along, across = (ground_length - crank_length) + crank_length * versine, -(crank_length * psi_sin)
     return along * ground_cos - across * ground_sin, along * ground_sin + across * ground_cos
 
@@ -56,7 +57,7 @@ def crank_on_diagonal(
     inverse_2ff: Number,
     half_inverse_root: Number,
 ) -> tuple[Number, Number, Number]:
-    """p and q, which keep their digits where the links lie flat, and q over the share across of coupler and rocker."""
+    """Return p and q, accurate also where the links lie flat, and q over the component across of coupler and rocker."""
     along = (ground_length - crank_length) / ground_length - versine
     return along * inverse_2ff, psi_sin * inverse_2ff, 2.0 * psi_sin * half_inverse_root
 
@@ -64,7 +65,7 @@ def crank_on_diagonal(
 def least_factors(
     crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """low at ψ = 0 and high at 180°, each with its rest."""
+    """Return low at ψ = 0 and high at 180°, each as a double-double."""
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
     c_a, twice_ad = two_sum(c, -a), two_product(2.0 * a, d)
     low = multiply(add(two_sum(d, -b), c_a), add(two_sum(d, -c), two_sum(b, -a)))
@@ -75,7 +76,10 @@ def least_factors(
 def sums_unit(
     crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number, closure_unit: Number
 ) -> Number:
-    """What rounding leaves of the least factors' sums of lengths, in that of the cosine of an angle: both are pairs."""
+    """Return the rounding error of the least factors relative to that of a double-double cosine (2⁻⁸⁶).
+
+    Their sums of lengths are rounded to 2⁻¹⁰² of perimeter²/(2ad).
+    """
     perimeter = crank_length + coupler_length + rocker_length + ground_length
     return 2.0**-16 * perimeter * perimeter / closure_unit
 
@@ -83,12 +87,12 @@ def sums_unit(
 def toggle_cosines(
     least_low: Number, least_low_lo: Number, least_high: Number, least_high_lo: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """cos ψ_f and cos ψ_s, each with its rest."""
+    """Return cos ψ_f and cos ψ_s, each as a double-double."""
     return *add((1.0, 0.0), (least_low, least_low_lo)), *add((-1.0, 0.0), (-least_high, -least_high_lo))
 
 
 def closure_unit(crank_length: Number, ground_length: Number) -> Number:
-    """2ad."""
+    """Return 2ad."""
     return 2.0 * crank_length * ground_length
 
 
@@ -100,7 +104,7 @@ def closure_factors(
     stretched_cos: Number,
     stretched_cos_lo: Number,
 ) -> tuple[Number, Number]:
-    """low and high, as the module's equations write them."""
+    """Return low and high of the module's equations."""
     cosine = psi_cos, psi_cos_lo
     low = difference((folded_cos, folded_cos_lo), cosine)
     return low, difference(cosine, (stretched_cos, stretched_cos_lo))
@@ -115,7 +119,8 @@ def change_points(
     least_low: Number,
     least_high: Number,
 ) -> tuple[Number, Number, Number]:
-    """What of the least factors may be rounding, and 1 where both are change points as far as the lengths can tell."""
+    """Return the noise floors of `least_low` and `least_high`; `parallel` is 1 where both lie below them (parallelogram
+    or kite)."""
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
     perimeter = a + b + c + d
     noise = LENGTH_NOISE * perimeter
@@ -127,7 +132,7 @@ def change_points(
 
 
 def side_of_diagonal(parallel: Number, psi_sin: Number, branch_sign: Number) -> Number:
-    """1 with C to the left of the line B→D, −1 to its right."""
+    """Return 1 with C to the left of the line B→D, −1 to its right."""
     return where(parallel * psi_sin < 0.0, -branch_sign, branch_sign)
 
 
@@ -140,11 +145,11 @@ def closure_noise(
     psi_sin: Number,
     sums_unit: Number,
 ) -> tuple[Number, Number]:
-    """What low and high cannot tell from zero."""
-    beyond = beyond_range(closure_unit) + sums_unit * beyond_range(sums_unit * sums_unit)
+    """Return the noise floors of low and high, below which they may be zero."""
+    beyond = range_noise(closure_unit) + sums_unit * range_noise(sums_unit * sums_unit)
     return (
-        unknown_of_cosine(least_low, folded_noise, psi_sin) + beyond,
-        unknown_of_cosine(least_high, stretched_noise, psi_sin) + beyond,
+        cosine_noise(least_low, folded_noise, psi_sin) + beyond,
+        cosine_noise(least_high, stretched_noise, psi_sin) + beyond,
     )
 
 
@@ -167,19 +172,19 @@ def ratio_slopes(
     ground_length: Number,
     closure_unit: Number,
 ) -> tuple[Number, Number]:
-    """k3' and k4', as the module's equations write them."""
+    """Return k3' and k4' of the module's equations."""
     numerator = 4.0 * least_low * vercosine * high - 4.0 * least_high * versine * low
     growth = numerator * (half_inverse_root * half_inverse_root) * half_inverse_root
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
-    of_crank, of_dyad = 2.0 * (d - a) * (d + a) / closure_unit, 2.0 * (b - c) * (b + c) / closure_unit
-    common = crank_across * ((of_crank - of_dyad * crank_per_across) * inverse_2ff)
+    crank_term, dyad_term = 2.0 * (d - a) * (d + a) / closure_unit, 2.0 * (b - c) * (b + c) / closure_unit
+    common = crank_across * ((crank_term - dyad_term * crank_per_across) * inverse_2ff)
     return common + along4 * growth, common + along3 * growth
 
 
 def extremes(
     crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """The least and the largest low, at ψ = 0 and 180°, and the least and the largest high, at 180° and 0."""
+    """Return the least and the largest low, at ψ = 0 and 180°, and the least and the largest high, at 180° and 0."""
     a, b, c, d = crank_length, coupler_length, rocker_length, ground_length
     return (
         ((d - b) + (c - a)) * ((d - c) + (b - a)),
@@ -190,7 +195,7 @@ def extremes(
 
 
 def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number) -> Number:
-    """0 where it closes at every angle, 1 where at some, 2 where at none."""
+    """Return 0 where it closes at every angle, 1 where at some, 2 where at none."""
     least_low, largest_low, least_high, largest_high = extremes(
         crank_length, coupler_length, rocker_length, ground_length
     )
@@ -201,7 +206,10 @@ def assembly(crank_length: Number, coupler_length: Number, rocker_length: Number
 def near_toggle_widths(
     crank_length: Number, coupler_length: Number, rocker_length: Number, ground_length: Number
 ) -> tuple[Number, Number]:
-    """How narrow forces may peak about ψ = 0 and 180°: low and high are x + y·tan², and zero at tan = ±i·√(x/y)."""
+    """Return the half-widths, as tan(angle/2), of the narrowest peaks that forces may have about ψ = 0 and 180°.
+
+    Low and high are x + y·tan² of half the angle from there, and vanish at tan = ±i·√(x/y): the width is √(x/y).
+    """
     least_low, largest_low, least_high, largest_high = extremes(
         crank_length, coupler_length, rocker_length, ground_length
     )

@@ -1,7 +1,8 @@
-"""Newton and Euler for one link, about its first pin, in d'Alembert's form.
+"""Newton's and Euler's equations for one link, about its first pin, in d'Alembert's form.
 
-A link of mass m, with first moment h = m·r_G (pin → centre of gravity) and moment of inertia J = I + m|r_G|² about
-that pin, whose pin accelerates by a and which bears an outer load (P, moment M about the pin), exerts on its pins
+A link has mass m, first moment h = m·r_G (pin → centre of gravity) and moment of inertia J = I + m|r_G|² about its
+first pin. That pin accelerates by a, and an external load acts: force P and moment M about the pin. The link then
+exerts on its pins
 
     Q = m(g − a) − α × h + ω² h + P          (effective force)
     N = h × (g − a) − J α + M                (effective moment about the first pin)
@@ -14,14 +15,14 @@ from linksweep.physics.planar import cross, dot
 
 
 def moment_of_inertia_about_pin(mass: Number, inertia: Number, cg_x: Number, cg_y: Number) -> Number:
-    """J = I + m|r_G|² (Steiner)."""
+    """Return J = I + m|r_G|² (Steiner)."""
     return inertia + mass * (cg_x * cg_x + cg_y * cg_y)
 
 
 def first_moment(
     mass: Number, cg_x: Number, cg_y: Number, length: Number, rx: Number, ry: Number
 ) -> tuple[Number, Number]:
-    """h = m·r_G in ground axes, of a link whose line of pins is r, |r| = length."""
+    """Return h = m·r_G in ground axes, for a link whose line of pins is r, |r| = length."""
     along, across = mass * cg_x / length, mass * cg_y / length
     return along * rx - across * ry, along * ry + across * rx
 
@@ -39,7 +40,7 @@ def effective_force(
     Px: Number,
     Py: Number,
 ) -> tuple[Number, Number]:
-    """Q of the module's equation."""
+    """Return Q of the module's equations."""
     centripetal = omega * omega
     return (
         mass * (gravity_x - pin_ax) + alpha * hy + centripetal * hx + Px,
@@ -61,7 +62,8 @@ def steady_effective_force(
     Px: Number,
     Py: Number,
 ) -> tuple[Number, Number]:
-    """Q of a link on a pin that stands, its rates given: one turning vector, cheap where they are constant."""
+    """Return Q of a link whose first pin is fixed: its inertia is one rotating vector, cheap where its rates are
+    constant."""
     h_along, h_across, centripetal = mass * cg_x / length, mass * cg_y / length, omega * omega
     along = centripetal * h_along + alpha * h_across
     across = centripetal * h_across - alpha * h_along
@@ -84,7 +86,7 @@ def steady_effective_moment(
     alpha: Number,
     M: Number,
 ) -> Number:
-    """N of the same link."""
+    """Return N of a link whose first pin is fixed."""
     h_along, h_across = mass * cg_x / length, mass * cg_y / length
     lever_x = h_along * gravity_y - h_across * gravity_x
     lever_y = h_along * gravity_x + h_across * gravity_y
@@ -102,7 +104,7 @@ def effective_moment(
     alpha: Number,
     M: Number,
 ) -> Number:
-    """N of the module's equation."""
+    """Return N of the module's equations."""
     return cross(hx, hy, gravity_x - pin_ax, gravity_y - pin_ay) - J * alpha + M
 
 
@@ -116,7 +118,7 @@ def inertia_power(
     omega: Number,
     alpha: Number,
 ) -> Number:
-    """Power of a link's inertia forces, −(m a_G·v_G + I α ω): minus the rate of its kinetic energy."""
+    """Return the power of a link's inertia forces, −(m a_G·v_G + I α ω): minus the rate of its kinetic energy."""
     return -(mass * dot(aGx, aGy, vGx, vGy) + inertia * (alpha * omega))
 
 
@@ -141,13 +143,13 @@ def power_size(
     Py: Number,
     M: Number,
 ) -> Number:
-    """Sum of the magnitudes of all that the powers of a link's inertia, weight and loads are sums of: the motion of its
-    first pin, and the turning about it."""
+    """Return the sum of the magnitudes of all terms in the powers of a link's inertia, weight and loads, split into the
+    motion of its first pin and its rotation about it."""
     x, y, centripetal = abs(rGx), abs(rGy), omega * omega
     along_x = (abs(pin_vx) + abs(omega) * y) * (abs(gravity_x) + abs(pin_ax) + abs(alpha) * y + centripetal * x)
     along_y = (abs(pin_vy) + abs(omega) * x) * (abs(gravity_y) + abs(pin_ay) + abs(alpha) * x + centripetal * y)
-    of_loads = abs(Px * pin_vx) + abs(Py * pin_vy) + abs(M * omega)
-    return mass * (along_x + along_y) + inertia * abs(alpha * omega) + of_loads
+    load_terms = abs(Px * pin_vx) + abs(Py * pin_vy) + abs(M * omega)
+    return mass * (along_x + along_y) + inertia * abs(alpha * omega) + load_terms
 
 
 def newton_euler_right_side(
@@ -164,7 +166,7 @@ def newton_euler_right_side(
     Py: Number,
     M: Number,
 ) -> tuple[Number, Number, Number]:
-    """Right sides of ΣF = m a_G and ΣM_G = I α, weight and outer loads moved over (document 2, with gravity)."""
+    """Return the right sides of ΣF = m a_G and ΣM_G = I α, weight and loads moved over (document 2, with gravity)."""
     return (
         mass * (aGx - gravity_x) - Px,
         mass * (aGy - gravity_y) - Py,

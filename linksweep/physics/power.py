@@ -1,4 +1,4 @@
-"""Power of a drive, split into what it feeds and what it takes back, and the balance of all powers."""
+"""Power of a drive, split into power fed and power regenerated, and the balance of all powers."""
 
 from linksweep.physics.arithmetic import Number, where
 
@@ -8,13 +8,13 @@ def power_fed(power: Number) -> Number:
 
 
 def power_regenerated(power: Number) -> Number:
-    """What a drive must take back or brake, counted positive."""
+    """Return the power that the drive must take back or brake, counted positive."""
     return where(power < 0.0, -power, 0.0)
 
 
 def power_residual(size: Number, *powers: Number) -> Number:
-    """What is left of powers that should cancel, relative to the sum of their magnitudes and of the `size` of what
-    they are sums of; 0 of nothing."""
+    """Return the sum of powers that should cancel, relative to the sum of their magnitudes plus `size`, the magnitude
+    of the terms that they are sums of; 0 where all vanish."""
     total = powers[0]
     size = size + abs(total)
     for power in powers[1:]:

@@ -3,8 +3,8 @@
     J(θ2) = Σ (m |u|² + I k²),    u = v_G/ω2,  k = ω/ω2
     dJ/dθ2 = 2 Σ (m u·u' + I k k')
 
-The derivatives u' and k' to θ2 are the accelerations at ω2 = 1, α2 = 0. Source: F. Wittenbauer, Graphische Dynamik
-(1923).
+The derivatives u' and k' with respect to θ2 are the accelerations at ω2 = 1, α2 = 0. Source: F. Wittenbauer,
+Graphische Dynamik (1923).
 """
 
 from linksweep.physics.arithmetic import Number
@@ -12,7 +12,7 @@ from linksweep.physics.planar import dot, square
 
 
 def reduced_inertia(mass: Number, inertia: Number, ux: Number, uy: Number, ratio: Number) -> Number:
-    """One link's share of J."""
+    """Return one link's term of J."""
     return mass * square(ux, uy) + inertia * (ratio * ratio)
 
 
@@ -26,7 +26,7 @@ def reduced_inertia_slope(
     uy_slope: Number,
     ratio_slope: Number,
 ) -> Number:
-    """Its share of dJ/dθ2."""
+    """Return one link's term of dJ/dθ2."""
     return 2.0 * (mass * dot(ux, uy, ux_slope, uy_slope) + inertia * (ratio * ratio_slope))
 
 

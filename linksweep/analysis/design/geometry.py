@@ -191,7 +191,7 @@ def coupler_curve(
     omega, alpha = _numbers(scene, theta2, (f"omega{k}", f"alpha{k}"), threads)
     length = getattr(getattr(scene.mechanism, role, None), "length", 1.0)  # a block's axes are of unit length
     cos, sin = cos_sin(at[1])
-    arm = planar.turned(at[0] * cos, at[0] * sin, length, *line)
+    arm = planar.to_ground_axes(at[0] * cos, at[0] * sin, length, *line)
     found = {
         "P": planar.vector_sum(*position, *arm),
         "vP": planar.point_velocity(*velocity, omega, *arm),

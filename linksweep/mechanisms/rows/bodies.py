@@ -75,7 +75,7 @@ class Body:
         velocity, acceleration = (f"vG{k}x", f"vG{k}y"), (f"aG{k}x", f"aG{k}y")
         mass = f"{role}_mass"
         return [
-            Row(planar.turned, centre, (f"{role}_cg_x", f"{role}_cg_y", f"{role}_length", *vector)),
+            Row(planar.to_ground_axes, centre, (f"{role}_cg_x", f"{role}_cg_y", f"{role}_length", *vector)),
             Row(planar.point_velocity, velocity, (*self.pin_velocity, rates[0], *centre)),
             Row(planar.point_acceleration, acceleration, (*self.pin_acceleration, *rates, *centre)),
             Row(

@@ -44,7 +44,7 @@ def near_toggle_rows(middle: str) -> list[Row]:
 def straight_rows(cos: str, sin: str, minus_sin: bool = False) -> list[Row]:
     """The same bits where cosine and sine from the pinch are tabulated numbers themselves."""
     made = (cos, f"{cos}_lo", sin)
-    turns = (planar.same, planar.same, planar.opposite if minus_sin else planar.same)
+    turns = (planar.identity, planar.identity, planar.opposite if minus_sin else planar.identity)
     return [Row(turn, (name,), (number,)) for turn, name, number in zip(turns, PSI, made, strict=True)]
 
 

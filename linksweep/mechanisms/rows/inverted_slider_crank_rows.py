@@ -95,7 +95,7 @@ def _arms() -> list[Row | Total]:
 def _position() -> list[Row | Total]:
     return [
         Row(inverted_slider_crank.near_toggle_width, ("near_toggle_near",)),
-        Row(planar.same, ("near_toggle_far",), (1.0,)),
+        Row(planar.identity, ("near_toggle_far",), (1.0,)),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_lo")),
         Row(inverted_slider_crank.versine, ("psi_versine",)),
@@ -110,7 +110,7 @@ def _position() -> list[Row | Total]:
         Row(planar.along, ("r4x", "r4y"), ("rocker_length", "r3x", "r3y")),
         Row(planar.dot, ("crank_along",), ("r2x", "r2y", "r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r3x", "r3y")),
-        Row(planar.same, ("theta3",), ("theta4",)),
+        Row(planar.identity, ("theta3",), ("theta4",)),
         Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
         Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
     ]
@@ -120,12 +120,12 @@ def _rates() -> list[Row | Total]:
     return [
         Row(dyad_rpr.rpr_velocity_ratios, ("ratio4", "ratio_slide")),
         Row(planar.product, ("omega4",), ("omega2", "ratio4")),
-        Row(planar.same, ("omega3",), ("omega4",)),
+        Row(planar.identity, ("omega3",), ("omega4",)),
         Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
         Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
         Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rpr.rpr_accelerations, ("alpha4", "slide_acceleration")),
-        Row(planar.same, ("alpha3",), ("alpha4",)),
+        Row(planar.identity, ("alpha3",), ("alpha4",)),
     ]
 
 
@@ -135,7 +135,7 @@ def _transmission() -> list[Row | Total]:
     return [
         *crank_pin_slope_rows(),
         Row(dyad_rpr.rpr_accelerations, ("slope4", "slope_slide"), ("uBx_slope", "uBy_slope", *line)),
-        Row(planar.same, ("velocity_ratio",), ("ratio4",)),
+        Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
         Row(advantage.torque_ratio, ("torque_ratio",)),
     ]
 
@@ -154,7 +154,7 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(inverted_slider_crank.work_with_friction, ("work",)),
         *_contact(drive),
         Row(planar.opposite, ("T43",), ("N3",)),
-        Row(planar.turned, ("F43x", "F43y"), ("line_force", "F43n", 1.0, "r3x", "r3y")),
+        Row(planar.to_ground_axes, ("F43x", "F43y"), ("line_force", "F43n", 1.0, "r3x", "r3y")),
         Row(crank_driven.coupler_balance, ("F32x", "F32y")),
         Row(crank_driven.rocker_balance, ("F14x", "F14y")),
         Row(crank_driven.crank_balance, ("F12x", "F12y")),
@@ -194,7 +194,7 @@ def _drive(drive: str, unknown: str, ratio: Source) -> list[Row]:
             Row(inverted_slider_crank.cylinder_force, (unknown,)),
         ]
     return [
-        Row(planar.same, ("line_force",), ("friction_force",)),
+        Row(planar.identity, ("line_force",), ("friction_force",)),
         Row(crank_driven.balancing_drive, (unknown,), ("work", ratio)),
     ]
 
@@ -205,7 +205,7 @@ def _status(drive: str) -> list[Row | Total]:
     closed = Row(dyad_rpr.rpr_status, ("closure",))
     if drive == "cylinder":
         return [closed, Row(crank_driven.drive_status, ("status",), ("closure", *leverage))]
-    moves = Row(planar.same, ("leverage_status",), ("closure",))
+    moves = Row(planar.identity, ("leverage_status",), ("closure",))
     if leverage:
         moves = Row(crank_driven.drive_status, ("leverage_status",), ("closure", *leverage))
     return [closed, moves, Row(coulomb.jammed_status, ("status",), ("leverage_status", "wedging"))]

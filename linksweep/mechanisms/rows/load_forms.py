@@ -84,13 +84,13 @@ class LoadForm:
             (f"{name}_vx", f"{name}_vy"),
         )
         rows: list[Row | Total] = [
-            Row(planar.turned, point, (f"{name}_at_x", f"{name}_at_y", *body.axes)),
+            Row(planar.to_ground_axes, point, (f"{name}_at_x", f"{name}_at_y", *body.axes)),
             Row(planar.cross, (f"{name}_moment",), (*point, *force)),
             Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *point)),
             Row(planar.dot, (f"{name}_force_power",), (*force, *velocity)),
         ]
         if self.link_axes:
-            rows.append(Row(planar.turned, force, (f"{name}_force_x", f"{name}_force_y", *body.axes)))
+            rows.append(Row(planar.to_ground_axes, force, (f"{name}_force_x", f"{name}_force_y", *body.axes)))
         return rows
 
 

@@ -64,7 +64,7 @@ def _position() -> list[Row | Total]:
         Row(slider_crank.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
         Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_lo", "high_cos", "high_cos_lo")),
-        Row(slider_crank.guide_shares, ("crank_along", "crank_across", "rod_across")),
+        Row(slider_crank.guide_components, ("crank_along", "crank_across", "rod_across")),
         Row(slider_crank.closure_factors, ("low", "high")),
         Row(slider_crank.closure_noise, ("low_noise", "high_noise")),
         Row(slider_crank.length_noise, ("noise",)),
@@ -99,7 +99,7 @@ def _transmission() -> list[Row | Total]:
         Row(dyad_rrp.rrp_accelerations, ("slope3", "slope_slider"), ("uBx_slope", "uBy_slope", *rod, *guide)),
         Row(planar.along, ("uCx", "uCy"), ("ratio_slider", *guide)),
         Row(planar.along, ("uCx_slope", "uCy_slope"), ("slope_slider", *guide)),
-        Row(planar.same, ("velocity_ratio",), ("ratio_slider",)),
+        Row(planar.identity, ("velocity_ratio",), ("ratio_slider",)),
         Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
     ]
 
@@ -140,12 +140,12 @@ def _forces(drive: str) -> list[Row | Total]:
 def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
     """Step by step: does it close, can the drive move it, does friction wedge it, have its loads their whole turns."""
     closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
-    leverage: list[Row | Total] = [Row(planar.same, ("leverage_status",), ("closure",))]
+    leverage: list[Row | Total] = [Row(planar.identity, ("leverage_status",), ("closure",))]
     if drive == "coupler":
         leverage = [
             Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))
         ]
-    cycle: list[Row | Total] = [Row(planar.same, ("status",), ("jam_status",))]
+    cycle: list[Row | Total] = [Row(planar.identity, ("status",), ("jam_status",))]
     if any(form.full_turns for form in loads):
         cycle = [Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))]
     jam = Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))

@@ -118,7 +118,7 @@ class TurningForm(Between):
         return [
             Row(springs.turning_rate, (f"{name}_turning",), tuple(rates)),
             *self.resistance(name, first, second),
-            Row(planar.same, (f"{name}_from_torque",), (f"{name}_resistance",)),
+            Row(planar.identity, (f"{name}_from_torque",), (f"{name}_resistance",)),
             Row(planar.opposite, (f"{name}_to_torque",), (f"{name}_resistance",)),
             *(
                 Row(planar.product, (f"{end}_power",), (f"{end}_torque", f"omega{bodies[link].number}"))
@@ -169,7 +169,7 @@ def _end(end: str, body: Body) -> list[Row | Total]:
     """An end on a moving link: where it is, how it moves, and what the force on it does."""
     arm, force, velocity = (f"{end}_rx", f"{end}_ry"), (f"{end}_Fx", f"{end}_Fy"), (f"{end}_vx", f"{end}_vy")
     return [
-        Row(planar.turned, arm, (f"{end}_at_x", f"{end}_at_y", *body.axes)),
+        Row(planar.to_ground_axes, arm, (f"{end}_at_x", f"{end}_at_y", *body.axes)),
         Row(planar.vector_sum, (f"{end}_x", f"{end}_y"), (*body.pin_position, *arm)),
         Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *arm)),
         Row(planar.point_velocity, (f"{end}_ux", f"{end}_uy"), (*body.pin_ratio, body.ratio, *arm)),
