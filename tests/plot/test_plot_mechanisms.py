@@ -266,7 +266,7 @@ def test_one_design_of_many_is_drawn_by_its_own_slide_angle():
     assert np.abs(x).max() < 1e-9 * np.abs(y).max()  # without friction the guide pushes across itself
 
 
-@pytest.mark.parametrize("kind", [kind for kind in MECHANISMS if kind.index == "theta2"])
+@pytest.mark.parametrize("kind", [kind for kind in MECHANISMS.values() if kind.index == "theta2"])
 def test_every_crank_mechanism_can_be_drawn(kind):
     assert drawings.DRAWINGS[kind].drives == kind.drives
 
