@@ -7,7 +7,7 @@ do and converted by its own registry, so that pint need not be imported.
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import Field, fields
 from typing import Any
 
 import numpy as np
@@ -19,14 +19,14 @@ ROWS = {"breaks": "angle"}
 """Kinds of the numbers that come in pairs, and of those that come in rows, by the name of the field."""
 
 
-def take_numbers(owner: Any) -> None:
-    """Convert the numbers of a frozen dataclass in place; what is none stays, for validation to refuse."""
-    for item in fields(owner):
-        value = getattr(owner, item.name)
-        rule = item.metadata.get("rule")
-        converted = to_float64(value, rule.kind) if rule else _several(item.name, value)
-        if converted is not value:
-            object.__setattr__(owner, item.name, converted)
+def float64_fields(owner: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass by name, numbers as float64; a value that is no number as it is."""
+    return {item.name: _float64_field(item, getattr(owner, item.name)) for item in fields(owner)}
+
+
+def _float64_field(item: Field, value: Any) -> Any:
+    rule = item.metadata.get("rule")
+    return to_float64(value, rule.kind) if rule else _several(item.name, value)
 
 
 def kinds_of(name: str, value: tuple | list) -> tuple[str, ...]:

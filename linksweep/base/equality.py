@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from linksweep.base.conversion import take_numbers
+from linksweep.base.conversion import float64_fields
+from linksweep.base.frozen import normalise
 from linksweep.base.validate import is_array
 
 
@@ -14,7 +15,7 @@ class ByContent:
     the same content: numbers, dims and labels. One with a `__post_init__` of its own calls this one first."""
 
     def __post_init__(self) -> None:
-        take_numbers(self)
+        normalise(self, **float64_fields(self))
 
     def __eq__(self, other: object) -> bool:
         return content(self) == content(other) if type(other) is type(self) else NotImplemented

@@ -10,9 +10,9 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from linksweep.base.conversion import kinds_of
+from linksweep.base.frozen import Owner, field_values, with_sound, with_values
 from linksweep.base.validate import is_array
 from linksweep.scene.dimensions import laid
-from linksweep.scene.loads.action import Owner, with_sound, with_values
 
 
 def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
@@ -42,7 +42,7 @@ def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner
 
     Raises ValueError where the scene with these numbers is refused.
     """
-    parts = {item.name: getattr(owner, item.name) for item in fields(owner)}  # type: ignore[arg-type]
+    parts = field_values(owner)
     below = {name: prefix if name == "mechanism" else prefix + name for name in parts}
     return with_values(owner, **{name: _replaced(part, below[name], values) for name, part in parts.items()})
 

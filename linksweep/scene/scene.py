@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.equality import ByContent, content
+from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.validate import (
     UNITS,
     Number,
@@ -45,7 +46,7 @@ from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, as_field, form_of, over_designs
-from linksweep.scene.loads.action import Action, Revolution, with_sound
+from linksweep.scene.loads.action import Action, Revolution
 from linksweep.scene.parameters import bare, numbers
 
 ACCELERATION = Rule("acceleration")
@@ -111,8 +112,7 @@ class Scene(ByContent):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for word in MOTION:
-            object.__setattr__(self, word, _own_label(word, getattr(self, word)))
+        normalise(self, **{word: _own_label(word, getattr(self, word)) for word in MOTION})
         sound = isinstance(self.mechanism, Mechanism)
         found = [] if sound else [f"mechanism = {quote(self.mechanism)}: must be a {' or '.join(MECHANISMS)}"]
         found += field_problems(self)
@@ -139,8 +139,7 @@ class Scene(ByContent):
         ]
         if kind.motion[0] not in given:
             found.append(f"{kind.motion[0]}: missing; give {kind.__name__} {_rule(kind.motion[0]).number}")
-        for word in kind.defaults.keys() - {*given}:
-            object.__setattr__(self, word, kind.defaults[word])
+        normalise(self, **{word: default for word, default in kind.defaults.items() if word not in given})
         for word, allowed in kind.choices().items():
             found += choice_problems(word, getattr(self, word), allowed)
         return found
@@ -168,7 +167,7 @@ class Scene(ByContent):
         loads = (self.loads,) if isinstance(self.loads, Action) else self.loads
         if isinstance(loads, str | Mapping | np.ndarray) or is_array(loads) or not isinstance(loads, Iterable):
             return [f"loads = {quote(loads)}: must be a Load, or a list of them"]
-        object.__setattr__(self, "loads", tuple(loads))
+        normalise(self, loads=tuple(loads))
         found: list[str] = []
         links = self._of_mechanism("links")  # a mechanism without any takes no loads, as has been said
         for path, load in self._loads() if links else ():

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.conversion import all_to_float64, to_float64
+from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.over_time import mean_over_time
@@ -54,13 +55,13 @@ class Motor:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "inertia", to_float64(self.inertia, INERTIA.kind))
+        normalise(self, inertia=to_float64(self.inertia, INERTIA.kind))
         problems = number_problems("inertia", self.inertia, INERTIA)
         for name, rule in CURVE.items():
             points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
             problems += array_unit_problems(name, getattr(self, name), rule.kind)
             problems += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
-            object.__setattr__(self, name, tuple(points))
+            normalise(self, **{name: tuple(points)})
         count = len(self.speeds)
         if len(self.torques) != count or count < 2:
             problems.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")

@@ -17,6 +17,7 @@ import xarray as xr
 from linksweep.base.conversion import to_float64
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
+from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
 from linksweep.mechanisms import SliderCrank
@@ -104,7 +105,7 @@ class MultiCylinder(ByContent):
         numbers = tuple(to_float64(number, rule.kind) for number in value)
         if word != "crank_angles":
             numbers = numbers or (0.0,) * len(self.crank_angles)
-        object.__setattr__(self, word, numbers)
+        normalise(self, **{word: numbers})
         found = [] if numbers else [f"{word} is empty: give one for each cylinder"]
         if len(numbers) != len(self.crank_angles):
             found.append(
@@ -118,7 +119,7 @@ class MultiCylinder(ByContent):
         if _no_list(value):
             return [f"main_positions = {quote(value)}: must be a list of numbers, one for each main bearing"]
         places = tuple(to_float64(number, LENGTH.kind) for number in value)
-        object.__setattr__(self, "main_positions", places)
+        normalise(self, main_positions=places)
         found = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
         if found or not places:
             return found

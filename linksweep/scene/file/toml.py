@@ -49,6 +49,7 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.frozen import unvalidated
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Disk, Link
@@ -342,9 +343,7 @@ def _built(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
         elif not log.problems:  # else it stumbled over a value that was not read
             raise
         # Unchecked, so that the scene can still look at the rest of the file; it never gets out of here.
-        refused = object.__new__(cls)
-        refused.__dict__.update(words)
-        return refused
+        return unvalidated(cls, **words)
 
 
 def _required(cls: Any, words: dict[str, Any]) -> list[str]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -16,8 +14,6 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.scene.curves.over_angle import Curves, at_angles
-
-Owner = TypeVar("Owner")
 
 
 class Revolution(NamedTuple):
@@ -87,24 +83,3 @@ class Action(ByContent):
     def sampled(self, path: str, revolution: Revolution) -> Action:
         """The same with all that changes over the revolution at its angles; itself where nothing does."""
         return self
-
-
-def with_values(owner: Owner, **values: Any) -> Owner:
-    """The same dataclass with these values; itself where it has them already."""
-    other = {name: value for name, value in values.items() if not _same(getattr(owner, name), value)}
-    return replace(owner, **other) if other else owner  # type: ignore[type-var]
-
-
-def with_sound(owner: Owner, **values: Any) -> Owner:
-    """The same with values made of its own, which need no judging."""
-    if all(_same(getattr(owner, name), value) for name, value in values.items()):
-        return owner
-    made = object.__new__(type(owner))
-    for item in fields(owner):  # type: ignore[arg-type]
-        object.__setattr__(made, item.name, values.get(item.name, getattr(owner, item.name)))
-    return made
-
-
-def _same(old: Any, new: Any) -> bool:
-    """Whether two values are one, or tuples of the same ones."""
-    return old is new or (isinstance(new, tuple) and len(old) == len(new) and all(map(operator.is_, old, new)))

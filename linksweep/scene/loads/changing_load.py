@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from linksweep.base.frozen import normalise
 from linksweep.base.validate import (
     Number,
     Rule,
@@ -35,7 +36,7 @@ class ChangingLoad(Action):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.interpolation is None:
-            object.__setattr__(self, "interpolation", next(iter(self._of_arrays()), None))
+            normalise(self, interpolation=next(iter(self._of_arrays()), None))
 
     def changing_problems(self, path: str) -> list[str]:
         """Return what is wrong with the breaks and the interpolation of a load at this path."""

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, cast
+from typing import Any, cast
 
 import numpy as np
 
+from linksweep.base.frozen import field_values, unvalidated, with_sound
 from linksweep.base.validate import Number, Rule, field_problems, overflow_problems, parameter
 from linksweep.mechanisms import Mechanism, SliderCrank
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import LoadForm
-from linksweep.scene.loads.action import Revolution, with_sound
+from linksweep.scene.loads.action import Revolution
 from linksweep.scene.loads.air_cycle import ATMOSPHERE, Cycle, pressure_over
 from linksweep.scene.loads.changing_load import ChangingLoad
 
@@ -63,11 +64,14 @@ class GasPressure(ChangingLoad):
     breaks: Sequence[float] = ()
     interpolation: str | None = None
 
-    in_cylinder: ClassVar[Number]  # over the angles [Pa]: a cycle that has been brought to them has its own
-
     @property
     def changing(self) -> tuple[Any, ...]:
         return self.pressure, self.crankcase
+
+    @property
+    def in_cylinder(self) -> Number:
+        """Pressure in the cylinder [Pa]."""
+        return self.pressure
 
     @property
     def form(self) -> LoadForm:
@@ -108,10 +112,9 @@ class GasPressure(ChangingLoad):
         if self.cycle is None:
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
-        brought, engine = replace(self, crankcase=crankcase), cast(SliderCrank, revolution.mechanism)
+        engine = cast(SliderCrank, revolution.mechanism)
         pressure = pressure_over(self.cycle, engine, revolution.grid.angles, revolution.turning)
-        object.__setattr__(brought, "in_cylinder", pressure)
-        return brought
+        return unvalidated(SampledCycle, **field_values(self) | {"crankcase": crankcase, "in_cylinder": pressure})
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
@@ -120,7 +123,13 @@ class GasPressure(ChangingLoad):
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""
-        pressure = self.in_cylinder if self.cycle else self.pressure
         area = 0.25 * math.pi * (self.bore * self.bore)
-        force = machine["branch_sign"] * (self.crankcase - pressure) * area
+        force = machine["branch_sign"] * (self.crankcase - self.in_cylinder) * area
         return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}
+
+
+@dataclass(frozen=True, eq=False)
+class SampledCycle(GasPressure):
+    """A gas pressure whose cycle has been evaluated at the angles of a sweep."""
+
+    in_cylinder: Number = None

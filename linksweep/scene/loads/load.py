@@ -11,6 +11,7 @@ import xarray as xr
 
 from linksweep.base.conversion import PAIRS, as_pair
 from linksweep.base.degrees import cos_sin
+from linksweep.base.frozen import normalise, with_values
 from linksweep.base.validate import Number, Rule, choice_problems, field_problems, pair_problems, parameter, quote
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
@@ -18,7 +19,7 @@ from linksweep.mechanisms.rows.load_forms import LoadForm
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
 from linksweep.scene.curves.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
-from linksweep.scene.loads.action import Revolution, with_values
+from linksweep.scene.loads.action import Revolution
 from linksweep.scene.loads.changing_load import ChangingLoad
 from linksweep.scene.units import unit_problems
 
@@ -95,11 +96,10 @@ class Load(ChangingLoad):
     while_: str | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "force", as_pair(self.force, PAIRS["force"]))
+        normalise(self, force=as_pair(self.force, PAIRS["force"]))
         on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
         if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
-            object.__setattr__(self, "force", (self.force, 0.0))
-            object.__setattr__(self, "frame", "link")
+            normalise(self, force=(self.force, 0.0), frame="link")
         super().__post_init__()
 
     @property

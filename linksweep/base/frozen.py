@@ -1,0 +1,48 @@
+"""Frozen dataclasses: how a constructor stores normalised values, and how a copy is made.
+
+Only these functions write to a frozen object, and only before it is returned to anyone.
+"""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import fields, replace
+from typing import Any, TypeVar
+
+Owner = TypeVar("Owner")
+
+
+def normalise(owner: Any, **values: Any) -> None:
+    """Store normalised values in the fields of a frozen dataclass. Only for its `__post_init__`."""
+    for name, value in values.items():
+        object.__setattr__(owner, name, value)
+
+
+def unvalidated(cls: type[Owner], **values: Any) -> Owner:
+    """Return an object with these fields, skipping the constructor. Only for values known to be valid, or discarded."""
+    made = object.__new__(cls)
+    normalise(made, **values)
+    return made
+
+
+def with_values(owner: Owner, **values: Any) -> Owner:
+    """Copy with replaced fields, validated; the object itself where it already has these values."""
+    other = {name: value for name, value in values.items() if not _same(getattr(owner, name), value)}
+    return replace(owner, **other) if other else owner  # type: ignore[type-var]
+
+
+def with_sound(owner: Owner, **values: Any) -> Owner:
+    """Copy with replaced fields, skipping validation. Only for values derived from an already valid object."""
+    if all(_same(getattr(owner, name), value) for name, value in values.items()):
+        return owner
+    return unvalidated(type(owner), **field_values(owner) | values)
+
+
+def field_values(owner: Any) -> dict[str, Any]:
+    """Return the fields of a dataclass by name."""
+    return {item.name: getattr(owner, item.name) for item in fields(owner)}
+
+
+def _same(old: Any, new: Any) -> bool:
+    """Return whether two values are the same object, or tuples of the same objects."""
+    return old is new or (isinstance(new, tuple) and len(old) == len(new) and all(map(operator.is_, old, new)))
