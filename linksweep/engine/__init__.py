@@ -1,1 +1,1 @@
-"""How it is computed: table → plan → one fused kernel. Knows no mechanism."""
+"""Evaluate a table of rows: table → plan → one fused kernel. Knows no mechanism."""

@@ -1,4 +1,4 @@
-"""What a mechanism's table is made of: quantities (what a name means) and rows (what makes it)."""
+"""Elements of a mechanism's table: quantities (name, unit, meaning) and rows (the function that computes them)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from functools import cached_property
 
 @dataclass(frozen=True)
 class Quantity:
-    """A result by name: its unit (UDUNITS spelling) and, in words, what it is and how its sign counts.
+    """A result by name, with its unit (UDUNITS spelling) and, in words, its meaning and sign convention.
 
-    `squared` names the quantity whose square root this is: a peak of a magnitude is sought on the square.
+    `squared` names the quantity whose square root this is: the peak of a magnitude is searched on its square.
     """
 
     name: str
@@ -23,7 +23,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Row:
-    """`function` makes `outputs` from `inputs` (by default: from quantities named like its arguments)."""
+    """A `function` that computes `outputs` from `inputs` (by default: from quantities named like its arguments)."""
 
     function: Callable
     outputs: tuple[str, ...]
@@ -36,7 +36,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Total:
-    """A quantity that is the sum of others; of none, it is zero, and whatever it enters shrinks accordingly."""
+    """A sum of quantities; with no terms it is zero, and operations that use it shrink accordingly."""
 
     output: str
     terms: tuple[str, ...]
@@ -55,9 +55,9 @@ class Total:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """All that a mechanism can compute: rows, the quantities people may ask for, and the sweep's own dimension.
+    """All that a mechanism can compute: rows, the quantities that can be requested, and the sweep's own dim.
 
-    The rows `between` take the place of others between samples, where no grid has tabulated anything.
+    The rows `between` replace others between samples, where no grid tabulates the index.
     """
 
     index: str
@@ -67,15 +67,16 @@ class Table:
 
     @cached_property
     def between_samples(self) -> Table:
-        """The same table for samples that are known by half-angle tangents."""
+        """Return the table for samples at half-angle tangents."""
         return Table(self.index, (*self.rows, *self.between), self.quantities)
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:
-        """The row that makes each name, and the opposite of each quantity (its largest is minus the least)."""
+        """Return the row that makes each name, including the negative of each quantity (its largest is minus the
+        least)."""
         made = {name: row for row in self.rows for name in row.outputs}
-        turned = (Row(_opposite, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
-        return made | {name: row for row in turned for name in row.outputs}
+        negatives = (Row(_opposite, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
+        return made | {name: row for row in negatives for name in row.outputs}
 
     @cached_property
     def quantity(self) -> Mapping[str, Quantity]:

@@ -1,7 +1,7 @@
-"""Running a plan: by numpy while it is small, by its compiled kernel once that pays; the same bits either way.
+"""Run a plan: by numpy while it is small, by its compiled kernel once that pays; both return equal bits.
 
-A kernel takes seconds to wake and compile, numpy a millisecond for a 720-angle cycle. So the first samples of a plan
-are interpreted, operation by operation, and the kernel is compiled when the work done so has added up.
+A kernel takes seconds to load and compile, numpy a millisecond for a 720-angle cycle. So the first samples of a plan
+are interpreted, operation by operation, and the kernel is compiled once the interpreted work has added up.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import operator
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -26,10 +26,10 @@ from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
 COMPILE_AFTER = 100_000
-"""Samples (angles × designs) that a plan may cost interpreted before its kernel is compiled."""
+"""Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 0.1 s of numpy."""
 
 SAMPLES_PER_THREAD = 300_000
-"""Less work than this is not worth handing to another thread."""
+"""Samples that pay for another thread: about a millisecond of kernel."""
 
 OPERATORS = {
     "+": operator.add,
@@ -43,23 +43,23 @@ OPERATORS = {
     "atan2": np.arctan2,
     "where": np.where,
 }
-"""Python's own operators do with numpy's single numbers what numpy's functions do, and much faster."""
+"""Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
 
 
 Numbers = np.ndarray | np.float64
-"""What a node is worth: an array, or a single number where it has no dims."""
+"""The value of a node: an array, or a single number where it has no dims."""
 
 
 class Field(NamedTuple):
-    """Numbers with named dims; `values` has one axis a dim, in that order."""
+    """Numbers with named dims; `values` has one axis per dim, in that order."""
 
     dims: tuple[str, ...]
     values: np.ndarray
 
 
 class Grid(NamedTuple):
-    """The samples of the index dimension `dim`: its values, its period (0: none), and the rows of numbers that
-    depend on it alone."""
+    """Samples of the index dim `dim`: its values, its period (0: none), and the named rows of numbers that depend on it
+    alone."""
 
     dim: str
     angles: np.ndarray
@@ -69,7 +69,7 @@ class Grid(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """Where a node's results lie: rows of the block, or numbers, from `start`, for the designs of `dims`."""
+    """The place of a node's results, for the designs of `dims`: rows of the block, or single numbers, from `start`."""
 
     node: Node
     dims: tuple[str, ...]
@@ -90,14 +90,14 @@ class Layout(NamedTuple):
 
     @staticmethod
     def places(slots: tuple[Slot, ...]) -> tuple[np.ndarray, int]:
-        """Starts as the kernel takes them, and the size of all together."""
+        """Return the starts as the kernel takes them, and the total size."""
         starts = np.array([slot.start for slot in slots], dtype=np.int64)
         return starts, sum(slot.size for slot in slots)
 
 
 @dataclass(eq=False)
 class Runner:
-    """One plan made ready to run, and how much of it has been interpreted so far."""
+    """One plan ready to run, with the number of samples interpreted so far."""
 
     plan: Plan
     reductions: tuple[Reduction, ...]
@@ -116,20 +116,21 @@ class Runner:
     def layout(self, sizes: Mapping[str, int]) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
-            singles = [*self.fused.singles, *(self.plan.outputs[r.name] for r in self.fused.reductions for _ in "12")]
-            rows, alone = slots(self.plan, list(self.fused.rows), sizes), slots(self.plan, singles, sizes)
-            self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), rows, alone)
+            reduced = (self.plan.outputs[r.name] for r in self.fused.reductions for _ in range(2))  # two numbers each
+            rows = slots(self.plan, self.fused.rows, sizes)
+            singles = slots(self.plan, (*self.fused.singles, *reduced), sizes)
+            self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), rows, singles)
         return self.layouts[key]
 
 
-def slots(plan: Plan, nodes: list[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
-    """Places for the results of nodes, one after the other."""
-    found, start = [], 0
+def slots(plan: Plan, nodes: Iterable[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
+    """Return consecutive places for the results of nodes."""
+    places, start = [], 0
     for node in nodes:
         dims = tuple(dim for dim in plan.dims(node) if dim != plan.index)
-        found.append(Slot(node, dims, start, tuple(sizes[dim] for dim in dims)))
-        start += found[-1].size
-    return tuple(found)
+        places.append(Slot(node, dims, start, tuple(sizes[dim] for dim in dims)))
+        start += places[-1].size
+    return tuple(places)
 
 
 @lru_cache(maxsize=256)
@@ -138,15 +139,17 @@ def runner(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Runner:
 
 
 def room_for(samples: int) -> int:
-    """Length of a row of scratch: one of few, so that there are few kernels, and no power of two, at which all rows
-    would compete for the same places of the cache."""
+    """Return the length of a row of scratch, at least `samples`.
+
+    Lengths are few, so that kernels are few. None is a power of two: all rows would compete for the same cache sets.
+    """
     return max(1024, 1 << (samples - 1).bit_length()) + 8
 
 
 def evaluate(
     plan: Plan, inputs: Mapping[str, Field], grid: Grid, sizes: Mapping[str, int], threads: int | None = None
 ) -> dict[str, Field]:
-    """Every output of the plan over its own dims."""
+    """Return every output of the plan over its own dims."""
     ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else TILE))
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
@@ -175,7 +178,8 @@ def reduce_rows(
     sizes: Mapping[str, int],
     threads: int | None = None,
 ) -> dict[Reduction, tuple[Field, Field]]:
-    """Two numbers for each reduction (value and angle, or value and count), over the signal's dims but the index."""
+    """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
+    index."""
     ready = runner(plan, reductions, room_for(len(grid.angles)))
     if plan.late or ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
@@ -191,7 +195,7 @@ def reduce_rows(
 
 
 def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[Node, Numbers]:
-    """Do the nodes' operations in order, on numpy arrays or on any numbers that `operators` can handle."""
+    """Evaluate the nodes in order, on numpy arrays or on any numbers that `operators` handle."""
     with np.errstate(all="ignore"):
         for node in nodes:
             if node.operator == "constant":
@@ -202,7 +206,7 @@ def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[N
 
 
 def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, Numbers]:
-    """The plan's inputs as arrays that broadcast, one axis a loop, then the index; single numbers without dims."""
+    """Return the plan's inputs as arrays that broadcast, one axis per loop, then the index; scalars without dims."""
     rows = dict(zip(grid.names, grid.table, strict=True))
     return {
         node: _align(
@@ -249,7 +253,7 @@ def _execute(
     sizes: Mapping[str, int],
     threads: int | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Lay the inputs out, run the kernel over all designs by a pool of threads, and return block and single."""
+    """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused = ready.plan, ready.fused
     kernel = compiled(fused.source, reductions_source() if fused.reductions else "")
     samples = len(grid.angles)
@@ -274,7 +278,7 @@ def _execute(
 
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:
-    """work(first, last) over 0 … length, by so many workers at most, cores and `threads` allowing."""
+    """Run work(first, last) over 0 … length by at most `workers` threads, as cores and `threads` allow."""
     workers = min(threads or os.cpu_count() or 1, workers, length)
     if workers <= 1:
         work(0, length)
@@ -289,7 +293,7 @@ def _samples(plan: Plan, grid: Grid, sizes: Mapping[str, int]) -> int:
 
 
 def ordered(plan: Plan, field: Field) -> np.ndarray:
-    """A field's values with its loops outermost first and the index last, contiguous."""
+    """Return a field's values with its loops outermost first and the index last, contiguous."""
     if len(field.dims) < 2:
         return np.ascontiguousarray(field.values, dtype=np.float64)
     axes = (*plan.loops, plan.index)
@@ -303,7 +307,7 @@ def flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Mapping[str, Field], grid: Grid):
-    """Rows of all inputs that depend on the index; the grid's own table is used as it stands, uncopied."""
+    """Return the rows of all inputs that depend on the index; the grid's own table is used uncopied."""
     rows, at, blocks = len(grid.table), [], [grid.table]
     for node in nodes:
         if node.value in grid.names:

@@ -1,4 +1,4 @@
-"""Write and compile the kernel of a plan: nested loops over design dims, designs side by side, reductions.
+"""Write and compile the kernel of a plan: nested loops over design dims, batched designs, reductions.
 
-numba is imported in `compile` alone.
+Only `compile` imports numba.
 """

@@ -1,8 +1,8 @@
-"""Kernels that do several designs side by side.
+"""Kernels that process several designs side by side.
 
-Where designs share much of their work, as many masses on one geometry do, most of what a kernel does for each is to
-read the rows that they share. So the innermost design loop takes some designs abreast: each sample of a shared row is
-read once for all of them.
+Where designs share much of their work, as many masses on one geometry do, a kernel spends most of its time per design
+on reading shared rows. So the innermost design loop takes a batch of designs: each sample of a shared row is read once
+for all of them.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
-ABREAST = 4
-"""Designs done side by side; beyond the last one, that one again."""
+BATCH = 4
+"""Designs processed side by side; the last batch is filled up with the last design."""
 SHARED = 8
-"""Operations, at most, for each row that is read: with more of them, reading is not what takes the time."""
+"""Operations, at most, per shared row for batching to pay: with more of them, reading no longer dominates."""
 
 
 def shares_rows(writer: Writer) -> bool:
-    """Whether the innermost loop, over designs whose rows are reduced, mostly reads what others have made."""
+    """Return whether the innermost loop reduces rows and mostly reads rows that outer loops have computed."""
     innermost = writer.innermost
     if innermost < len(writer.plan.loops):
         return False
@@ -29,13 +29,13 @@ def shares_rows(writer: Writer) -> bool:
     return bool(writer.reductions and read) and SHARED * len(read) >= len(work)
 
 
-class AbreastWriter(Writer):
-    """Writes a kernel whose innermost loop does `ABREAST` designs; names of what is theirs end with their number."""
+class BatchedWriter(Writer):
+    """Writer of a kernel whose innermost loop does `BATCH` designs; names of a design's values end in its number."""
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
         super().__init__(plan, reductions, room)
         self.own = [node for node in self.scratch if self.level(node) == self.innermost]
-        self.scratch_size += (ABREAST - 1) * len(self.own) * room
+        self.scratch_size += (BATCH - 1) * len(self.own) * room
         self.design = 0
 
     def name(self, node: Node) -> str:
@@ -54,7 +54,7 @@ class AbreastWriter(Writer):
             super()._design_loop(level)
             return
         first, last = self._bounds(level)
-        self.write(level, f"for front in range({first}, {last}, {ABREAST}):")
+        self.write(level, f"for front in range({first}, {last}, {BATCH}):")
         for _ in self._designs(level):
             self.write(level + 1, f"{self.counter(level - 1)} = min(front + {self.design}, {last} - 1)")
 
@@ -75,11 +75,11 @@ class AbreastWriter(Writer):
             super()._reductions(level)
 
     def _designs(self, level: int) -> Iterator[int]:
-        """One design after the other, as the one that names are of."""
-        for design in range(ABREAST if level == self.innermost else 1):
+        """Yield the designs of a batch; names belong to the current one."""
+        for design in range(BATCH if level == self.innermost else 1):
             self.design = design
             yield design
 
     def _once(self, read: list[Node]) -> list[Node]:
-        """What is shared is read with the first design."""
+        """Return the nodes to read: shared rows only with the first design."""
         return [node for node in read if self.design == 0 or self.level(node) == self.innermost]

@@ -1,8 +1,9 @@
-"""Kernel source to machine code: every numba setting of the package, and how compiled kernels are kept.
+"""Compile kernel source to machine code: every numba setting of the package, and the cache of compiled kernels.
 
-A generated module holds all the code that enters its kernel. Its text, hashed, names it, and the file of each of its
-compiled functions in the user's cache folder (`engine.cache`): none can be stale. numba's own disk cache is not used:
-it runs what it finds, and a damaged file ends every run. Whatever goes wrong with a kept kernel, it is compiled afresh.
+A generated module holds all the code that enters its kernel. A hash of its text names the module, and the file of each
+of its compiled functions in the user's cache folder (`base.cache`), so none can be stale. numba's own disk cache is not
+used: it trusts whatever file it reads, so a damaged one would end every run. If a cached kernel cannot be used for any
+reason, it is compiled afresh.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from typing import Any
 from linksweep.base.cache import forget, keep, recall
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
-"""IEEE division, threads allowed, and no fast-math at all: a contracted or reordered sum would give other bits.
-Kernels make no arrays: numba need not count who refers to the rows they look at, which is felt in a search."""
+"""IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
+arrays, so numba's reference counting (`_nrt`) is off: in a search its cost shows."""
 
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "
@@ -37,7 +38,7 @@ IMPORTS = "import math\nfrom math import atan2, sqrt\n\n\n"
 
 @cache
 def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
-    """Return the kernel of this source as machine code: from this process, from the user's cache, or compiled now."""
+    """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now."""
     helpers = compiled_functions(helpers_source)
     kernel = _jitted(IMPORTS + kernel_source, helpers, f"{signature} {helpers_source}")["kernel"]
     kernel.compile(signature)
@@ -47,7 +48,7 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
 
 @cache
 def compiled_functions(source: str) -> Mapping[str, Any]:
-    """Return the functions of a module of plain functions by name, compiled when they are first called."""
+    """Return the functions of a module of plain functions by name, each compiled on its first call."""
     return _jitted(source, {}) if source else {}
 
 
@@ -56,7 +57,7 @@ def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> di
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
-    module = sys.modules[name] = ModuleType(name)  # where a kept kernel looks for it
+    module = sys.modules[name] = ModuleType(name)  # where a cached kernel looks for it
     vars(module).update(helpers)
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if isinstance(value, FunctionType)}
@@ -72,7 +73,7 @@ def _digest(text: str) -> str:
 
 
 class KernelCache:
-    """Machine code of one function, kept for each signature and kind of processor: the cache of a numba dispatcher."""
+    """Cache of a numba dispatcher: machine code of one function, by signature and processor type."""
 
     cache_path = None
 
@@ -80,7 +81,7 @@ class KernelCache:
         self.name = name
 
     def load_overload(self, signature: object, target: Any) -> Any:
-        """Return the kept machine code, ready to run; None where there is none, or anything is wrong with it."""
+        """Return the cached machine code, ready to run; None where there is none, or it cannot be used."""
         from numba.core.compiler import CompileResult
 
         target.refresh()
@@ -93,7 +94,7 @@ class KernelCache:
             return None
 
     def save_overload(self, signature: object, result: Any) -> None:
-        """Keep machine code; what can't be kept is compiled again by the next process."""
+        """Store machine code; where that fails, the next process compiles again."""
         from numba.core.serialize import dumps
 
         with contextlib.suppress(Exception):

@@ -1,4 +1,4 @@
-"""fuse(plan): the source of its kernel, and the order in which that takes its arguments."""
+"""fuse(plan): write the source of its kernel, and the order of the kernel's arguments."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import inspect
 from dataclasses import dataclass
 
 from linksweep.engine.kernel import reduce
-from linksweep.engine.kernel.batched import AbreastWriter, shares_rows
+from linksweep.engine.kernel.batched import BatchedWriter, shares_rows
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
@@ -14,7 +14,7 @@ from linksweep.engine.trace.plan import Plan
 
 @dataclass(frozen=True, eq=False)
 class Fused:
-    """A kernel's source and the order in which its arguments hold inputs, rows and single results."""
+    """A kernel's source, and the order of inputs, rows and single results in its arguments."""
 
     source: str
     parameters: tuple[Node, ...]
@@ -26,10 +26,10 @@ class Fused:
 
 
 def fuse(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Fused:
-    """Write the kernel that stores the plan's outputs, or that reduces them row by row, for so many samples at most."""
+    """Write the kernel that stores the plan's outputs or reduces them row by row, for at most `room` samples."""
     writer = Writer(plan, reductions, room)
     if shares_rows(writer):
-        writer = AbreastWriter(plan, reductions, room)
+        writer = BatchedWriter(plan, reductions, room)
     return Fused(
         source=writer.kernel(),
         parameters=writer.parameters,

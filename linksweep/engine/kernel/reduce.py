@@ -1,20 +1,19 @@
-"""Rows to single numbers, for peaks. Plain Python that numba compiles into a kernel, and that also runs as it
-stands."""
+"""Reduce rows to single numbers, for peaks and means: plain Python that numba compiles and that also runs as is."""
 
 import math
 
 WORK = 80
-"""Numbers of working memory that a reduction may use: 64 lanes and 16 to fold them into."""
+"""Numbers of working memory for a reduction: 64 lanes and 16 to fold them into."""
 
 
 def largest_sample(row, angles, work):
-    """Largest sample of a row and its angle. NaN samples are passed over; all NaN gives NaN."""
+    """Return the largest sample of a row and its angle; NaN samples are skipped, all NaN gives NaN."""
     at = place_of_largest(row, work)
     return (row[at], angles[at]) if at >= 0 else (math.nan, math.nan)
 
 
 def least_sample(row, angles, work):
-    """Least sample of a row and its angle, NaN passed over as well."""
+    """Return the least sample of a row and its angle; NaN samples are skipped, all NaN gives NaN."""
     at = -1
     for j in range(len(row)):
         if row[j] == row[j] and (at < 0 or row[j] < row[at]):
@@ -23,10 +22,10 @@ def least_sample(row, angles, work):
 
 
 def place_of_largest(row, work):
-    """Where the largest sample is, the first of equals; -1 where all are NaN.
+    """Return the position of the largest sample, the first of equals; −1 where all are NaN.
 
-    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions, and the winning
-    lane says where to look for its sample.
+    Lane k of `work` keeps the largest of samples k, k + 64, …: that compiles to vector instructions. Only the lanes
+    that hold the peak are then searched for its position.
     """
     n = len(row)
     for k in range(64):
@@ -50,7 +49,7 @@ def place_of_largest(row, work):
 
 
 def first_in_lane(row, k, peak, end):
-    """The first of samples k, k + 64, … that is the peak, if it comes before the end."""
+    """Return the first position among k, k + 64, … whose sample equals the peak, or one not below `end`."""
     j = k
     while j < end and row[j] != peak:
         j += 64
@@ -58,7 +57,7 @@ def first_in_lane(row, k, peak, end):
 
 
 def largest_lane(work):
-    """The largest of the 64 lanes, by folding them into 16."""
+    """Return the largest of the 64 lanes, by folding them into 16."""
     for k in range(16):
         work[64 + k] = work[k]
     for start in range(16, 64, 16):
@@ -72,7 +71,7 @@ def largest_lane(work):
 
 
 def mean(row, angles, work):
-    """Mean of the samples that are not NaN, and how many they are."""
+    """Return the mean of the samples that are not NaN, and their number."""
     total, count = 0.0, 0
     for j in range(len(row)):
         if row[j] == row[j]:
@@ -82,7 +81,7 @@ def mean(row, angles, work):
 
 
 def mean_square(row, angles, work):
-    """Mean of the squares of the samples that are not NaN, and how many they are."""
+    """Return the mean of the squares of the samples that are not NaN, and their number."""
     total, count = 0.0, 0
     for j in range(len(row)):
         if row[j] == row[j]:

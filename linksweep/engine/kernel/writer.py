@@ -1,18 +1,20 @@
-"""The source of one kernel that does a plan, nothing else.
+"""Write the source of one kernel that evaluates one plan.
 
-Design dimensions become nested loops, those too deep for Python one loop together, the index the inner loop. An
-operation is done in the loop of its own dimensions: what depends on no angle once per design, what depends on angle in
-the inner loop, and what is shared by deeper loops is kept in a row of `scratch` and read back from cache. Row views
-are taken before a plain inner loop over contiguous rows, and the rows of `scratch`, which is flat, lie a number apart
-that the source says, so that they are known not to overlap: that is what vectorises. Results that are too many to be
-told apart when the loop begins are written to `scratch` too, and copied from there.
+Design dims become nested loops (dims beyond Python's nesting limit share one loop), the index the inner loop. An
+operation is done in the loop of its own dims: once per design if it depends on no angle, else in the inner loop; if
+deeper loops share its result, that is kept in a row of `scratch` and read back from cache.
+
+Two choices let LLVM vectorise the inner loop, and losing that costs eightfold: row views are taken before a plain loop
+over contiguous rows; and rows of `scratch`, which is flat, lie a distance apart that is a literal in the source, so
+that they provably do not overlap. Where a loop has more result rows than the compiler will check for overlap, results
+are written to `scratch` too, and copied from there.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, work)
 
-`parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row a sample line; each
-input starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost
-design loop (the samples, where there is none), so that a pool of threads can share the work.
+`parameters` holds the inputs that depend on no angle, flat; `profiles` those that do, one row per design; each input
+starts at its `_at`. Results go to rows of `block`, or flat into `single`. `first, last` bound the outermost design loop
+(the samples, where there is none), so that a pool of threads can share the work.
 """
 
 from __future__ import annotations
@@ -30,27 +32,27 @@ ARGUMENTS = (
 )
 INFIX = {"+", "-", "*", "/", "<"}
 COMPARISONS = 128
-"""Pairs of rows, at most, that the compiler lets a vectorised loop compare before it begins, lest they overlap."""
+"""Pairs of rows, at most, whose overlap the compiler checks at run time before a vectorised loop."""
 DEEPEST = 16
-"""Design loops within each other, at most: Python takes 20 blocks, and a search has two more inside. All dims beyond
-share the innermost loop."""
+"""Most nested design loops: Python allows 20 nested blocks, and a search has two more inside. Further dims share the
+innermost loop."""
 TILE = 1024
-"""Samples that a kernel without design loops does at a time where it copies: the rows of a tile stay in the cache."""
+"""Samples per tile in a kernel without design loops that copies results: the rows of a tile stay in the cache."""
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """A row's summary by a function of engine.reduce: `kind` of the output `name`, as two numbers in `single`."""
+    """A row's summary by a function of `engine.kernel.reduce`: `kind` of the output `name`, two numbers in `single`."""
 
     kind: str
     name: str
 
 
 class Writer:
-    """Writes one kernel, level by level: level k is the body of the k-th design loop, level 0 what is around all."""
+    """Writer of one kernel, level by level: level k is the body of the k-th design loop, level 0 encloses all loops."""
 
     PLACED: tuple[str, ...] = ()
-    """Inputs per sample that the kernel itself puts into rows of scratch."""
+    """Inputs per sample that the kernel itself writes to rows of scratch."""
 
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
         self.plan, self.reductions, self.room = plan, reductions, room
@@ -72,19 +74,19 @@ class Writer:
         self.lines: list[str] = []
 
     def _late(self, plan: Plan) -> tuple[Node, ...]:
-        """What is left to numpy, after the kernel."""
+        """Return the nodes left to numpy, after the kernel."""
         return plan.late
 
     def per_sample(self, node: Node) -> bool:
         return self.plan.index in node.dims
 
     def level(self, node: Node) -> int:
-        """Number of design loops around a node's work."""
+        """Return the number of design loops around a node's operation."""
         deepest = max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
         return min(deepest, self.innermost)
 
     def _copied(self) -> frozenset[Node]:
-        """Results that are copied from scratch: those that deeper loops read, and all of a loop that has too many."""
+        """Return the results copied from scratch: those that deeper loops read, and all of a loop that has too many."""
         copied = set(self.rows) & self._read_back()
         for level in range(self.innermost + 1):
             rows = {node for node in self.rows if self.level(node) == level}
@@ -93,7 +95,7 @@ class Writer:
         return frozenset(copied)
 
     def _read_back(self) -> set[Node]:
-        """Rows that deeper loops read back."""
+        """Return the rows that deeper loops read back."""
         return {
             x
             for node in self.nodes
@@ -102,7 +104,7 @@ class Writer:
         }
 
     def _kept_in_scratch(self) -> list[Node]:
-        """Rows that deeper loops read back, the signals to be reduced, what is placed, and what is copied."""
+        """Return the nodes with rows in scratch: read back by deeper loops, reduced, placed here, or copied."""
         signals = {self.plan.outputs[reduction.name] for reduction in self.reductions}
         kept = self._read_back() | signals | self.placed | self.copied
         return sorted(kept, key=lambda node: node.position)
@@ -129,7 +131,7 @@ class Writer:
             self.write(level, f"for {self.counter(level - 1)} in range({', '.join(self._bounds(level))}):")
 
     def _folded_loop(self, level: int) -> None:
-        """One loop over the designs of all dims that are left, the last dim fastest."""
+        """Write one loop over the designs of all remaining dims, the last dim fastest."""
         first, *others = range(level - 1, len(self.plan.loops))
         sizes = " * ".join(f"sizes[{loop}]" for loop in (first, *others))
         self.write(level, f"for folded in range({sizes}):")
@@ -139,7 +141,7 @@ class Writer:
             self.write(level + 1, f"{self.counter(loop)}, {left} = {left} % {size}, {left} // {size}")
 
     def _bounds(self, level: int) -> tuple[str, str]:
-        """First and last of the designs of a loop: of the outermost, those that this call is to do."""
+        """Return the first and last design of a loop; for the outermost loop, those of this call."""
         return ("first", "last") if level == 1 else ("0", f"sizes[{level - 1}]")
 
     def counter(self, loop: int) -> str:
@@ -160,7 +162,7 @@ class Writer:
         ]
 
     def _single_values(self, level: int) -> None:
-        """What depends on no angle."""
+        """Write the operations that depend on no angle."""
         depth = level + 1
         for k, node in enumerate(self.parameters):
             if self.level(node) == level:
@@ -171,7 +173,7 @@ class Writer:
                 self.write(depth, f"single[{self._at('single', k, node)}] = {self.name(node)}")
 
     def _sample_loop(self, level: int) -> None:
-        """The inner loop over the samples, with the rows that it reads and writes."""
+        """Write the inner loop over the samples, with the rows that it reads and writes."""
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         written = [node for node in written if node not in self.placed]
         if not written:
@@ -187,21 +189,21 @@ class Writer:
         self._copies(depth, copied)
 
     def _views(self, depth: int, read: list[Node], written: list[Node]) -> None:
-        """Views of the rows that are not in scratch."""
+        """Write views of the rows that are not in scratch."""
         for node in read:
-            if self._given(node):
+            if self._is_profile(node):
                 row = self._at("profile", self.profiles.index(node), node)
                 self.write(depth, f"read_{self.name(node)} = profiles[{row}]{self._part}")
         for node in written:
             if node not in self.scratch:
                 self.write(depth, f"written_{self.name(node)} = {self._block_row(node)}")
 
-    def _given(self, node: Node) -> bool:
+    def _is_profile(self, node: Node) -> bool:
         return node.operator == "input" and node not in self.placed
 
     def _one_sample(self, depth: int, read: list[Node], work: list[Node], written: list[Node]) -> None:
         for node in read:
-            cell = f"read_{self.name(node)}[j]" if self._given(node) else self._scratch_cell(node)
+            cell = f"read_{self.name(node)}[j]" if self._is_profile(node) else self._scratch_cell(node)
             self.write(depth, f"{self.name(node)} = {cell}")
         self._assign(work, depth)
         for node in written:
@@ -209,7 +211,7 @@ class Writer:
             self.write(depth, f"{cell} = {self.name(node)}")
 
     def _tiles(self, depth: int) -> int:
-        """Take the samples tile by tile; the depth inside."""
+        """Write the loop over tiles of samples; return the depth inside."""
         self.write(depth, f"for start in range(first, last, {TILE}):")
         self.write(depth + 1, f"samples = min({TILE}, last - start)")
         return depth + 1
@@ -224,7 +226,7 @@ class Writer:
         return f"scratch[{self.row_number(node) * self.room} + j]"
 
     def row_number(self, node: Node) -> int:
-        """Which row of scratch a node has."""
+        """Return the number of a node's row in scratch."""
         return self.scratch[node]
 
     def _block_row(self, node: Node) -> str:
@@ -232,18 +234,18 @@ class Writer:
 
     @property
     def _part(self) -> str:
-        """Which samples of a row: without design loops, what this call is to do."""
+        """Return the slice of a row: without design loops, the samples of this call."""
         return "" if self.plan.loops else "[start:start + samples]"
 
     def _row(self, node: Node) -> str:
-        """A node's row of scratch."""
+        """Return a node's row of scratch."""
         return self._scratch_row(self.row_number(node))
 
     def _scratch_row(self, k: int) -> str:
         return f"scratch[{k * self.room}:{k * self.room} + samples]"
 
     def _at(self, table: str, k: int, node: Node) -> str:
-        """Where a node's value of the current design is: row-major over the node's own loops."""
+        """Return the position of a node's value for the current design: row-major over the node's own loops."""
         place = ""
         for i, dim in enumerate(self.plan.loops):
             if dim in node.dims:
@@ -251,7 +253,7 @@ class Writer:
         return f"{table}_at[{k}]" + (f" + {place}" if place else "")
 
     def _assign(self, work: list[Node], depth: int) -> None:
-        """One line for each node used more than once, or elsewhere; the others are written into their only use."""
+        """Write one line per node that is used more than once or elsewhere; inline the others into their only use."""
         used_here = {x for node in work for x in node.operands}
         inlined = {node for node in work if self.uses[node] == 1 and node in used_here and node not in self.named}
         for node in work:
@@ -264,7 +266,7 @@ class Writer:
         return node.value if node.operator == "input" else f"x{node.position}"
 
     def expression(self, node: Node, inlined: set[Node]) -> str:
-        """An operation in Python, with the operations that only it uses written inside."""
+        """Return an operation as Python source, with operands that only it uses inlined."""
         x = [f"({self.expression(y, inlined)})" if y in inlined else self.name(y) for y in node.operands]
         if node.operator in INFIX:
             return f"{x[0]} {node.operator} {x[1]}"

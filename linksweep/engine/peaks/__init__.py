@@ -1,1 +1,1 @@
-"""Search for exact peaks within a kernel: lanes, trials, and the calls that run them."""
+"""Search for exact peaks within a kernel: lanes (brackets of candidate peaks), trials, and the calls that run them."""

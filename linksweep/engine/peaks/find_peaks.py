@@ -1,4 +1,4 @@
-"""Peaks of a plan's outputs over the whole turn, between the samples too."""
+"""Find the peaks of a plan's outputs over the whole turn, between the samples too."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import numpy as np
 
 from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled, compiled_functions
 from linksweep.engine.peaks import search
-from linksweep.engine.peaks.search_kernel import FOUND, SearchWriter
+from linksweep.engine.peaks.search_kernel import STORED, SearchWriter
 from linksweep.engine.run import Field, Layout, flat, ordered, over_threads, single_of, slots
 from linksweep.engine.trace.plan import Plan
 
 INTERPRETED_DESIGNS = 40
-"""Designs that a plan may cost interpreted before its kernel is compiled."""
+"""Designs interpreted before a plan's kernel is compiled."""
 INTERPRETED_SAMPLES = 100_000
-"""Samples that a search along paths may look at interpreted."""
+"""Samples that a search along paths may evaluate interpreted."""
 DESIGNS_PER_THREAD = 1000
-"""Fewer than this are not worth handing to another thread."""
+"""Designs that pay for another thread."""
 
 
 class Peak(NamedTuple):
-    """What was found of a signal: its largest value, the half-angle tangent and half turn of its place, a bound on how
-    much higher it might be, and how often the plan was evaluated."""
+    """The peak of a signal: its largest value, its place (half-angle tangent and half turn), a bound on how much higher
+    it might be, and the number of evaluations."""
 
     value: Field
     tangent: Field
@@ -38,7 +38,7 @@ class Peak(NamedTuple):
 
 @dataclass(eq=False)
 class Searcher:
-    """The search for the peaks of some outputs of a plan, made ready to run."""
+    """The search for the peaks of some outputs of a plan, ready to run."""
 
     plan: Plan
     signals: tuple[str, ...]
@@ -56,12 +56,12 @@ class Searcher:
     def layout(self, sizes: Mapping[str, int]) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
-            nodes = [node for node in self.writer.signals for _ in FOUND]
+            nodes = [node for node in self.writer.signals for _ in STORED]
             self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), (), slots(self.plan, nodes, sizes))
         return self.layouts[key]
 
     def kernel(self, designs: int) -> Callable:
-        """The kernel as Python while that is cheap, then compiled."""
+        """Return the kernel as Python for the first designs, then compiled."""
         self.interpreted += designs
         if self.interpreted > INTERPRETED_DESIGNS:
             return compiled(self.source, search_source(), SEARCH_SIGNATURE)
@@ -81,7 +81,7 @@ def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
 
 @lru_cache(maxsize=1)
 def grades() -> np.ndarray:
-    """Half-angle tangents of the samples of half a turn, for each scale of the sinh grade."""
+    """Return the half-angle tangents of the samples of half a turn, for each scale of the sinh grade."""
     scale = 0.5 ** np.arange(search.GRADES)[:, None]
     steps = np.arange(-search.HALF, search.HALF) / search.HALF
     table = scale * np.sinh(np.arcsinh(1.0 / scale) * steps)
@@ -92,14 +92,14 @@ def grades() -> np.ndarray:
 def find_peaks(
     plan: Plan, signals: tuple[str, ...], inputs: Mapping[str, Field], sizes: Mapping[str, int], threads: int | None
 ) -> dict[str, Peak]:
-    """The largest value of each signal over the turn, for every design."""
+    """Return the largest value of each signal over the turn, for every design."""
     ready = searcher(plan, signals)
     layout, designs = ready.layout(sizes), math.prod(sizes[dim] for dim in plan.loops)
     kernel, writer = ready.kernel(designs), ready.writer
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in writer.parameters])
     single_at, single_size = layout.places(layout.singles)
     single = np.empty(single_size)
-    room = search.in_blocks(len(signals) * search.SAMPLES // 2)
+    room = search.in_blocks(len(signals) * search.SAMPLES // 2)  # at most every other sample is a summit
 
     def work(first: int, last: int) -> None:
         scratch = np.empty(writer.scratch_size)
@@ -113,7 +113,7 @@ def find_peaks(
     with np.errstate(all="ignore"):
         over_threads(work, int(layout.sizes[0]), 1 + designs // DESIGNS_PER_THREAD if plan.loops else 1, threads)
     fields = iter(single_of(slot, single) for slot in layout.singles)
-    return {signal: Peak(*(next(fields) for _ in FOUND)) for signal in signals}
+    return {signal: Peak(*(next(fields) for _ in STORED)) for signal in signals}
 
 
 @lru_cache(maxsize=1)
@@ -122,5 +122,5 @@ def search_source() -> str:
 
 
 def search_functions(samples: int) -> Mapping[str, Callable]:
-    """The functions of engine.search, compiled where there is much to search."""
+    """Return the functions of `engine.peaks.search`, compiled where there are many samples to search."""
     return compiled_functions(search_source()) if samples > INTERPRETED_SAMPLES else vars(search)

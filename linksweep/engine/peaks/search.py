@@ -1,75 +1,79 @@
-"""The search for exact peaks, in plain Python that numba compiles into a kernel and that also runs as it stands.
+"""Search for exact peaks, in plain Python that numba compiles into a kernel and that also runs as is.
 
-A signal is known at samples x along a path. Each sample above its neighbours opens a lane, if what its curvature
-promises could win:
+A signal is evaluated at samples x along a path. Each sample above its neighbours opens a lane (a bracket under
+refinement), unless its curvature rules out that it exceeds the largest sample:
 
              b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
         a    |            of the parabola through them (at first: of the quartic through five samples), all lanes side
         |    |    c       by side, and keeps the best point with its neighbours. Where that converges slowly (a kink,
-                          a jump), the halves are halved instead.
+                          a jump), the two sides of b are bisected instead.
 
-A lane ends when even the secants through its bracket, drawn on, promise nothing more: where a curve bends down they
-bound what is left.
+A lane closes when its extended secants allow no further rise: a concave curve lies below them.
 
-The path of a whole turn is cut into two halves, each seen by the tangent x of half its angle from its own middle
-(`far` is 0 on one half, 1 on the other), so that x runs from −1 to 1 on both. Samples lie on a sinh grade, dense about
-x = 0 where a pinch is narrow.
+The path of a whole turn is split into two halves, each parametrised by the tangent x of half its angle from its own
+middle (`far` is 0 on one half, 1 on the other), so that x runs from −1 to 1 on both. Samples follow a sinh grade, dense
+about x = 0 where a near-toggle is narrow.
 """
 
 import math
 
 HALF = 24
-"""Samples on either side of the middle of each half turn."""
+"""Samples on either side of the middle of each half turn. With 96 a turn, `benchmarks.accuracy.missed` finds no design
+of a million whose peak the search misses."""
 SAMPLES = 4 * HALF
 GRADES = 27
-"""Scales of the sinh grade: 1, 1/2, 1/4, …"""
+"""Scales of the sinh grade: 1, 1/2, 1/4, … The finest, 2⁻²⁶, is narrower than any near-toggle that is not yet a toggle
+by its status (8e-8 rad)."""
 ROUNDS = 400
-"""More than halving down to the last digit takes."""
+"""Rounds, at most: more than bisecting a bracket down to its last digit takes."""
 
-# rows of `lanes`: a bracket of three points, where and what it is of, and how it began
+# rows of `lanes`: the three points of a bracket; its half turn and signal; its width, at the last round and at first;
+# noise of the signal, rise that remains possible, whether it is done; predicted vertex, its uncertainty; outer samples
 XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, LEFT, DONE, VERTEX, REACH, FAA, FCC = range(17)
-LANE_ROWS, LASTING_ROWS = 17, 11
+LANE_ROWS, LASTING_ROWS = 17, 11  # a lane carries the first 11 from round to round
 TRIALS = 3
-"""Trials of a lane in a round."""
-# rows of `trials`
-X, SIDE, OF, VALUE = range(4)
+"""Trials per lane and round."""
+# rows of `trials`: place, half turn, signal, value
+X, TRIAL_FAR, TRIAL_TAG, VALUE = range(4)
 TRIAL_ROWS = 4
-# rows of `best`: for each signal the peak, where it is, and how much higher it might be
+# rows of `best`, for each signal: the peak, its place and half turn, and how much higher it might be
 PEAK, PEAK_X, PEAK_FAR, BEYOND = range(4)
 BEST_ROWS = 4
 
 BLOCK = 8
-"""Lanes are gone through in blocks, the last one filled with whatever is there: so loops become vector instructions."""
+"""Lanes per block: 8 doubles fill a 512-bit register. Loops run over whole blocks, so that they become vector
+instructions; unused lanes of the last block hold arbitrary numbers."""
 
 NARROW = 1e-4
-"""A bracket is done only when it has closed to this: its parabola then has the place of the peak to 1e-5 degree."""
+"""Width, relative to the first, down to which a bracket is refined at least: its parabola then places the peak to 1e-5
+degree."""
 RISE = 1e-11
-"""What may be left of a peak, relative to it."""
+"""Rise that may remain possible when a lane closes, relative to the peak: a tenth of the promised 1e-10."""
 NOISE = 1e-15
-"""What a signal cannot tell from nothing, relative to its largest magnitude."""
+"""Rounding noise of a signal, relative to its largest magnitude."""
 
 
 def place_halves(far):
-    """0 for the samples of the near half turn, 1 for those of the far one."""
+    """Set `far` to 0 for the samples of the near half turn and to 1 for those of the far one."""
     for k in range(2 * HALF):
         far[k], far[2 * HALF + k] = 0.0, 1.0
 
 
 def place_samples(x, before, after, near, far, grades):
-    """The half-angle tangents of a design's samples and of their neighbours, by how narrow its two pinches are."""
+    """Place a design's samples and their neighbours (half-angle tangents), by the widths of its two near-toggles."""
     for start, width in ((0, near), (2 * HALF, far)):
         grade = grade_of(width)
         for k in range(2 * HALF):
             x[start + k] = grades[grade, k]
         for k in range(1, 2 * HALF):
             before[start + k], after[start + k - 1] = x[start + k - 1], x[start + k]
-    # seen from the other middle, 180 degrees away, a tangent is minus its inverse
+    # measured from the other middle, 180 degrees away, a tangent is minus its inverse
     before[0], before[2 * HALF] = -1.0 / x[SAMPLES - 1], -1.0 / x[2 * HALF - 1]
     after[2 * HALF - 1], after[SAMPLES - 1] = 1.0, 1.0
 
 
 def grade_of(width):
-    """The first scale not above a width."""
+    """Return the index of the first scale that does not exceed `width`."""
     grade, scale = 0, 1.0
     while width < scale and grade < GRADES - 1:
         grade += 1
@@ -77,11 +81,11 @@ def grade_of(width):
     return grade
 
 
-def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flags):
-    """Note a signal's largest sample and open a lane at each that could lead higher. Returns how many lanes there are.
+def open_lanes(row, x, before, after, far, joined, even, tag, lanes, count, best, flags):
+    """Note a signal's largest sample and open a lane at each that could lead higher; return the number of lanes.
 
-    `joined` says whether the path's ends meet, `even` whether each half of it is graded evenly; `before` and `after`
-    are the samples' neighbours.
+    `joined` tells whether the path's ends meet, `even` whether each half of it is graded evenly; `before` and `after`
+    are the places of the samples' neighbours.
     """
     n = len(row)
     summits = find_summits(row, joined, flags)
@@ -90,7 +94,7 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
         j = flags[k] if summits else k
         if row[j] > top:
             top, at = row[j], j
-    quarter = n // 4
+    quarter = n // 4  # a few samples suffice for the signal's magnitude
     floor = NOISE * max(abs(top), abs(row[0]), abs(row[quarter]), abs(row[2 * quarter]), abs(row[3 * quarter]))
     best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
     best[PEAK_X, tag], best[PEAK_FAR, tag] = x[at], far[at]
@@ -102,14 +106,14 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
         while first > 0 and x[first - 1] == x[j]:
             first -= 1
         left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
-        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[first])
+        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[first])  # the sinh grade is even in its parameter
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
             lanes[XA, count], lanes[FA, count] = before[first], left
             lanes[XB, count], lanes[FB, count] = x[j], value
             lanes[XC, count], lanes[FC, count] = after[j], right
             lanes[FAR, count], lanes[TAG, count] = far[j], float(tag)
             width = after[j] - before[first]
-            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * width, width
+            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow at first
             lanes[FLOOR, count] = floor
             lanes[VERTEX, count] = math.nan
             inner = even and 2 <= j % (n // 2) < n // 2 - 2
@@ -119,13 +123,13 @@ def find(row, x, before, after, far, joined, even, tag, lanes, count, best, flag
 
 
 def might_reach(left, value, right, ratio):
-    """How high a peak about a sample above its neighbours might be, of which the right one is `ratio` times as far as
-    the left one: by as much as both secants, drawn on, say together."""
+    """Return an upper estimate of the peak about a sample above its neighbours: the rises that both secants,
+    extrapolated, allow, added up. The right neighbour is `ratio` times as far away as the left one."""
     return value + ((value - left) * ratio + (value - right) / ratio)
 
 
 def find_summits(row, joined, flags):
-    """Put the places of all samples that stand above their neighbours into `flags`. Returns how many they are."""
+    """Write the positions of all samples that exceed their neighbours to `flags`; return their number."""
     n, summits = len(row), 0
     for j in range(1, n - 1):
         below = (row[j] < row[j - 1]) | (row[j] <= row[j + 1]) | (row[j] != row[j])  # a NaN is below, and none above
@@ -142,13 +146,13 @@ def find_summits(row, joined, flags):
         if total > 0:
             for j in range(start, start + BLOCK):
                 stands = flags[j]
-                flags[summits] = j  # without a branch, which would be guessed wrong
+                flags[summits] = j  # without a branch: it would often be mispredicted
                 summits += stands
     return summits
 
 
 def neighbour(row, j, side, joined):
-    """The sample beside another; −inf where there is none."""
+    """Return the sample beside another; −inf where there is none."""
     k, last = j + side, len(row) - 1
     if k < 0 or k > last:
         k = last if k < 0 else 0
@@ -156,25 +160,30 @@ def neighbour(row, j, side, joined):
     return row[k] if row[k] == row[k] else -math.inf
 
 
-def open_lanes(rows, x, before, after, joined, lanes, best, flags):
-    """Find the lanes of all signals on all paths: rows (path, signal, sample), tagged path by path."""
+def open_path_lanes(rows, x, before, after, joined, lanes, best, flags):
+    """Open the lanes of all signals on all paths: rows (path, signal, sample), tagged path by path."""
     count = 0
     paths, signals = rows.shape[:2]
     for path in range(paths):
         for k in range(signals):
             where = x[path], before[path], after[path], x[path]
-            count = find(rows[path, k], *where, joined, False, path * signals + k, lanes, count, best, flags)
+            count = open_lanes(rows[path, k], *where, joined, False, path * signals + k, lanes, count, best, flags)
     return count
 
 
 def in_blocks(count):
-    """Room for so many lanes in whole blocks: the second trials start there, the third ones at twice as much."""
+    """Return the length of whole blocks that hold `count` lanes: second trials start there, third ones at twice as
+    much."""
     return (count + BLOCK - 1) // BLOCK * BLOCK
 
 
-def guess(lanes, count):
-    """First guess of each lane's vertex, and how far it may be off: by the quartic through five samples that are even
-    in some smooth grade; NaN where there are no five."""
+def predict_vertices(lanes, count):
+    """Predict each lane's vertex, and its uncertainty, from the quartic through five samples that are evenly spaced in
+    a smooth parameter; NaN where there are not five.
+
+    Two Newton steps from the parabola's vertex; the uncertainty is a tenth of their correction, and 2e-3 of the
+    spacing.
+    """
     xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
     faa, fcc, vertex, reach = lanes[FAA], lanes[FCC], lanes[VERTEX], lanes[REACH]
     for k in range(in_blocks(count)):
@@ -190,33 +199,35 @@ def guess(lanes, count):
         reach[k] = (0.1 * abs(s - plain) + 2e-3) * step
 
 
-def aim(lanes, trials, count):
-    """Trials for each lane: about the vertex of its parabola, or where that has not halved it, in its halves."""
+def place_trials(lanes, trials, count):
+    """Place three trials per lane: about the vertex of its parabola, or, where the last round shrank it little,
+    bisecting both sides."""
     xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
     width, first_width, far, tag = lanes[WIDTH], lanes[FIRST_WIDTH], lanes[FAR], lanes[TAG]
     first_vertex, first_reach = lanes[VERTEX], lanes[REACH]
-    x, side, of, room = trials[X], trials[SIDE], trials[OF], in_blocks(count)
+    x, trial_far, trial_tag, room = trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], in_blocks(count)
     for k in range(room):
         before, after, wide = xb[k] - xa[k], xc[k] - xb[k], xc[k] - xa[k]
         rise, fall = (fb[k] - fa[k]) / before, (fb[k] - fc[k]) / after
-        guessed = first_vertex[k] == first_vertex[k]
-        vertex = first_vertex[k] if guessed else xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
-        doubt = 0.3 * wide * wide / first_width[k]
-        reach = first_reach[k] if guessed else (doubt if doubt < 0.2 * wide else 0.2 * wide)
+        predicted = first_vertex[k] == first_vertex[k]
+        vertex = first_vertex[k] if predicted else xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
+        spread = 0.3 * wide * wide / first_width[k]  # a parabola's vertex errs by the square of the bracket's width
+        reach = first_reach[k] if predicted else (spread if spread < 0.2 * wide else 0.2 * wide)
         reach = reach if reach > 1e-6 * first_width[k] else 1e-6 * first_width[k]
         sound = (wide < 0.6 * width[k]) & (vertex - reach > xa[k]) & (vertex + reach < xc[k])
         longer = -0.25 * before if before > after else 0.25 * after
         x[k] = vertex if sound else xb[k] + longer
         x[room + k] = vertex - reach if sound else xb[k] - 0.5 * before
         x[2 * room + k] = vertex + reach if sound else xb[k] + 0.5 * after
-        side[k], side[room + k], side[2 * room + k] = far[k], far[k], far[k]
-        of[k], of[room + k], of[2 * room + k] = tag[k], tag[k], tag[k]
+        trial_far[k], trial_far[room + k], trial_far[2 * room + k] = far[k], far[k], far[k]
+        trial_tag[k], trial_tag[room + k], trial_tag[2 * room + k] = tag[k], tag[k], tag[k]
         width[k], first_vertex[k] = wide, math.nan
 
 
 def advance(lanes, trials, count, best):
-    """Take the trials' values into the brackets, note what is best, and close the lanes that are done."""
-    take(lanes, trials, count)
+    """Insert the trials' values into the brackets, note the best, close lanes that are done; return the number left
+    open."""
+    update_brackets(lanes, trials, count)
     for k in range(count):
         tag = int(lanes[TAG, k])
         if lanes[FB, k] > best[PEAK, tag]:
@@ -225,7 +236,7 @@ def advance(lanes, trials, count, best):
     for k in range(count):
         tag = int(lanes[TAG, k])
         if lanes[DONE, k] > 0.0 or lanes[FB, k] + 2.0 * lanes[LEFT, k] < best[PEAK, tag]:
-            settle(lanes, k, best, tag)
+            close_lane(lanes, k, best, tag)
         else:
             if left < k:
                 for row in range(LASTING_ROWS):
@@ -234,21 +245,21 @@ def advance(lanes, trials, count, best):
     return left
 
 
-def take(lanes, trials, count):
-    """Put the trials of each lane into its bracket, and look at what is left to gain."""
+def update_brackets(lanes, trials, count):
+    """Insert the trials of each lane into its bracket, and compute the rise that remains possible."""
     xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
     first_width, floor, left, done = lanes[FIRST_WIDTH], lanes[FLOOR], lanes[LEFT], lanes[DONE]
     x, value, room = trials[X], trials[VALUE], in_blocks(count)
     for k in range(room):
-        bracket = with_point((xa[k], fa[k], xb[k], fb[k], xc[k], fc[k]), x[k], value[k])
-        bracket = with_point(bracket, x[room + k], value[room + k])
-        a, f_a, b, f_b, c, f_c = with_point(bracket, x[2 * room + k], value[2 * room + k])
+        bracket = insert_point((xa[k], fa[k], xb[k], fb[k], xc[k], fc[k]), x[k], value[k])
+        bracket = insert_point(bracket, x[room + k], value[room + k])
+        a, f_a, b, f_b, c, f_c = insert_point(bracket, x[2 * room + k], value[2 * room + k])
         xa[k], fa[k], xb[k], fb[k], xc[k], fc[k] = a, f_a, b, f_b, c, f_c
-        left[k], done[k] = promise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
+        left[k], done[k] = remaining_rise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
 
 
-def with_point(bracket, x, f):
-    """A bracket with another point: as its middle, if it is higher, else as its nearer end."""
+def insert_point(bracket, x, f):
+    """Return a bracket with another point: as its middle, if it is higher, else as its nearer end."""
     a, f_a, b, f_b, c, f_c = bracket
     f = f if f == f else -math.inf
     inside, higher, before = (x > a) & (x < c) & (x != b), f > f_b, x < b
@@ -261,18 +272,19 @@ def with_point(bracket, x, f):
     )  # fmt: skip
 
 
-def promise(a, f_a, b, f_b, c, f_c, first_width, floor):
-    """How far a bracket's secants, drawn on, rise above its middle; and 1 if it has converged, 2 if it has shut."""
-    sure = f_b - 0.5 * RISE * abs(f_b)
-    on, back = (sure - f_a) * ((c - b) / (b - a)), (sure - f_c) * ((b - a) / (c - b))
-    most = on if on > back else back
+def remaining_rise(a, f_a, b, f_b, c, f_c, first_width, floor):
+    """Return how far a bracket's extrapolated secants rise above its middle; and 1 if it has converged, 2 if no number
+    is left in it."""
+    top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
+    forward, backward = (top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b))
+    rise = forward if forward > backward else backward
     tolerance = RISE * abs(f_b) if RISE * abs(f_b) > floor else floor
     shut = c - a <= 1e-15 * (1e-9 + abs(b))  # no number is left between its points
-    return most, (2.0 if shut else (1.0 if (most <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
+    return rise, (2.0 if shut else (1.0 if (rise <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
 
 
-def settle(lanes, k, best, tag):
-    """Note what a closed lane has found: a peak, its place, and what may be left of it."""
+def close_lane(lanes, k, best, tag):
+    """Note the result of a lane: its peak, the place, and the rise that remains possible."""
     height, left, place = lanes[FB, k], lanes[LEFT, k], lanes[XB, k]
     if height < best[PEAK, tag]:
         return

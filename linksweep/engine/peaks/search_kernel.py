@@ -2,9 +2,9 @@
 
     kernel(first, last, sizes, parameters, parameter_at, single, single_at, scratch, grades, lanes, trials, best, flags)
 
-As in `engine.fuse`, design dimensions are nested loops and shared rows wait in `scratch`. The index is not tabulated:
-each design places its own samples by half-angle tangents, and its lanes (see `engine.search`) evaluate whatever
-depends on the index anew at their trials.
+As in `engine.kernel.writer`, design dims are nested loops and shared rows are kept in `scratch`. The index is not
+tabulated: each design places its own samples by half-angle tangents, and its lanes (see `engine.peaks.search`) evaluate
+all that depends on the index anew at their trials.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ ARGUMENTS = (
     "first, last, sizes, parameters, parameter_at, single, single_at, scratch, grades, lanes, trials, best, flags"
 )
 TANGENT, FAR = "half_tangent", "far_half"
-"""Inputs that say where a sample is: the tangent of half its angle from the middle of its half turn, and which half."""
+"""Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
-"""Quantities that say how narrow the pinches in those middles are."""
-FOUND = (*range(search.BEST_ROWS), "evaluations")
-"""What is stored of each signal."""
+"""Widths of the near-toggles in those middles."""
+STORED = (*range(search.BEST_ROWS), "evaluations")
+"""Numbers stored for each signal."""
 
 
 class SearchWriter(Writer):
-    """Writes the search for the peaks of some of a plan's outputs, its signals."""
+    """Writer of the search for the peaks of some of a plan's outputs, its signals."""
 
     PLACED = (TANGENT, FAR)
 
@@ -48,7 +48,7 @@ class SearchWriter(Writer):
         self._search(level)
 
     def _late(self, plan: Plan) -> tuple[Node, ...]:
-        """Nothing: a signal must be known between the samples."""
+        """Return nothing: a signal must be known between the samples."""
         return ()
 
     def _place_samples(self, level: int) -> None:
@@ -59,7 +59,7 @@ class SearchWriter(Writer):
 
     @property
     def _neighbours(self) -> str:
-        """Rows of scratch that hold the places of the samples before and after each."""
+        """Return the rows of scratch that hold the places of each sample's neighbours, before and after."""
         return ", ".join(self._scratch_row(len(self.scratch) + k) for k in (0, 1))
 
     def _search(self, level: int) -> None:
@@ -72,33 +72,34 @@ class SearchWriter(Writer):
         x, far = self._row(self.place[TANGENT]), self._row(self.place[FAR])
         for k in tags:
             where = f"{self._row(self.signals[k])}, {x}, {self._neighbours}, {far}"
-            self.write(depth, f"count = find({where}, True, True, {k}, lanes, count, best, flags)")
-        self.write(depth, "guess(lanes, count)")
+            self.write(depth, f"count = open_lanes({where}, True, True, {k}, lanes, count, best, flags)")
+        self.write(depth, "predict_vertices(lanes, count)")
         self.write(depth, f"evaluations, rounds = {search.SAMPLES}, 0")
         self.write(depth, f"while count > 0 and rounds < {search.ROUNDS}:")
         self._round(depth + 1, tags)
         for k in tags:
-            for part, found in enumerate(FOUND):
-                value = found if isinstance(found, str) else f"best[{found}, {k}]"
-                place = self._at("single", len(FOUND) * k + part, self.signals[k])
+            for part, stored in enumerate(STORED):
+                value = stored if isinstance(stored, str) else f"best[{stored}, {k}]"
+                place = self._at("single", len(STORED) * k + part, self.signals[k])
                 self.write(depth, f"single[{place}] = {value}")
 
     def _round(self, depth: int, tags: list[int]) -> None:
-        self.write(depth, "aim(lanes, trials, count)")
-        self.write(depth, "at, side, of, value = trials[0], trials[1], trials[2], trials[3]")
+        self.write(depth, "place_trials(lanes, trials, count)")
+        self.write(depth, "places, halves, tags, values = trials[0], trials[1], trials[2], trials[3]")
         self.write(depth, f"for j in range({search.TRIALS} * in_blocks(count)):")
-        self.write(depth + 1, f"{TANGENT}, {FAR}, tag = at[j], side[j], of[j]")
+        self.write(depth + 1, f"{TANGENT}, {FAR}, tag = places[j], halves[j], tags[j]")
         self._assign(self._needed([self.signals[k] for k in tags]), depth + 1)
         chosen = self.name(self.signals[tags[-1]])
         for k in reversed(tags[:-1]):
             chosen = f"{self.name(self.signals[k])} if tag == {float(k)} else ({chosen})"
-        self.write(depth + 1, f"value[j] = {chosen}")
+        self.write(depth + 1, f"values[j] = {chosen}")
         self.write(depth, f"evaluations += {search.TRIALS} * count")
         self.write(depth, "count = advance(lanes, trials, count, best)")
         self.write(depth, "rounds += 1")
 
     def _needed(self, signals: list[Node]) -> list[Node]:
-        """All work per sample on the way to these signals, of every level: between samples nothing is shared."""
+        """Return all operations per sample on the way to these signals, of every level: between samples nothing is
+        shared."""
         needed: set[Node] = set()
         waiting = list(signals)
         while waiting:

@@ -1,1 +1,1 @@
-"""Decide what is computed: functions traced to operations, the plan of a request, sums of cycles, rounding errors."""
+"""Decide which operations a request needs: tracing, planning, superposition of cycles, rounding error analysis."""

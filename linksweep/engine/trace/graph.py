@@ -1,9 +1,8 @@
-"""Physics functions traced into a graph of single operations.
+"""Trace physics functions into a graph of single operations.
 
-A function called with traced values records each + - * / and square root once (equal operations are shared) and
-leaves out what is known to be nothing: 0·x, 0 + x, 1·x. Leaving out changes no bit of any result: each remaining
-operation is rounded as IEEE says, never contracted or reordered, so the same numbers come out of every path that
-evaluates the graph.
+A function called with traced values records each + - * / and square root once (equal operations are shared) and leaves
+out trivial operations: 0·x, 0 + x, 1·x. That changes no bit of any result: each remaining operation is rounded as IEEE
+prescribes, never contracted or reordered, so every path that evaluates the graph returns equal bits.
 """
 
 from __future__ import annotations
@@ -12,12 +11,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 COMMUTATIVE = {"+", "*"}
-DECIDED: dict[str, Callable[..., float]] = {
+FOLDABLE: dict[str, Callable[..., float]] = {
     "<": lambda x, y: float(x < y),
     "abs": abs,
     "where": lambda c, x, y: x if c else y,
 }
-"""Operations settled while tracing where their operands are constants."""
+"""Operations computed while tracing where their operands are constants."""
 
 
 class Node:
@@ -87,7 +86,7 @@ class Key(NamedTuple):
 
 
 class Graph:
-    """Nodes in the order of their making, so that operands come before what uses them."""
+    """Nodes in order of creation, so that operands precede the operations that use them."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
@@ -103,15 +102,15 @@ class Graph:
         return self._make("input", (), frozenset(dims), name)
 
     def operation(self, operator: str, *operands: Node) -> Node:
-        if operands[0].operator == "constant" and operator in DECIDED:
+        if operands[0].operator == "constant" and operator in FOLDABLE:
             if all(x.operator == "constant" for x in operands):
-                return self.constant(DECIDED[operator](*(x.value for x in operands)))
+                return self.constant(FOLDABLE[operator](*(x.value for x in operands)))
             if operator == "where":
                 return operands[1] if operands[0].value else operands[2]
         return self._make(operator, operands, frozenset().union(*(x.dims for x in operands)), None)
 
     def copy(self, node: Node, operands: tuple[Node, ...]) -> Node:
-        """A node of another graph, with operands of this one."""
+        """Return a copy of a node of another graph, with operands of this one."""
         return self._make(node.operator, operands, node.dims, node.value)
 
     def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
@@ -164,7 +163,7 @@ class Graph:
         return self.operation("/", x, y)
 
     def negate(self, x: Node) -> Node:
-        """Signs move outward until a sum takes them in: rounding is symmetric, so no bit changes."""
+        """Return −x, with the sign moved outward until a sum absorbs it: rounding is symmetric, so no bit changes."""
         if x.operator == "constant":
             return self.constant(-x.value if x.value else 0.0)
         if x.operator == "negate":

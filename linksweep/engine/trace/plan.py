@@ -1,7 +1,7 @@
-"""plan(table, request): which operations the request needs, and how often each must be done.
+"""plan(table, request, inputs): select the operations that a request needs, and how often each is done.
 
-The plan walks back from the names asked for to the inputs and keeps what it meets on the way. An operation's
-dimensions are the union of its operands', so what depends on geometry alone is known to be shared by all masses.
+The plan walks back from the requested names to the inputs and keeps the operations on the way. An operation's dims are
+the union of its operands' dims, so operations that depend on geometry alone are shared by all masses.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ LATE = {"atan2"}
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What to compute: `nodes` in order, `outputs` by name, `functions` that they came from, outermost loop first."""
+    """A request traced into operations: `nodes` in order, `outputs` by name, `functions` traced, in the order of
+    tracing."""
 
     index: str
     outputs: Mapping[str, Node]
@@ -43,7 +44,8 @@ class Plan:
 
     @cached_property
     def loops(self) -> tuple[str, ...]:
-        """Design dimensions, outermost first: what most operations depend on is outside, so that it is shared."""
+        """Return the design dims, outermost first: dims that most operations depend on are outside, to share those
+        operations."""
         weight = Counter(dim for node in self.nodes if self.index in node.dims for dim in sorted(node.dims))
         every = Counter(dim for node in self.nodes for dim in sorted(node.dims))
         dims = [dim for dim in every if dim != self.index]
@@ -51,7 +53,7 @@ class Plan:
 
     @cached_property
     def late(self) -> tuple[Node, ...]:
-        """Nodes left to numpy, on what the kernel has stored."""
+        """Return the nodes left to numpy, to be computed from rows that the kernel stores."""
         late: set[Node] = set()
         for node in self.nodes:
             if node.operator in LATE or not late.isdisjoint(node.operands):
@@ -60,14 +62,14 @@ class Plan:
 
     @cached_property
     def stored(self) -> tuple[Node, ...]:
-        """Nodes that the kernel stores: outputs, and what the late nodes start from."""
+        """Return the nodes that the kernel stores: outputs, and operands of late nodes."""
         late = set(self.late)
-        wanted = [node for node in self.outputs.values() if node not in late]
-        wanted += [x for node in self.late for x in node.operands if x not in late]
-        return tuple(sorted({node for node in wanted if node.operator != "constant"}, key=lambda n: n.position))
+        nodes = [node for node in self.outputs.values() if node not in late]
+        nodes += [x for node in self.late for x in node.operands if x not in late]
+        return tuple(sorted({node for node in nodes if node.operator != "constant"}, key=lambda n: n.position))
 
     def operations(self, *dims: str) -> Counter:
-        """How many operations of each kind are done once per sample of these dims (none: once in all)."""
+        """Return how many operations of each kind are done once per sample of these dims (no dims: once in all)."""
         return Counter(
             node.operator
             for node in self.nodes
@@ -75,17 +77,17 @@ class Plan:
         )
 
     def dims(self, node: Node) -> tuple[str, ...]:
-        """A node's dimensions in the order in which results are laid out: loops outermost first, the index last."""
+        """Return a node's dims in the order of its results: loops outermost first, the index last."""
         return tuple(dim for dim in (*self.loops, self.index) if dim in node.dims)
 
 
 InputForms = tuple[tuple[str, tuple[str, ...] | float], ...]
-"""Each input by name: the dims it carries, or its value where that is a constant (0 or 1) worth knowing."""
+"""Each input by name: its dims, or its value where that is a constant (0 or 1) that shortens the plan."""
 
 
 @lru_cache(maxsize=256)
 def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
-    """Trace what `request` needs from `table`, starting from `inputs`. Raises KeyError for a name nobody makes."""
+    """Trace `request` through `table`, starting from `inputs`; KeyError for a name that no row makes."""
     graph = Graph()
     values: dict[str, Node] = {
         name: graph.constant(form) if isinstance(form, float) else graph.input(name, form) for name, form in inputs

@@ -1,15 +1,15 @@
-"""How much rounding may have changed a result: running error analysis, read off the traced graph.
+"""Bound the rounding error of a result by running error analysis of the traced graph.
 
-Each operation passes on the errors of its operands and adds its own, half a unit in the last place of what it makes:
+Each operation passes on the errors of its operands and adds its own, half a unit in the last place of its result, u|z|:
 
     z = x ± y    |δz| ≤ δx + δy + u|z|
     z = x·y      |δz| ≤ |x|δy + (|y| + δy)δx + u|z|
     z = x/y      |δz| ≤ (δx + |z|δy)/(|y| − δy) + u|z|
     z = √x       |δz| ≤ δx/z + u|z|
 
-(N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3.) The bound holds for these numbers,
-not on average, and costs about three times the operations of the result itself; nothing unless it is asked for.
-Inputs known to be exact have no error, others are cosines, sines and products of a few digits' rounding.
+(N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3.) The bound holds for these very
+numbers, not on average, and costs about three times the operations of the result itself, only when requested. Exact
+inputs have no error; others are cosines, sines and products, wrong by a few roundings.
 """
 
 from __future__ import annotations
@@ -20,23 +20,24 @@ from collections.abc import Callable, Mapping
 from linksweep.engine.trace.graph import Node
 
 UNIT = 2.0**-53 * (1.0 + 2.0**-20)
-"""Half a unit in the last place, with room for the rounding of the bound itself."""
+"""Half a unit in the last place; the factor beyond 1 covers the rounding of the bound itself."""
 INPUT = 4.0 * UNIT
-"""Relative error of an input that is not exact: the square of a cosine, a cosine times a length."""
+"""Relative error of an inexact input: the square of a cosine, a cosine times a length."""
 PAIR = 2.0**-86
-"""Absolute error of a cosine that is the sum of two doubles, and of the difference of two such."""
+"""Absolute error of a double-double cosine, and of the difference of two."""
 
 
 def relative_bound(
     results: tuple[Node, ...], exact: Callable[[str], bool], certain: Mapping[Node, Node | float]
 ) -> Node:
-    """Bound on the largest error of these results, relative to the largest of them; `exact` knows inputs by name.
+    """Return a bound on the largest error of these results, relative to the largest of them; `exact` tells inputs by
+    name.
 
-    What is `certain` has been made of sums of two doubles, which this analysis does not see: it counts as an input that
-    has the error of cosines besides, in the units given.
+    Nodes in `certain` are computed in double-double. This analysis would take each of their operations for a rounded
+    one, so it treats them as inputs, with the error of a double-double cosine, in the units given, in addition.
     """
     known = {node: INPUT * abs(node) + PAIR * unit for node, unit in certain.items()}
-    # where another operation takes −(−x), it is x that it takes
+    # tracing replaces −(−x) by x, so the operand of a negated node needs the bound, too
     known |= {node.operands[0]: error for node, error in known.items() if node.operator == "negate"}
     largest_error, largest = _zero(results[0]), _zero(results[0])
     for result in results:
@@ -47,7 +48,7 @@ def relative_bound(
 
 
 def _bound(result: Node, known: dict[Node, Node], exact: Callable[[str], bool]) -> Node:
-    """Bound on the absolute error of a result; those of all operations on the way to it are kept in `known`."""
+    """Return a bound on the absolute error of a result; `known` keeps those of all operations on the way."""
     waiting = [result]
     while waiting:
         node = waiting[-1]
@@ -57,11 +58,11 @@ def _bound(result: Node, known: dict[Node, Node], exact: Callable[[str], bool]) 
         else:
             waiting.pop()
             if node not in known:
-                known[node] = _passed_on(node, [known[x] for x in node.operands], exact)
+                known[node] = _propagated(node, [known[x] for x in node.operands], exact)
     return known[result]
 
 
-def _passed_on(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> Node:
+def _propagated(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> Node:
     zero = _zero(z)
     if z.operator == "constant" or z.operator == "<":
         return zero
@@ -83,8 +84,8 @@ def _product(z: Node, x: Node, y: Node, dx: Node, dy: Node) -> Node:
 
 
 def _quotient(z: Node, x: Node, y: Node, dx: Node, dy: Node) -> Node:
-    room = abs(y) - dy
-    return (room > 0.0).where((dx + abs(z) * dy) / room, math.inf)
+    divisor = abs(y) - dy
+    return (divisor > 0.0).where((dx + abs(z) * dy) / divisor, math.inf)
 
 
 def _root(z: Node, x: Node, dx: Node) -> Node:

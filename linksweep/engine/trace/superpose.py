@@ -1,14 +1,13 @@
-"""superposed(plan): the same results, with what enters linearly taken out of the inner loops.
+"""superposed(plan): take linear dependence on design dims out of the inner loops.
 
-Forces are affine in every mass, inertia and load, in gravity, in ω² and α. So along a design dimension that carries
-such numbers only, each quantity is a sum of a few cycles, computed once, times weights that depend on no angle:
+Forces are affine in every mass, inertia and load, in gravity, in ω² and α. So along a design dim that carries only such
+numbers, each quantity is a sum of a few cycles, computed once, times weights that depend on no angle:
 
     F(θ, m₃) = F₀(θ) + m₃ F₁(θ)          F(θ, ω₂) = F₀(θ) + ω₂² F₁(θ)
 
-Which numbers these are is found in the operations themselves: what depends on the dimension is kept as such a sum
-through + − * / as long as these are linear in it, and summed up where something else is done to it (a root, a product
-of two sums). A sum of products rounds otherwise than the operations that it stands for, by some ε of its largest
-term; therefore it is done only where asked for.
+Linearity is detected in the operations themselves: a value that depends on the dim is kept as such a sum through + − *
+/ as long as these are linear in it, and added up before any other operation (a root, a product of two sums). Such a sum
+rounds differently from the operations it replaces, by some ε of its largest term; therefore it is used only on request.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ from linksweep.engine.trace.plan import Plan
 Weight = frozenset[tuple[Node, int]]
 """A product of powers of numbers that depend on no angle."""
 Sum = dict[Weight, Node]
-"""Cycles, each times its weight; what is not taken apart is one cycle times the empty product."""
+"""Cycles, each times its weight; a value that is not split is one cycle times the empty product."""
 
 ONE: Weight = frozenset()
 MOST_TERMS = 16
-"""Longer sums are no less work than what they stand for."""
+"""Longest sum kept: longer ones cost as much as the operations they replace."""
 
 
 @lru_cache(maxsize=256)
 def superposed(plan: Plan) -> Plan:
-    """The plan with each dimension superposed along which that leaves less to do for each sample and design."""
+    """Return the plan with each dim superposed where that leaves fewer operations per sample and design."""
     for dim in reversed(plan.loops):
         candidate = _Superposition(plan, dim).result()
         if _work(candidate, dim) < _work(plan, dim):
@@ -41,12 +40,12 @@ def superposed(plan: Plan) -> Plan:
 
 
 def _work(plan: Plan, dim: str) -> int:
-    """Operations done for each sample of each design along a dimension."""
+    """Return the number of operations per sample of each design along a dim."""
     return sum({plan.index, dim} <= node.dims for node in plan.nodes if node.operands)
 
 
 class _Superposition:
-    """A plan traced again, with whatever depends on one dimension as a sum of cycles."""
+    """A plan traced again, with every value that depends on one dim as a sum of cycles."""
 
     def __init__(self, plan: Plan, dim: str) -> None:
         self.plan, self.dim, self.graph = plan, dim, Graph()
@@ -63,30 +62,33 @@ class _Superposition:
             return self._whole(self.graph.copy(node, ()))
         operands = [self.sums[x] for x in node.operands]
         if self.dim in node.dims and node.operator in _LINEAR:
-            found = _LINEAR[node.operator](*operands)
-            if found is not None and len(found) <= MOST_TERMS:
-                return found
+            terms = _LINEAR[node.operator](*operands)
+            if terms is not None and len(terms) <= MOST_TERMS:
+                return terms
         return self._whole(self.graph.copy(node, tuple(map(self._value, operands))))
 
     def _whole(self, node: Node) -> Sum:
-        """A node that is not taken apart: a cycle, or a weight if it depends on the dimension and no angle."""
+        """Return a node as a sum of one term: a weight if it depends on the dim and no angle, else a cycle."""
         if self.dim in node.dims and self.plan.index not in node.dims:
             return {frozenset({(node, 1)}): self.graph.constant(1.0)}
         return {ONE: node}
 
     def _value(self, terms: Sum) -> Node:
-        """The sum as a node."""
+        """Return a sum as one node."""
         total = self.graph.constant(0.0)
         for weight, cycle in terms.items():
             total = total + self._product(weight) * cycle
         return total
 
     def _product(self, weight: Weight) -> Node:
-        above, below = self.graph.constant(1.0), self.graph.constant(1.0)
+        numerator, denominator = self.graph.constant(1.0), self.graph.constant(1.0)
         for factor, power in sorted(weight, key=lambda item: item[0].position):
             for _ in range(abs(power)):
-                above, below = (above * factor, below) if power > 0 else (above, below * factor)
-        return above / below
+                if power > 0:
+                    numerator = numerator * factor
+                else:
+                    denominator = denominator * factor
+        return numerator / denominator
 
 
 def _added(x: Sum, y: Sum) -> Sum:
@@ -101,7 +103,8 @@ def _opposite(x: Sum) -> Sum:
 
 
 def _multiplied(x: Sum, y: Sum) -> Sum | None:
-    """Of two sums, one must be a single term: the square of a sum would cancel where the sum does."""
+    """Return the product, or None where both sums have several terms: the square of a sum would cancel where the sum
+    does."""
     if len(x) > 1:
         x, y = y, x
     if len(x) > 1:

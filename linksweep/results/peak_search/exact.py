@@ -284,15 +284,15 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
     run = search_functions(rows.size)
     with np.errstate(all="ignore"):
         where = paths.x, paths.before, paths.after, paths.joined
-        count = run["open_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
+        count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
         best[search.PEAK] = np.fmax(best[search.PEAK], standing.ravel())
         count = _kept(lanes, _promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
         for _ in range(search.ROUNDS):
             if not count:
                 break
-            run["aim"](lanes, trials, count)
+            run["place_trials"](lanes, trials, count)
             these = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
-            tag, x = trials[search.OF, these].astype(int), trials[search.X, these]
+            tag, x = trials[search.TRIAL_TAG, these].astype(int), trials[search.X, these]
             path = tag // len(signals)
             values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
             trials[search.VALUE, these] = values[tag % len(signals), np.arange(len(tag))]
