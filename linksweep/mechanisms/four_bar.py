@@ -39,7 +39,9 @@ from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
-from linksweep.physics import advantage, crank_angle, crank_driven, dyad_rrr, four_bar, freudenstein, planar
+from linksweep.physics import advantage, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import crank_angle, dyad_rrr, four_bar, freudenstein
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}

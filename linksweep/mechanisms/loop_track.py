@@ -15,7 +15,8 @@ from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.mechanisms.rows.crank import OverDesigns, between_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.physics import loop_track, planar
+from linksweep.physics import loop_track
+from linksweep.physics.algebra import planar
 
 UNKNOWNS = ("normal_force", "a_tangential")
 

@@ -223,7 +223,7 @@ class SliderCrank(Mechanism):
 
     @property
     def turns_fully(self) -> Number:
-        """Whether the crank of each design does, to the bit as `linksweep.physics.slider_crank.assembly` decides it."""
+        """Return whether each crank turns fully, with the bits of `assembly` in its closure."""
         return abs(self.offset) - self.rod.length + self.crank.length < 0.0
 
     @cached_property

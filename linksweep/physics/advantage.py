@@ -7,7 +7,7 @@ Analysis".
 
 import math
 
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.algebra.arithmetic import Number, where
 
 
 def torque_ratio(velocity_ratio: Number) -> Number:

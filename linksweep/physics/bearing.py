@@ -12,8 +12,8 @@ Source: R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design
 Bearings" (boundary-lubricated bearings: nominal pressure, PV).
 """
 
-from linksweep.physics.arithmetic import Number
-from linksweep.physics.planar import cross, dot
+from linksweep.physics.algebra.arithmetic import Number
+from linksweep.physics.algebra.planar import cross, dot
 
 
 def relative_rotation(omega_j: Number, omega_i: Number) -> Number:

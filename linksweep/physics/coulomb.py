@@ -11,7 +11,7 @@ for w ≥ 1, where rigid-body statics cannot tell which.
 
 import math
 
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.algebra.arithmetic import Number, where
 
 
 def opposing(force: Number, direction: Number) -> Number:

@@ -5,8 +5,8 @@ Q and N are the effective force and moment of a link (see `linksweep.physics.ine
 
 import math
 
-from linksweep.physics.arithmetic import NOISE, Number, where
-from linksweep.physics.planar import cross
+from linksweep.physics.algebra.arithmetic import NOISE, Number, where
+from linksweep.physics.algebra.planar import cross
 
 
 def crank_pin(crank_length: Number, cos2: Number, sin2: Number) -> tuple[Number, Number]:

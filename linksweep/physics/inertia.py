@@ -10,8 +10,8 @@ exerts on its pins
 so that the pin forces on the link add up to −Q, and their moments about the first pin (with any drive torque) to −N.
 """
 
-from linksweep.physics.arithmetic import Number
-from linksweep.physics.planar import cross, dot
+from linksweep.physics.algebra.arithmetic import Number
+from linksweep.physics.algebra.planar import cross, dot
 
 
 def moment_of_inertia_about_pin(mass: Number, inertia: Number, cg_x: Number, cg_y: Number) -> Number:

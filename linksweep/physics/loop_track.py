@@ -11,9 +11,9 @@ normal: the value is right, but it points inwards.
 
 import math
 
-from linksweep.physics.arithmetic import Number, sqrt, where
-from linksweep.physics.double_double import difference
-from linksweep.physics.planar import cross, dot, square
+from linksweep.physics.algebra.arithmetic import Number, sqrt, where
+from linksweep.physics.algebra.double_double import difference
+from linksweep.physics.algebra.planar import cross, dot, square
 
 
 def gravity_on_track(cos2: Number, sin2: Number, gravity_x: Number, gravity_y: Number) -> tuple[Number, Number]:

@@ -1,6 +1,6 @@
 """Power of a drive, split into power fed and power regenerated, and the balance of all powers."""
 
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.algebra.arithmetic import Number, where
 
 
 def power_fed(power: Number) -> Number:

@@ -7,8 +7,8 @@ The derivatives u' and k' with respect to θ2 are the accelerations at ω2 = 1, 
 Graphische Dynamik (1923).
 """
 
-from linksweep.physics.arithmetic import Number
-from linksweep.physics.planar import dot, square
+from linksweep.physics.algebra.arithmetic import Number
+from linksweep.physics.algebra.planar import dot, square
 
 
 def reduced_inertia(mass: Number, inertia: Number, ux: Number, uy: Number, ratio: Number) -> Number:

@@ -7,8 +7,8 @@ Source: R. S. Berkof and G. G. Lowen, Journal of Engineering for Industry 91 (19
 Machinery, chapter "Balancing".
 """
 
-from linksweep.physics.arithmetic import Number
-from linksweep.physics.planar import cross
+from linksweep.physics.algebra.arithmetic import Number
+from linksweep.physics.algebra.planar import cross
 
 
 def inertia_force(mass: Number, aGx: Number, aGy: Number) -> tuple[Number, Number]:

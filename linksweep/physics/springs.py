@@ -11,9 +11,9 @@ A spring of zero length has no direction: its force there is 0, the mean of the 
 through each other.
 """
 
-from linksweep.physics.arctangent import arctangent
-from linksweep.physics.arithmetic import Number, where
-from linksweep.physics.planar import cross, dot, root, square
+from linksweep.physics.algebra.arctangent import arctangent
+from linksweep.physics.algebra.arithmetic import Number, where
+from linksweep.physics.algebra.planar import cross, dot, root, square
 
 
 def line_direction(dx: Number, dy: Number, length: Number) -> tuple[Number, Number]:

@@ -58,8 +58,8 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
 
     Notes
     -----
-    Equation and source: `linksweep.physics.freudenstein`. Document 2 leaves open which sign of ± is which branch: − is
-    open, + crossed. The roots are not computed by its arctangents, which divide by 2A and 2D.
+    Equation and source: `linksweep.physics.closures.freudenstein`. Document 2 leaves open which sign of ± is which
+    branch: − is open, + crossed. The roots are not computed by its arctangents, which divide by 2A and 2D.
 
     Examples
     --------

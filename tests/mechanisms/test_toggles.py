@@ -17,7 +17,7 @@ from oracle import FourBarData, random_data, solve, to_scene
 
 import linksweep as ls
 from linksweep.base.degrees import cos_sin_low_words
-from linksweep.physics import double_double as pairs
+from linksweep.physics.algebra import double_double as pairs
 
 FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 AWAY = [10.0**-k for k in (1, 3, 5, 6, 7, 8, 9)]

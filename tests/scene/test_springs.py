@@ -15,7 +15,7 @@ from judges import largest_force, log_uniform, mp, polar, turn
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.trace.plan import plan
-from linksweep.physics.arctangent import arctangent
+from linksweep.physics.algebra.arctangent import arctangent
 
 CRANK = ls.Link(0.04, 0.25, 1.3e-4, cg_distance=0.013, cg_angle=70.0)
 LONG = ls.Link(0.12, 0.4, 5e-4, cg_distance=0.05, cg_angle=12.0)

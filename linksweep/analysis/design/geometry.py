@@ -27,7 +27,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
-from linksweep.physics import planar
+from linksweep.physics.algebra import planar
 from linksweep.results.check import check
 from linksweep.results.compute import compute, require_scene
 from linksweep.results.dataset import design_coordinates, provenance, variable

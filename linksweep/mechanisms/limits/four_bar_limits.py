@@ -1,6 +1,6 @@
 """Where a four-bar closes: Grashof class, assembly limits and toggle angles in closed form, for arrays of designs.
 
-With φ the angle from the line A→D to the crank, the four-bar closes while (see `linksweep.physics.four_bar`)
+With φ the angle from the line A→D to the crank, the four-bar closes while (see `linksweep.physics.closures.four_bar`)
 
     low  = (d−a−b+c)(d−a+b−c) + 4ad·sin²(φ/2) ≥ 0        low = 0: coupler folded back over the rocker, f = |b−c|
     high = (b+c−d−a)(b+c+d+a) + 4ad·cos²(φ/2) ≥ 0        high = 0: coupler and rocker stretched out, f = b+c
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
-from linksweep.physics.four_bar import extremes
+from linksweep.physics.closures.four_bar import extremes
 
 GRASHOF = (
     "crank_rocker",

@@ -1,7 +1,7 @@
 """Where an inverted slider-crank closes, and how its rocker moves, in closed form, for arrays of designs.
 
 The block's distance from D, between |d − a| and d + a, must exceed the offset e of the rocker's line (see
-`linksweep.physics.inverted_slider_crank`). It equals |e| where tan²(φ/2) = (e² − (d−a)²)/((d+a)² − e²).
+`linksweep.physics.closures.inverted_slider_crank`). It equals |e| where tan²(φ/2) = (e² − (d−a)²)/((d+a)² − e²).
 
 For a < d the rocker swings. It turns round where its line touches the crank's circle: sin ψ = (e ∓ a)/d with ψ its
 angle from the frame line, the crank square to it. Between those the crank turns through 180° ± the swing, asin((a +

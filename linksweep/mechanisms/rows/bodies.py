@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.physics import crank_driven, inertia, planar, reduced_inertia, shaking
+from linksweep.physics import crank_driven, inertia, reduced_inertia, shaking
+from linksweep.physics.algebra import planar
 
 Source = str | float
 

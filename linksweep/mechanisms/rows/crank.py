@@ -10,7 +10,8 @@ import numpy as np
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.validate import Number
 from linksweep.engine.quantity import Row
-from linksweep.physics import crank_angle, planar
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import crank_angle
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
 STATUS_OF_SLIDER = (

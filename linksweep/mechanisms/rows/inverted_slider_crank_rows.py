@@ -20,7 +20,9 @@ from linksweep.mechanisms.rows.bodies import (
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
-from linksweep.physics import advantage, coulomb, crank_driven, dyad_rpr, inverted_slider_crank, planar
+from linksweep.physics import advantage, coulomb, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import dyad_rpr, inverted_slider_crank
 
 LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.rows.bodies import Body
-from linksweep.physics import planar
+from linksweep.physics.algebra import planar
 
 
 class Acting(NamedTuple):

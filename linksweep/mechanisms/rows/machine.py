@@ -10,7 +10,8 @@ from linksweep.mechanisms.rows import rounding_error
 from linksweep.mechanisms.rows.bodies import Body, motion_quantities, pin_force_quantities, pin_force_rows
 from linksweep.mechanisms.rows.load_forms import Form, action_powers, action_quantities, action_rows
 from linksweep.mechanisms.rows.pins import Pins, pin_quantities, pin_rows
-from linksweep.physics import planar, power, reduced_inertia
+from linksweep.physics import power, reduced_inertia
+from linksweep.physics.algebra import planar
 
 Bodies = tuple[Body, ...]
 Loads = tuple[Form, ...]

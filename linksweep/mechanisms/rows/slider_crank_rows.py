@@ -18,7 +18,9 @@ from linksweep.mechanisms.rows.bodies import (
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
-from linksweep.physics import advantage, coulomb, crank_driven, dyad_rrp, planar, slider_crank
+from linksweep.physics import advantage, coulomb, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import dyad_rrp, slider_crank
 
 LINKS = {1: "ground", 2: "crank", 3: "rod", 4: "slider"}
 DRIVES = {"crank": "T12", "coupler": "T13"}

@@ -12,8 +12,9 @@ from typing import ClassVar
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.rows.bodies import Body, Source
 from linksweep.mechanisms.rows.load_forms import Acting
-from linksweep.physics import planar, springs
-from linksweep.physics.arithmetic import degrees
+from linksweep.physics import springs
+from linksweep.physics.algebra import planar
+from linksweep.physics.algebra.arithmetic import degrees
 
 GROUND = "ground"
 Pair = tuple[Source, Source]

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.quantity import Quantity, opposite_of
-from linksweep.physics import planar
+from linksweep.physics.algebra import planar
 
 
 class Throw(NamedTuple):

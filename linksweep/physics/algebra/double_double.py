@@ -5,7 +5,7 @@ reordered (Dekker 1971; Knuth, TAOCP 2, 4.2.2). Where high words cancel in a dif
 remaining digits.
 """
 
-from linksweep.physics.arithmetic import Number
+from linksweep.physics.algebra.arithmetic import Number
 
 Pair = tuple[Number, Number]
 """A double-double (high, low); high is the sum rounded to a float."""

@@ -10,8 +10,8 @@ low·high > 0. Only the differences of cosines cancel, so the cosines are kept i
 exact.
 
 With p and q the crank's components along BD and across it, in units of f, and along3, along4 and across those of
-coupler and rocker (see `linksweep.physics.dyad_rrr`), k3 = ω3/ω2 = along4·q/across − p, and k4 likewise with along3.
-Their derivatives with respect to the crank's angle are
+coupler and rocker (see `linksweep.physics.closures.dyad_rrr`), k3 = ω3/ω2 = along4·q/across − p, and k4 likewise
+with along3. Their derivatives with respect to the crank's angle are
 
     k3' = q (1 − k3 − k4) + along4·g    k4' = q (1 − k3 − k4) + along3·g
     f² (1 − k3 − k4) = d² − a² − (b² − c²)·q/across
@@ -27,9 +27,9 @@ turn, and the branch goes through: the sign of sin ψ gives the side. With only 
 to come round, so C keeps to its side.
 """
 
-from linksweep.physics.arithmetic import Number, sqrt, where
-from linksweep.physics.crank_angle import cosine_noise, range_noise
-from linksweep.physics.double_double import add, difference, divide, multiply, two_product, two_sum
+from linksweep.physics.algebra.arithmetic import Number, sqrt, where
+from linksweep.physics.algebra.double_double import add, difference, divide, multiply, two_product, two_sum
+from linksweep.physics.closures.crank_angle import cosine_noise, range_noise
 
 LENGTH_NOISE = 2.0**-52
 """Rounding error of a sum of lengths, relative to the sum of all: each length is rounded in its last digit."""

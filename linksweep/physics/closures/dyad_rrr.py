@@ -9,9 +9,9 @@ formulas lose all digits near a toggle. The rest follows without another subtrac
     r3 × r4 = ±√(low·high)/2
 """
 
-from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.planar import cross, dot
 from linksweep.physics.crank_driven import moments_or_work
-from linksweep.physics.planar import cross, dot
 
 
 def rrr_close(

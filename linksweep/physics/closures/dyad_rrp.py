@@ -5,8 +5,8 @@ r2·n, is known, and its component along is q = r3·s = ±√(b² − h²): + on
 supplies the factors low = b − h and high = b + h in a form that does not cancel.
 """
 
-from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
-from linksweep.physics.planar import dot
+from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.planar import dot
 
 
 def rrp_close(

@@ -10,11 +10,11 @@ are kept in double-double.
 """
 
 from linksweep.physics import crank_driven
-from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.algebra.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.algebra.double_double import difference, divide, two_sum
+from linksweep.physics.algebra.planar import cross, dot
+from linksweep.physics.closures.crank_angle import cosine_noise, range_noise
 from linksweep.physics.coulomb import opposing, sliding_contact
-from linksweep.physics.crank_angle import cosine_noise, range_noise
-from linksweep.physics.double_double import difference, divide, two_sum
-from linksweep.physics.planar import cross, dot
 
 
 def guide_components(

@@ -11,7 +11,7 @@ stay below two units in the last place.
 
 import math
 
-from linksweep.physics.arithmetic import Number, where
+from linksweep.physics.algebra.arithmetic import Number, where
 
 TAN_EIGHTH = math.tan(math.pi / 8.0)
 SERIES = (

@@ -1,16 +1,16 @@
 """The crank's angle ψ = θ2 − ψ0 from the near-toggle ψ0: the mechanism comes nearest to a toggle at ψ = 0 and 180°.
 
 Every closure is a squared length times the difference of cos ψ and the toggle's own cosine. That difference cancels, so
-cos ψ is a double-double (see `linksweep.physics.double_double`), from a grid's table or, between samples, from
+cos ψ is a double-double (see `linksweep.physics.algebra.double_double`), from a grid's table or, between samples, from
 half-angle tangents. The turn is then split into two halves, centred on ψ = 0 and 180°. With x the tangent of half the
 angle from the nearer centre,  1 − cos = 2x²/(1 + x²)  and  sin = 2x/(1 + x²):  no digit is lost as x tends to 0.
 """
 
 import math
 
-from linksweep.physics.arctangent import arctangent
-from linksweep.physics.arithmetic import Number, where
-from linksweep.physics.double_double import cross, dot
+from linksweep.physics.algebra.arctangent import arctangent
+from linksweep.physics.algebra.arithmetic import Number, where
+from linksweep.physics.algebra.double_double import cross, dot
 
 ANGLE_NOISE = 8.0 * 2.0**-52
 """[rad] Bound on the rounding error of an angle within the first turn."""

@@ -8,7 +8,7 @@ They cancel near a toggle, and A or D may vanish in a sound mechanism: they are 
 computing. Source: document 2 (ME 470), position; R. L. Norton, Design of Machinery, chapter "Position Analysis".
 """
 
-from linksweep.physics.arithmetic import Number
+from linksweep.physics.algebra.arithmetic import Number
 
 
 def ratios(

@@ -7,8 +7,8 @@ With u the direction of the line and n = u⊥ its left normal, the line passes D
 The mechanism supplies s² in a form that does not cancel. Block and line turn together, ω3 = ω4.
 """
 
-from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt, where
-from linksweep.physics.planar import cross, dot
+from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.planar import cross, dot
 
 
 def rpr_close(

@@ -1,6 +1,6 @@
 """Vectors in the plane: the cross product p × q = px·qy − py·qx, the left normal (−py, px) of p, and rotation."""
 
-from linksweep.physics.arithmetic import Number, atan2, degrees, sqrt
+from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt
 
 
 def cross(px: Number, py: Number, qx: Number, qy: Number) -> Number:

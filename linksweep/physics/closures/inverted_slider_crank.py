@@ -10,12 +10,12 @@ close to D. The block stands still on the line where the crank lies along the fr
 offset.
 """
 
-from linksweep.physics.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.algebra.arithmetic import NOISE, Number, sqrt, where
+from linksweep.physics.algebra.double_double import Pair, add, difference, divide, multiply, two_product, two_sum
+from linksweep.physics.algebra.planar import cross, dot
+from linksweep.physics.closures.crank_angle import cosine_noise, range_noise
 from linksweep.physics.coulomb import opposing, sliding_contact
-from linksweep.physics.crank_angle import cosine_noise, range_noise
 from linksweep.physics.crank_driven import away_from_dead_centre
-from linksweep.physics.double_double import Pair, add, difference, divide, multiply, two_product, two_sum
-from linksweep.physics.planar import cross, dot
 
 
 def versine(psi_cos: Number, psi_cos_lo: Number) -> Number:
