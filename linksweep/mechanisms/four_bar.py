@@ -14,7 +14,6 @@ from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
-from linksweep.mechanisms.rows import rounding_error
 from linksweep.mechanisms.rows.bodies import (
     Body,
     Equation,
@@ -219,7 +218,7 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool
         *_forces(drive),
         *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
     ]
-    rows += machine_rows(BODIES, PINS, loads) + _transmission() + [rounding_error.row(**CLOSURE)]
+    rows += machine_rows(BODIES, PINS, loads, **CLOSURE) + _transmission()
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 

@@ -6,7 +6,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.rows import rounding_error
 from linksweep.mechanisms.rows.bodies import (
     Body,
     Source,
@@ -67,8 +66,8 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *power_rows(DRIVES[drive].unknown.name, DRIVES[drive].rate, BODIES, loads, "friction_power"),
         Row(planar.product, ("friction_power",), ("friction_force", "slide_velocity")),
     ]
-    rows += machine_rows(BODIES, PINS, loads) + _transmission()
-    rows += [rounding_error.row(slide_cosine=1.0, psi_versine=1.0), *arm_rows(2, "R12", "R32"), *_arms()]
+    rows += machine_rows(BODIES, PINS, loads, slide_cosine=1.0, psi_versine=1.0) + _transmission()
+    rows += [*arm_rows(2, "R12", "R32"), *_arms()]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 

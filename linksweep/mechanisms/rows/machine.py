@@ -17,12 +17,12 @@ Bodies = tuple[Body, ...]
 Loads = tuple[Form, ...]
 
 
-def machine_rows(bodies: Bodies, joints: Pins, loads: Loads) -> list[Row | Total]:
-    """All but what closes the linkage and what its drive gives."""
+def machine_rows(bodies: Bodies, joints: Pins, loads: Loads, **closure: str | float) -> list[Row | Total]:
+    """Return all rows but those of the closure and of the drive; `closure` as in `rounding_error.row`."""
     rows = [row for body in bodies for row in body.rows()] + action_rows(loads, bodies)
     for i, j in joints.values():
         rows += pin_force_rows(i, j)
-    return [*rows, *pin_rows(joints, bodies), *_sums(bodies, loads)]
+    return [*rows, *pin_rows(joints, bodies), *_sums(bodies, loads), rounding_error.row(joints, closure)]
 
 
 def power_rows(unknown: str, rate: str, bodies: Bodies, loads: Loads, *losses: str) -> list[Row | Total]:

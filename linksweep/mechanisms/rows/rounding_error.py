@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.engine.trace import rounding
 from linksweep.engine.trace.graph import Node
 
-FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
 """Numbers that reach the physics as the user gave them; so do lengths. Others, such as cosines, have been rounded."""
 
 
-def row(**closure: str | float) -> Row:
-    """The row that bounds the pin forces' error, of a machine that makes these numbers of its closure, and the angle
-    in its own frame, of cosines in more than double precision; with the units that a cosine has in each."""
+def row(joints: Mapping[str, tuple[int, int]], closure: Mapping[str, str | float]) -> Row:
+    """Return the row that bounds the error of the joints' forces.
+
+    `closure` names the numbers that a machine makes in double-double, besides its crank's angle from a near-toggle,
+    with the unit of a cosine in each.
+    """
+    forces = [f"F{i}{j}{axis}" for i, j in joints.values() for axis in "xy"]
     certain = {"psi_cos": 1.0, "psi_cos_lo": 1.0, "psi_sin": 1.0, **closure}
     n = len(certain)
 
@@ -22,7 +27,7 @@ def row(**closure: str | float) -> Row:
         in_units = dict(zip(nodes[:n], nodes[n : 2 * n], strict=True))
         return rounding.relative_bound(nodes[2 * n :], _is_exact, in_units)
 
-    return Row(error_bound, ("error_bound",), (*certain, *certain.values(), *FORCES))
+    return Row(error_bound, ("error_bound",), (*certain, *certain.values(), *forces))
 
 
 def _is_exact(name: str) -> bool:

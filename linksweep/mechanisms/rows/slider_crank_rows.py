@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.rows import rounding_error
 from linksweep.mechanisms.rows.bodies import (
     Body,
     arm_rows,
@@ -55,8 +54,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *power_rows(DRIVES[drive], DRIVEN[drive], BODIES, loads, "friction_power"),
         Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
     ]
-    rows += machine_rows(BODIES, PINS, loads) + _transmission()
-    rows += [rounding_error.row(low="crank_length", high="crank_length")]
+    rows += machine_rows(BODIES, PINS, loads, low="crank_length", high="crank_length") + _transmission()
     rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
 
