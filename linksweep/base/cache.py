@@ -1,8 +1,9 @@
-"""The user's cache folder: what took long to make, one file each.
+"""The user's cache folder: results that took long to compute, one file each.
 
-Some of these files are machine code, so what others could have put there is not read: the folder and every file in it
-belong to the user, and nobody else may write them. Where that is not so, nothing is kept. Ownership protects; the
-checksum at the head of each file finds damage. A file is opened once, and the bytes that were verified are those used.
+Some of these files are machine code, so no file that others could have written is read: the folder and every file in it
+must belong to the user and be writable by nobody else; otherwise nothing is cached. Ownership protects against attack,
+the checksum at the head of each file against damage. A file is opened once, and the bytes that were verified are the
+ones used.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pathlib import Path
 
 DIGEST = hashlib.sha256().digest_size
 ORPHAN_AGE = 3600.0
-"""Seconds after which a temporary file belongs to no process that still writes it."""
+"""Age in seconds beyond which no process still writes a temporary file."""
 
 
 def cache_folder() -> Path | None:
@@ -34,7 +35,7 @@ def cache_folder() -> Path | None:
 
 
 def recall(name: str) -> bytes | None:
-    """Return what was kept under this name; None where there is nothing, or it is damaged, or not the user's alone."""
+    """Return the bytes stored under this name; None if there are none, or they are damaged or not the user's alone."""
     folder = cache_folder()
     if folder is None:
         return None
@@ -43,20 +44,20 @@ def recall(name: str) -> bytes | None:
             content = file.read()
     except OSError:
         return None
-    digest, kept = content[:DIGEST], content[DIGEST:]
-    if hashlib.sha256(kept).digest() == digest:
-        return kept
+    digest, stored = content[:DIGEST], content[DIGEST:]
+    if hashlib.sha256(stored).digest() == digest:
+        return stored
     forget(name)
     return None
 
 
 def keep(name: str, content: bytes) -> None:
-    """Keep these bytes under a name, whole or not at all; a folder that is full or missing keeps nothing."""
+    """Store bytes under a name, whole or not at all; where the folder is full or missing, do nothing."""
     folder = cache_folder()
     if folder is None:
         return
     with contextlib.suppress(OSError):
-        _sweep(folder)
+        _remove_orphans(folder)
         handle, temporary = tempfile.mkstemp(dir=folder, suffix=".tmp")
         try:
             with os.fdopen(handle, "wb") as file:
@@ -68,13 +69,13 @@ def keep(name: str, content: bytes) -> None:
 
 
 def forget(name: str) -> None:
-    """Remove what was kept under this name."""
+    """Remove the bytes stored under this name."""
     if folder := cache_folder():
         with contextlib.suppress(OSError):
             os.unlink(folder / name)
 
 
-def _sweep(folder: Path) -> None:
+def _remove_orphans(folder: Path) -> None:
     """Remove the temporary files of processes that were killed."""
     for temporary in folder.glob("*.tmp"):
         if time.time() - temporary.lstat().st_mtime > ORPHAN_AGE:
@@ -82,7 +83,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _open_ours(path: str, flags: int) -> int:
-    """Open a regular file that only the user may write; a link is not followed, a pipe not waited for."""
+    """Open a regular file that only the user may write; refuse links, don't wait for pipes."""
     handle = os.open(path, flags | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     status = os.fstat(handle)
     if not (stat.S_ISREG(status.st_mode) and _only_ours(status)):

@@ -1,8 +1,8 @@
-"""Numbers where they enter: float64, in the unit of their kind.
+"""Convert numbers on input: to float64, in the unit of their kind.
 
-numpy reckons in an array's own dtype, where a mass of int8 wraps; so every number becomes float64 in the constructor.
-An integer that float64 cannot hold is rounded to the nearest that it can. A quantity of pint is known by what it can
-do and converted by its own registry, so that pint need not be imported.
+numpy computes in an array's own dtype, where a mass of int8 overflows; so the constructor converts every number to
+float64. An integer that float64 cannot hold is rounded to the nearest. A quantity of pint is recognised by its
+attributes and converted by its own registry, so that pint need not be imported.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ import numpy as np
 from linksweep.base.validate import UNITS, as_float, is_array, is_quantity
 
 PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
+"""Kinds of the two numbers of a pair, by the name of the field."""
 ROWS = {"breaks": "angle"}
-"""Kinds of the numbers that come in pairs, and of those that come in rows, by the name of the field."""
+"""Kind of the numbers of a list, by the name of the field."""
 
 
 def float64_fields(owner: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass by name, numbers as float64; a value that is no number as it is."""
+    """Return the fields of a dataclass by name, with numbers as float64 and other values unchanged."""
     return {item.name: _float64_field(item, getattr(owner, item.name)) for item in fields(owner)}
 
 
@@ -38,14 +39,14 @@ def kinds_of(name: str, value: tuple | list) -> tuple[str, ...]:
 
 
 def as_pair(value: Any, kinds: tuple[str, str]) -> Any:
-    """Return two numbers, or a bare array of them, as a pair of float64; anything else as it is."""
+    """Return two numbers, or a bare array of two, as a pair of float64; anything else unchanged."""
     return tuple(map(to_float64, value, kinds)) if _is_row(value) and len(value) == 2 else value
 
 
 def to_float64(value: Any, kind: str) -> Any:
-    """Return a number as a float, an array as one of float64, in the unit of its kind; anything else as it is.
+    """Return a number as a float, an array as one of float64, in the unit of its kind; anything else unchanged.
 
-    An array over theta2 has its angles converted, too.
+    The angles of an array over theta2 are converted, too.
     """
     if type(value) is float or isinstance(value, str) or value is None:
         return value
@@ -59,7 +60,7 @@ def to_float64(value: Any, kind: str) -> Any:
 
 
 def all_to_float64(values: Any, kind: str) -> Any:
-    """Return each of a list of numbers, or of an array without its labels, as `to_float64` does."""
+    """Return a list of numbers, or an array without its labels, converted as by `to_float64`."""
     if isinstance(values, tuple | list):
         return [to_float64(value, kind) for value in values]
     converted = to_float64(values, kind)
@@ -67,7 +68,7 @@ def all_to_float64(values: Any, kind: str) -> Any:
 
 
 def _several(name: str, value: Any) -> Any:
-    """Return a pair, a row, or the end of a spring, with numbers of float64; anything else as it is."""
+    """Return a pair, a list, or the end of a spring, with numbers as float64; anything else unchanged."""
     if name in PAIRS:
         return as_pair(value, PAIRS[name])
     if name in ROWS:
@@ -77,7 +78,7 @@ def _several(name: str, value: Any) -> Any:
 
 
 def _is_row(value: Any) -> bool:
-    """Return whether a value is a list of numbers, or a bare array that can only be one."""
+    """Return whether a value is a list of numbers, or a bare array of one axis."""
     bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
     return isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
 
@@ -87,12 +88,12 @@ def _array(array: Any, kind: str) -> Any:
         data = _in_unit(array.data, UNITS[kind])
         attributes = {name: words for name, words in array.attrs.items() if name != "units"}
         return array if data is array.data else array.copy(data=data).drop_attrs(deep=False).assign_attrs(attributes)
-    with np.errstate(over="ignore"):  # what float64 cannot hold is inf, which validation refuses
+    with np.errstate(over="ignore"):  # numbers beyond float64 become inf, which validation refuses
         return array.astype(float) if _is_real(array.dtype) and array.dtype != np.float64 else array
 
 
 def _with_angles(array: Any) -> Any:
-    """Return an array with its angles theta2 converted, where it has any."""
+    """Return an array with its angles theta2, if any, converted."""
     if "theta2" not in array.dims or "theta2" not in array.coords:
         return array
     angles = array.coords["theta2"]
@@ -101,16 +102,17 @@ def _with_angles(array: Any) -> Any:
 
 
 def _in_unit(quantity: Any, unit: str) -> Any:
-    """Return the magnitude of a quantity of pint in a unit; the quantity itself where it is of another kind.
+    """Return the magnitude of a pint quantity in a unit; the quantity itself where it is of another kind.
 
-    To pint an angle is a plain number, so that 50 Hz are 50 rad/s, and 45 without a unit are 45 rad: not so here.
+    pint takes an angle for a plain number, so that 50 Hz are 50 rad/s and 45 without a unit is 45 rad; here 45 without
+    a unit is no angle.
     """
     kind = type(quantity)
     try:
         one = kind(1.0, "dimensionless" if unit == "1" else unit.replace(" ", "*"))
         same = kind(1.0, quantity.units).to_root_units().units == one.to_root_units().units
         return kind(_float64(quantity.magnitude), quantity.units).m_as(one.units) if same else quantity
-    except (AttributeError, TypeError, ValueError):  # what pint cannot convert is refused as it came
+    except (AttributeError, TypeError, ValueError):  # validation refuses what pint cannot convert
         return quantity
 
 

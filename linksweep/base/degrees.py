@@ -1,8 +1,9 @@
 """Trigonometry in degrees: cos and sin exact at multiples of 90, as accurate at a million turns as at none.
 
-`cos_sin_low_words` gives them to about 90 bits, as sums of two doubles: near a toggle the digits that a crank angle has
-beyond its cosine's 53 bits decide. An angle is taken apart exactly into quarter turns, steps of 1/64 degree, whose cos
-and sin are tabulated, and a small rest t:  cos(x + t) = cos x − t·sin x − …,  with t·sin x as exact products of halves.
+`cos_sin_low_words` gives them to about 90 bits, in double-double: near a toggle the result depends on digits of a crank
+angle beyond the 53 bits of its cosine. An angle is split exactly into quarter turns, steps of 1/64 degree, whose cos
+and sin are tabulated, and a small remainder t:  cos(x + t) = cos x − t·sin x − …,  where t·sin x is an exact product of
+numbers of 26 bits.
 """
 
 from __future__ import annotations
@@ -13,27 +14,27 @@ from typing import Any
 import numpy as np
 
 STEPS = 64
-"""Tabulated angles a degree."""
+"""Tabulated angles per degree."""
 ONE = 2**128
 DEGREE = 5939047689249815265887113184232615463
-"""One, and a degree in radians, as integers of so many bits after the point."""
+"""One, and a degree in radians, as integers with 128 bits after the binary point."""
 
 COS_SIGNS, SIN_SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
-"""Of what cosine and sine are, quadrant by quadrant."""
+"""Signs of cosine and sine, quadrant by quadrant."""
 
 
 def cos_sin(degrees):
-    """Cosine and sine of an angle [degree]: a number, an array or a DataArray; two of the same kind come back."""
+    """Return cosine and sine of an angle [degree]: a number, an array or a DataArray; two of the kind passed in."""
     return cos_sin_low_words(degrees)[:2]
 
 
 def cos_sin_low_words(degrees: Any) -> tuple[Any, ...]:
-    """Cosine and sine of an angle [degree], rounded, and what each was rounded by; four of the kind given."""
+    """Return cosine and sine of an angle [degree], then the low word of each; four of the kind passed in."""
     if hasattr(degrees, "dims"):
         return tuple(degrees.copy(data=values) for values in cos_sin_low_words(degrees.values))
-    turned = np.fmod(np.asarray(degrees, dtype=float), 360.0)
-    quarter = np.rint(turned / 90.0)
-    cos, sin, cos_lo, sin_lo = _within_an_eighth(turned - 90.0 * quarter)
+    angle = np.fmod(np.asarray(degrees, dtype=float), 360.0)
+    quarter = np.rint(angle / 90.0)
+    cos, sin, cos_lo, sin_lo = _within_an_eighth(angle - 90.0 * quarter)
     quadrant = quarter.astype(np.int64) % 4
     odd, sign_of_cos, sign_of_sin = quadrant % 2 == 1, COS_SIGNS[quadrant], SIN_SIGNS[quadrant]
     values = (
@@ -46,22 +47,22 @@ def cos_sin_low_words(degrees: Any) -> tuple[Any, ...]:
 
 
 def arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """asin(part/whole) [degree] from half angles, without the loss near ±90; NaN beyond."""
+    """Return asin(part/whole) [degree] from half angles, without loss of digits near ±90; NaN beyond."""
     with np.errstate(invalid="ignore"):
         return 90.0 - 2.0 * np.degrees(np.arctan2(np.sqrt(whole - part), np.sqrt(whole + part)))
 
 
 def _within_an_eighth(angle: np.ndarray) -> tuple[np.ndarray, ...]:
-    """cos, sin and their rests for angles [degree] from −45 to 45."""
+    """Return cos and sin for angles [degree] from −45 to 45, then the low word of each."""
     step = np.rint(angle * STEPS)
     cos, sin, cos_lo, sin_lo = (row[step.astype(np.int64) + 45 * STEPS] for row in _table())
-    t, rest = _radians(angle - step / STEPS)
-    whole, square = t + rest, 0.5 * t * t  # exact
+    t, t_lo = _radians(angle - step / STEPS)
+    whole, square = t + t_lo, 0.5 * t * t  # the square is exact: t has 26 bits
     half = 0.5 * whole * whole
-    versine = _coarse(square, 52)  # 1 − cos(t + rest)
-    versine_lo = (square - versine) + (rest * (t + 0.5 * rest) - half * half * (1.0 / 6.0 - half / 90.0))
-    lag = whole * half * (1.0 / 3.0 - half / 30.0) - rest  # t − sin(t + rest)
-    cos_a, sin_a = _coarse(cos, 26), _coarse(sin, 26)  # whose products with t and versine are exact
+    versine = _coarse(square, 52)  # 1 − cos(t + t_lo)
+    versine_lo = (square - versine) + (t_lo * (t + 0.5 * t_lo) - half * half * (1.0 / 6.0 - half / 90.0))
+    lag = whole * half * (1.0 / 3.0 - half / 30.0) - t_lo  # t − sin(t + t_lo)
+    cos_a, sin_a = _coarse(cos, 26), _coarse(sin, 26)  # their products with t and versine are exact
     cos_b, sin_b = (cos - cos_a) + cos_lo, (sin - sin_a) + sin_lo
     cos_lo += sin * lag - sin_b * t - cos_b * versine - cos * versine_lo
     sin_lo += cos_b * t - cos * lag - sin_b * versine - sin * versine_lo
@@ -71,7 +72,7 @@ def _within_an_eighth(angle: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _radians(degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """At most half a step, as its first 26 bits and the rest."""
+    """Return an angle of at most half a step in radians, as its first 26 bits and the remainder."""
     radian, radian_lo = _pair(DEGREE)
     coarse, factor = _coarse(degrees, 33), _coarse(radian, 31)
     product = coarse * factor  # exact
@@ -79,39 +80,39 @@ def _radians(degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return t, (product - t) + ((degrees - coarse) * radian + coarse * ((radian - factor) + radian_lo))
 
 
-def _summed(x: np.ndarray, y: np.ndarray, z: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """x + y + z + rest, each far less than those before it, rounded; and what that was rounded by."""
+def _summed(x: np.ndarray, y: np.ndarray, z: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return x + y + z + low, each far smaller than those before it, as a high and a low word."""
     xy = x + y
     high = xy + z
-    rest = rest + ((y - (xy - x)) + (z - (high - xy)))
-    rounded = high + rest
-    return rounded, rest - (rounded - high)
+    low = low + ((y - (xy - x)) + (z - (high - xy)))
+    rounded = high + low
+    return rounded, low - (rounded - high)
 
 
 def _coarse(x, bits: int):
-    """Rounded to so many bits after the point."""
+    """Return x rounded to so many bits after the binary point: adding 1.5·2^(52 − bits) pushes further bits out."""
     shift = 1.5 * 2.0 ** (52 - bits)
     return (x + shift) - shift
 
 
 @lru_cache(maxsize=1)
 def _table() -> np.ndarray:
-    """cos, sin and their rests at every step from −45 to 45 degrees, by turning step by step."""
+    """Return cos, sin and their low words at every step from −45 to 45 degrees, by rotation step by step."""
     terms = [ONE]
-    for n in range(1, 12):  # of Taylor's series
+    for n in range(1, 12):  # Taylor series of one step: later terms are below 2⁻¹²⁸
         terms.append(terms[-1] * DEGREE // (n * STEPS * ONE))
     cos_step = sum(terms[0::4]) - sum(terms[2::4])
     sin_step = sum(terms[1::4]) - sum(terms[3::4])
-    turned = [(ONE, 0)]
+    rotated = [(ONE, 0)]
     for _ in range(45 * STEPS):
-        cos, sin = turned[-1]
-        turned.append(((cos * cos_step - sin * sin_step) // ONE, (sin * cos_step + cos * sin_step) // ONE))
-    half = np.array([(*_pair(cos), *_pair(sin)) for cos, sin in turned]).T[[0, 2, 1, 3]]
+        cos, sin = rotated[-1]
+        rotated.append(((cos * cos_step - sin * sin_step) // ONE, (sin * cos_step + cos * sin_step) // ONE))
+    half = np.array([(*_pair(cos), *_pair(sin)) for cos, sin in rotated]).T[[0, 2, 1, 3]]
     mirrored = half * np.array([[1.0], [-1.0], [1.0], [-1.0]])
     return np.concatenate([mirrored[:, :0:-1], half], axis=1)
 
 
 def _pair(integer: int) -> tuple[float, float]:
-    """A number of so many bits after the point as a double and what that was rounded by."""
+    """Return a fixed-point integer (128 bits after the point) as a double-double."""
     rounded = integer / ONE
     return rounded, (integer - int(rounded * ONE)) / ONE

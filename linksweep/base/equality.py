@@ -1,4 +1,4 @@
-"""Dataclasses of numbers: float64 whatever they were made of, and equal by content, also where they hold DataArrays."""
+"""Dataclasses that compare by content, also where they hold DataArrays, and whose numbers are float64."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from linksweep.base.validate import is_array
 
 
 class ByContent:
-    """A dataclass(frozen=True, eq=False) of this has numbers of float64, and is equal to another of its class that has
-    the same content: numbers, dims and labels. One with a `__post_init__` of its own calls this one first."""
+    """Base of frozen dataclasses (eq=False) whose numbers become float64 and that are equal to another of their class
+    with equal content: numbers, dims and labels. A `__post_init__` of a subclass calls this one first."""
 
     def __post_init__(self) -> None:
         normalise(self, **float64_fields(self))
@@ -25,7 +25,8 @@ class ByContent:
 
 
 def content(value: Any) -> Any:
-    """Return what makes two values equal, as nested tuples: no names, attributes or other coordinates of arrays."""
+    """Return the content that decides equality, as nested tuples, without names, attributes or other coordinates of
+    arrays."""
     if is_dataclass(value):
         return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
     if is_array(value):
@@ -35,6 +36,6 @@ def content(value: Any) -> Any:
 
 
 def _labels(values: Any) -> list[Any]:
-    """Return labels as a list, times in nanoseconds and texts as plain ones: files keep no more of them."""
+    """Return labels as a list, times in nanoseconds and texts as plain ones: files store no more of them."""
     listed: list[Any] = (values.astype("M8[ns]") if values.dtype.kind == "M" else values).tolist()
     return list(map(str, listed)) if values.dtype.kind == "O" else listed

@@ -1,4 +1,4 @@
-"""How much memory a request needs, told before it is taken."""
+"""Check how much memory a request needs before it is allocated."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 SMALL = 2**28
-"""Bytes that need no looking whether they are there."""
+"""Bytes that are allocated without a check."""
 
 
 def require_memory(request: str, size: float) -> None:
@@ -31,7 +31,7 @@ def _free_in_machine() -> float:
 
 
 def _free_in_container() -> float:
-    with contextlib.suppress(OSError, ValueError):  # ValueError: it says "max"
+    with contextlib.suppress(OSError, ValueError):  # ValueError: the file contains "max"
         return int(Path("/sys/fs/cgroup/memory.max").read_text()) - _own_pages(1)
     return math.inf
 
@@ -47,5 +47,5 @@ def _free_of_limit() -> float:
 
 
 def _own_pages(column: int) -> int:
-    """Return the bytes of this process: all its address space (0), or what is in memory (1)."""
+    """Return the bytes of this process: its whole address space (column 0), or the resident part (1)."""
     return int(Path("/proc/self/statm").read_text().split()[column]) * os.sysconf("SC_PAGE_SIZE")

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator, Sequence
 
 
 def aligned(rows: Sequence[tuple[str, ...]], right: Container[int] = (1, 3)) -> Iterator[str]:
-    """Yield the lines of a table, some columns to the right, as numbers are."""
+    """Yield the lines of a table, with the columns in `right` (numbers) aligned to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = enumerate(zip(row, widths, strict=True))

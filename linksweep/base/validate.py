@@ -1,4 +1,4 @@
-"""Checking numbers at the door: every message names the parameter, the value, what is allowed and what to do."""
+"""Validate numbers on input: every message names the parameter, the value, what is allowed and what to do."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ UNITS = {
     "torsional_damping": "N m s/rad",
     "dimensionless": "1",
 }
-"""Unit in which each kind of number is given and stored."""
+"""Unit in which each kind of number is passed in and stored."""
 
 Number = Any
 """A float, or an xarray.DataArray whose named dims are axes of a design study."""
@@ -38,8 +38,8 @@ Number = Any
 
 @dataclass(frozen=True)
 class Rule:
-    """What a parameter may be: its kind, its bound, whether it may change over the revolution, and whether it is the
-    distance of a point in polar coordinates."""
+    """Constraints on a parameter: its kind and bound, whether it may change over the revolution (`over_angle`), and
+    whether it is the distance of a point in polar coordinates (`polar`)."""
 
     kind: str
     above: float | None = None
@@ -49,7 +49,7 @@ class Rule:
 
     @property
     def number(self) -> str:
-        """What is wanted, in words."""
+        """Expected value, in words."""
         unit = {"1": "", "degree": " in degrees"}.get(UNITS[self.kind], f" in {UNITS[self.kind]}")
         return f"a number{unit}"
 
@@ -57,12 +57,12 @@ class Rule:
         return f"{value:.15g} {UNITS[self.kind]}".removesuffix(" 1")
 
     def allowed(self, value: float) -> str:
-        """What would have been allowed in place of this value, and what to do."""
+        """Return the allowed range in place of this value, and what to do."""
         bound = f"greater than {self.above:g}" if self.above is not None else ""
         bound = f"at least {self.at_least:g}" if self.at_least is not None else bound
         finite = "" if bound and np.isfinite(value) else "finite"
-        turned = self.polar and np.isfinite(value)
-        advice = "; for a point on the other side turn its angle by 180 degrees" if turned else ""
+        negative = self.polar and np.isfinite(value)
+        advice = "; for a point on the other side turn its angle by 180 degrees" if negative else ""
         return " and ".join(filter(None, (finite, bound))) + advice
 
     def broken_by(self, values: np.ndarray) -> np.ndarray:
@@ -75,13 +75,13 @@ class Rule:
 
 
 def parameter(kind: str, default: Any = MISSING, **bounds: Any) -> Any:
-    """A dataclass field that holds a number under a rule."""
+    """Return a dataclass field that holds a number under a rule."""
     metadata = {"rule": Rule(kind, **bounds)}
     return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
 
 
 def field_problems(owner: Any, prefix: str = "") -> list[str]:
-    """What is wrong with the ruled fields of a dataclass, each with its path; None is for the owner to judge."""
+    """Return the problems of the ruled fields of a dataclass, each with its path; its owner checks None."""
     return [
         problem
         for item in fields(owner)
@@ -97,7 +97,7 @@ def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) 
 
 
 def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
-    """Return a line if what follows from sound numbers is more than a float can hold."""
+    """Return a problem if a number derived from valid ones is more than a float can hold."""
     sound = is_lazy(number) or bool(np.all(np.isfinite(number)))
     return [] if sound else [f"{path}: its {meaning} is more than a number can hold; reduce its measures"]
 
@@ -137,26 +137,27 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
 
 
 def is_array(value: Any) -> bool:
-    """Whether a value is a DataArray: known by what it can do, since xarray starts at the scene."""
+    """Return whether a value is a DataArray, recognised by its attributes, since xarray starts at the scene."""
     return all(hasattr(value, name) for name in ("dims", "coords", "dtype"))
 
 
 def is_quantity(value: Any) -> bool:
-    """Whether a value is a quantity of pint, or an array of them: known by what it can do, since pint is slow to wake.
+    """Return whether a value is a quantity of pint, or an array of them, by its attributes, since pint is slow to
+    import.
 
-    Where numbers enter, quantities are converted; one that still is one is of another kind.
+    Numbers are converted on input; one that is still a quantity afterwards is of another kind.
     """
     data = value.data if is_array(value) else value
     return all(hasattr(data, name) for name in ("magnitude", "units", "to_root_units"))
 
 
 def is_lazy(value: Any) -> bool:
-    """Whether it is an array whose numbers dask is yet to compute: they are checked when it has, not at the door."""
+    """Return whether a value is an array that dask has yet to compute: its numbers are checked then, not on input."""
     return getattr(value, "chunks", None) is not None
 
 
 def as_float(value: Any) -> float | None:
-    """A real number as a float, infinite where it is too large for one; None for anything else."""
+    """Return a real number as a float, infinite where it is too large for one; None for anything else."""
     if not isinstance(value, numbers.Real) or isinstance(value, bool | np.timedelta64):
         return None
     real: Any = value
@@ -167,10 +168,10 @@ def as_float(value: Any) -> float | None:
 
 
 def quote(value: Any) -> str:
-    """Return a value in one short line of a message, the same in every run."""
+    """Return a value in one short line for a message, equal in every run."""
     try:
         text = re.sub(r" at 0x\w+", "", " ".join(repr(value).split()))
-    except Exception:  # an int of too many digits, or whatever somebody's class does
+    except Exception:  # an int of too many digits, or any class's own repr
         text = f"<{type(value).__name__}>"
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -203,7 +204,7 @@ def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:
 
 
 def _place(array: Any, first: tuple, broken: np.ndarray) -> str:
-    """Where the first value that is not allowed stands: by label where its dimension has labels."""
+    """Return the place of the first value that is not allowed: by label where its dim has labels."""
     places = [
         f"{dim} = {array.coords[dim].values[k]}" if dim in array.coords else f"{dim}[{k}]"
         for dim, k in zip(array.dims, first, strict=True)
@@ -213,9 +214,9 @@ def _place(array: Any, first: tuple, broken: np.ndarray) -> str:
 
 
 def _angle_problems(path: str, value: Any) -> list[str]:
-    """What is wrong with the angles at which a DataArray over theta2 is given."""
+    """Return the problems of the angles of a DataArray over theta2."""
     if "theta2" not in value.coords:
-        return []  # its values are those of the sweep's own angles
+        return []  # its values belong to the sweep's own angles
     angles = value.coords["theta2"].values
     if angles.dtype.kind not in "fiu" or not np.isfinite(angles).all():
         return [f"{path} has theta2 = {quote(angles.tolist())}: its coordinate must hold finite angles in degrees"]
@@ -225,7 +226,7 @@ def _angle_problems(path: str, value: Any) -> list[str]:
 
 
 def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
-    """A word that must be one of a few."""
+    """Return a problem unless a text is one of a few."""
     allowed = list(allowed)
     if isinstance(value, str) and value in allowed:
         return []
@@ -233,14 +234,14 @@ def choice_problems(path: str, value: Any, allowed: Iterable[str]) -> list[str]:
 
 
 def count_problems(path: str, value: Any) -> list[str]:
-    """A whole number of things, 1 or more; None is for the owner to judge."""
+    """Return a problem unless a value is a whole number, 1 or more; its owner checks None."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     sound = value is None or (whole and value >= 1)
     return [] if sound else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
 
 
 def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
-    """A name that must be one of many; the message lists them all only where none is close."""
+    """Return a problem unless a name is among the known ones; the message lists them all only where none is close."""
     known = list(known)
     if isinstance(name, str) and name in known:
         return []

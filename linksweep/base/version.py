@@ -1,4 +1,4 @@
-"""Say which version of linksweep this is."""
+"""Version of linksweep that is running."""
 
 from __future__ import annotations
 

@@ -439,12 +439,9 @@ def test_docstring(name):
 
 SHRINKING = {
     "analysis": (67, 14),
-    "base": (0, 10),
     "cli": (35, 4),
-    "engine": (6, 19),
     "files": (2, 2),
     "mechanisms": (27, 57),
-    "physics": (0, 12),
     "plot": (96, 29),
     "reports": (43, 19),
     "results": (82, 30),
