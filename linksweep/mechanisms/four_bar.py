@@ -10,8 +10,16 @@ import numpy as np
 
 from linksweep.base.validate import Number, is_lazy, parameter
 from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.limits.four_bar_limits import angles, classes, coupler_dead_centres, rocker_dead_centres
+from linksweep.mechanisms.limits.four_bar_limits import (
+    angles,
+    classes,
+    coupler_dead_centres,
+    reversals,
+    rocker_dead_centres,
+    swings,
+)
 from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import (
@@ -41,6 +49,7 @@ from linksweep.mechanisms.strokes import Stroke, rocker_stroke
 from linksweep.physics import advantage, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle, dyad_rrr, four_bar, freudenstein
+from linksweep.physics.closures.freudenstein import PositionEquation
 
 LINKS = {1: "ground", 2: "crank", 3: "coupler", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "D": (1, 4)}
@@ -104,6 +113,7 @@ class FourBar(Mechanism):
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
+    position_equation: ClassVar[PositionEquation | None] = freudenstein.POSITION_EQUATION
 
     def lengths(self) -> dict[str, Number]:
         return {
@@ -180,6 +190,15 @@ class FourBar(Mechanism):
         """Where the coupler, or the rocker, stands still."""
         found = {"coupler": coupler_dead_centres, "rocker": rocker_dead_centres}
         return ((found[drive], (*self.lengths().values(), self.ground_angle)),) if drive in found else ()
+
+    def stroke_findings(self) -> Checks:
+        lengths = tuple(self.lengths().values())
+        return (swings, lengths), (reversals, (*lengths, self.ground_angle, self.branch_sign))
+
+    def balancing_moments(self, fraction: Number) -> dict[str, Any]:
+        """Return the first moments that crank and rocker lack for the centre of gravity to stand still."""
+        on_rocker = first_moment(self.coupler) * (self.rocker.length / self.coupler.length)
+        return {"crank": -on_crank(self.crank, self.coupler), "rocker": -first_moment(self.rocker) - on_rocker}
 
     @cached_property
     def closes_everywhere(self) -> bool:

@@ -11,12 +11,15 @@ import numpy as np
 
 from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
+from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     angles,
     classes,
     dead_centres,
+    reversals,
     rocker_dead_centres,
+    swings,
     wedging,
     wedging_by_crank,
 )
@@ -195,7 +198,17 @@ class InvertedSliderCrank(Mechanism):
 
     def findings(self) -> Checks:
         """What can be checked in closed form, and the numbers that each takes."""
-        return (classes, self.lengths()), (angles, (*self.lengths(), self.ground_angle))
+        lengths = self.lengths()
+        return (classes, lengths), (angles, (*lengths, self.ground_angle)), *self.stroke_findings()
+
+    def stroke_findings(self) -> Checks:
+        return (swings, self.lengths()), (reversals, (*self.lengths(), self.ground_angle))
+
+    def balancing_moments(self, fraction: Number) -> dict[str, Any]:
+        """Return the first moments that crank and rocker lack for the centre of gravity to stand still."""
+        rocker_and_block = first_moment(self.rocker) + self.masses()["block"].first_moment()
+        crank = first_moment(self.crank) + self.block_mass * self.crank.length
+        return {"crank": -crank, "rocker": -rocker_and_block}
 
     def dead_centre_findings(self, drive: str) -> Checks:
         """Where the block stands still on its line; where the rocker turns round."""

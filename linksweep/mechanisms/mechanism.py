@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar, TypeVar
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from linksweep.base.equality import ByContent
 from linksweep.base.validate import Number, choice_problems, field_problems, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
+from linksweep.mechanisms.balance import MassDistribution, distribution
+from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import Bar, Disk, Link, link_problems
 from linksweep.mechanisms.rows.bodies import Body, Equation
@@ -20,6 +22,7 @@ from linksweep.mechanisms.rows.crank import BRANCH_SIGN, OverDesigns
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins
 from linksweep.mechanisms.strokes import Stroke
+from linksweep.physics.closures.freudenstein import PositionEquation
 
 Kind = TypeVar("Kind", bound="type[Mechanism]")
 
@@ -77,6 +80,10 @@ class Mechanism(ByContent, ABC):
     """The assembly: "open", "crossed" or "both"; a machine with a single assembly has no such parameter."""
     friction = 0.0
     """Coefficient of Coulomb friction of the part that slides; a machine without one has no such parameter."""
+    balances_partly: ClassVar[bool] = False
+    """Whether counterweights on the links can take no more than a fraction of the shaking force of first order."""
+    position_equation: ClassVar[PositionEquation | None] = None
+    """The position equation that a source document prints for the machine."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -137,6 +144,44 @@ class Mechanism(ByContent, ABC):
         """Return the links that are parameters of the machine, by role."""
         own = {item.name for item in fields(self)}
         return {role: getattr(self, role) for role in self.links if role in own}
+
+    def masses(self) -> dict[str, MassDistribution]:
+        """Return the mass distribution of each moving link by role: a part's own, or parameters such as block_mass."""
+        parts, names = self.parts(), MassDistribution._fields
+        return {
+            role: distribution(parts[role])
+            if role in parts
+            else MassDistribution(*(getattr(self, f"{role}_{name}", 0.0) for name in names))
+            for role in self.links
+        }
+
+    def with_masses(self, masses: Mapping[str, MassDistribution]) -> Self:
+        """Return a copy whose links have other mass distributions, by role; a number that has no parameter stays 0."""
+        parts, own = self.parts(), {item.name for item in fields(self)}
+        changed: dict[str, Any] = {}
+        for role, placed in masses.items():
+            numbers = placed._asdict()
+            if role in parts:
+                changed[role] = Link(parts[role].length, **numbers)
+            else:
+                changed |= {f"{role}_{name}": n for name, n in numbers.items() if f"{role}_{name}" in own}
+        return replace(self, **changed)
+
+    def balancing_moments(self, fraction: Number) -> dict[str, Any]:
+        """Return the first moments mx + i·my [kg m] that links lack for balance, by role; none are known.
+
+        `fraction` is that of the first order of a machine that `balances_partly`.
+        """
+        return {}
+
+    @property
+    def cylinder(self) -> Cylinder:
+        """The cylinder in which gas presses on the link "slider". For one branch only."""
+        raise NotImplementedError
+
+    def stroke_findings(self) -> Checks:
+        """Return the closed forms of the output's stroke or swing, time ratio and reversals."""
+        return ()
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled at any angle; one of a batch only has no values."""

@@ -12,12 +12,16 @@ import numpy as np
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
+from linksweep.mechanisms.balance import first_moment, on_crank
+from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.slider_crank_limits import (
     angles,
     classes,
+    reversals,
     rod_dead_centres,
     slider_dead_centres,
+    travel,
     wedging,
     wedging_by_crank,
 )
@@ -99,6 +103,7 @@ class SliderCrank(Mechanism):
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
+    balances_partly: ClassVar[bool] = True
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: crank and rod do not reach the guide."""
@@ -207,14 +212,9 @@ class SliderCrank(Mechanism):
 
         NaN in designs that have none. Stretched, C is farthest from A; folded, nearest.
         """
-        a, b, e = self._lengths
-        with np.errstate(all="ignore"):  # out of reach: NaN
-            stretched, folded = (np.degrees(np.arcsin(np.divide(e, reach))) for reach in (a + b, b - a))
-        found: list[Number] = []
-        for sign in [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values():
-            ahead = np.mod(self.slide_angle + (0.0 if sign > 0.0 else 180.0), 360.0)
-            found += [ahead + sign * stretched, ahead + 180.0 + sign * folded]
-        return tuple(found)
+        signs = [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values()
+        cylinders = (Cylinder(*self._lengths, self.slide_angle, sign) for sign in signs)
+        return tuple(angle for cylinder in cylinders for angle in cylinder.dead_centres())
 
     @property
     def strokes(self) -> dict[str, Stroke]:
@@ -222,9 +222,17 @@ class SliderCrank(Mechanism):
         return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
-    def turns_fully(self) -> Number:
-        """Return whether each crank turns fully, with the bits of `assembly` in its closure."""
-        return abs(self.offset) - self.rod.length + self.crank.length < 0.0
+    def cylinder(self) -> Cylinder:
+        """The cylinder in which the slider is the piston, its head where the rod reaches farthest."""
+        return Cylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
+
+    def stroke_findings(self) -> Checks:
+        return (travel, self._lengths), (reversals, (*self._lengths, self.slide_angle, self.branch_sign))
+
+    def balancing_moments(self, fraction: Number) -> dict[str, Any]:
+        """Return the first moment that the crank lacks to cancel what turns, and a fraction of the first order."""
+        reciprocating = self.slider_mass + first_moment(self.rod).real / self.rod.length
+        return {"crank": -on_crank(self.crank, self.rod) - fraction * self.crank.length * reciprocating}
 
     @cached_property
     def closes_everywhere(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.limits.finding import Finding
+from linksweep.mechanisms.limits.finding import Checks, Finding
 from linksweep.results.compute import require_scene
 from linksweep.results.dataset import design_coordinates, flags, origin_attributes
 from linksweep.scene.designs.lazy import in_memory
@@ -77,17 +77,8 @@ def check(scene: Scene) -> xr.Dataset:
     """
     require_scene(scene)
     scene = in_memory(scene)
-    variables: dict[str, xr.Variable] = {}
-    labels: dict[str, xr.Variable] = {}
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
-    for findings, numbers in (*scene.mechanism.findings(), *driven):
-        dims_of_numbers, arrays = side_by_side(numbers)
-        with np.errstate(all="ignore"):  # lengths and speeds may be near the ends of what a number can hold
-            told = findings(*arrays)
-        for name, found in told.items():
-            variables[name] = _variable(found, dims_of_numbers)
-            if found.along and found.along[1]:
-                labels[found.along[0]] = xr.Variable(found.along[0], list(found.along[1]))
+    variables, labels = evaluated((*scene.mechanism.findings(), *driven))
     variables |= _acceleration(scene)
     if overshoots := scene.overshoots():
         said = {"units": "1", "long_name": "how far its spline leaves the range of an array, relative to that range"}
@@ -96,6 +87,21 @@ def check(scene: Scene) -> xr.Dataset:
     dims = {dim for variable in variables.values() for dim in variable.dims}
     coordinates = {k: v for k, v in design_coordinates(scene).items() if dims.issuperset(v.dims)} | labels
     return xr.Dataset(variables, coordinates, origin_attributes(scene, "linksweep.check(scene)"))
+
+
+def evaluated(checks: Checks) -> tuple[dict[str, xr.Variable], dict[str, xr.Variable]]:
+    """Return the findings of closed-form checks over the dims of their numbers, and the labels of dims of their own."""
+    variables: dict[str, xr.Variable] = {}
+    labels: dict[str, xr.Variable] = {}
+    for findings, numbers in checks:
+        dims, arrays = side_by_side(numbers)
+        with np.errstate(all="ignore"):  # lengths and speeds may be near the ends of what a number can hold
+            results = findings(*arrays)
+        for name, finding in results.items():
+            variables[name] = _variable(finding, dims)
+            if finding.along and finding.along[1]:
+                labels[finding.along[0]] = xr.Variable(finding.along[0], list(finding.along[1]))
+    return variables, labels
 
 
 def _acceleration(scene: Scene) -> dict[str, xr.Variable]:

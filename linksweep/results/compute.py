@@ -11,6 +11,7 @@ from linksweep.base.validate import name_problems, refuse
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
+from linksweep.mechanisms.capabilities import lack
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
@@ -43,6 +44,13 @@ def require_scene(scene: Any) -> None:
     kind = type(scene).__name__
     said = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
     refuse([] if isinstance(scene, Scene) else [said])
+
+
+def require(scene: Any, *capabilities: str) -> None:
+    """Raise ValueError for anything but a Scene, and for a machine that lacks one of these capabilities."""
+    require_scene(scene)
+    for missing in filter(None, (lack(scene.mechanism, capability) for capability in capabilities)):
+        refuse([f"scene is of {missing}"])
 
 
 def angles_missing(scene: Scene) -> list[str]:

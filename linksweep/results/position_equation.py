@@ -7,33 +7,13 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import refuse
-from linksweep.mechanisms import FourBar
-from linksweep.results.compute import compute, require_scene
+from linksweep.results.compute import compute, require
 from linksweep.results.dataset import provenance, variable
 from linksweep.results.sweep import sweep
 from linksweep.results.system import as_angles
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
-
-FORMULAS = {
-    "K1": "d/a",
-    "K2": "d/c",
-    "K3": "(a**2 - b**2 + c**2 + d**2)/(2*a*c)",
-    "K4": "d/b",
-    "K5": "(c**2 - d**2 - a**2 - b**2)/(2*a*b)",
-    "A": "cos(theta2) - K1 - K2*cos(theta2) + K3",
-    "B": "-2*sin(theta2)",
-    "C": "K1 - (K2 + 1)*cos(theta2) + K3",
-    "D": "cos(theta2) - K1 + K4*cos(theta2) + K5",
-    "E": "-2*sin(theta2)",
-    "F": "K1 + (K4 - 1)*cos(theta2) + K5",
-}
-ROOTS = {
-    "theta3": "2*atan((-E ± sqrt(E**2 - 4*D*F))/(2*D)), - for open and + for crossed",
-    "theta4": "2*atan((-B ± sqrt(B**2 - 4*A*C))/(2*A)), - for open and + for crossed",
-}
 
 
 def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
@@ -68,19 +48,17 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     >>> float(page.K1), page.A.dims, page.theta4.dims
     (2.5, ('theta2',), ('branch', 'theta2'))
     """
-    require_scene(scene)
+    require(scene, "position_equation")
     scene, angles = in_memory(scene), as_angles(theta2)
     mechanism: Any = scene.mechanism
-    kind = f"scene is of a {type(mechanism).__name__}"
-    fit = isinstance(mechanism, FourBar)
-    refuse([] if fit else [f"{kind}: must be of a FourBar, whose position equation document 2 has"])
+    formulas, roots = mechanism.position_equation
     both = replace(scene, mechanism=replace(mechanism, branch="both"), drive="crank", loads=())
     grid = crank_grid(angles, both.period, both.mechanism.index)
-    fields = compute(both.at(grid), grid, tuple(FORMULAS))
+    fields = compute(both.at(grid), grid, tuple(formulas))
     order = (*both.inputs.sizes, grid.dim)
-    page = sweep(both, angles, list(ROOTS))
-    found = {name: variable(fields[name], "1", formula, order) for name, formula in FORMULAS.items()}
-    for name, formula in ROOTS.items():
+    page = sweep(both, angles, list(roots))
+    found = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
+    for name, formula in roots.items():
         page[name].attrs["long_name"] += f"; {formula}"
     coordinates = {str(name): coordinate.variable for name, coordinate in page.coords.items()}
     command = f"linksweep.position_equation(scene, theta2={theta2})"

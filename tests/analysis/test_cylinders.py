@@ -116,8 +116,8 @@ def test_designs_go_along():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: ls.MultiCylinder(SCENE, [0]), "engine is a Scene: must be a Scene of a SliderCrank"),
-        (lambda: ls.MultiCylinder(3.0, [0]), "engine is a float: must be a Scene of a SliderCrank"),
+        (lambda: ls.MultiCylinder(SCENE, [0]), "engine is of a FourBar, which has no cylinder: give"),
+        (lambda: ls.MultiCylinder(3.0, [0]), "engine is a float: must be a Scene"),
         (lambda: ls.MultiCylinder(ENGINE, 0.0), "crank_angles = 0.0: must be a list of numbers"),
         (lambda: ls.MultiCylinder(ENGINE, []), "crank_angles is empty: give one"),
         (

@@ -98,4 +98,5 @@ def test_a_file_of_it_gives_the_whole_scene_back(tmp_path):
 
 def test_other_machines_have_none():
     message = refusal(lambda: ls.position_equation(ls.example("engine"), 45.0))
-    assert message == ["scene is of a SliderCrank: must be of a FourBar, whose position equation document 2 has"]
+    lacking = "a SliderCrank, which has no position equation in document 2 (ME 470)"
+    assert message == [f"scene is of {lacking}: give another machine (FourBar)"]

@@ -261,7 +261,10 @@ def test_the_engine_that_comes_with_the_package():
 FOUR_BAR = ls.example("press").mechanism
 SHORT = replace(ENGINE, rod=ls.Link(0.05, 0.0, 0.0), offset=0.02)
 REFUSED = [
-    ({"engine": FOUR_BAR}, "loads[1] is a GasPressure on a FourBar: must be on a SliderCrank; give the FourBar a Load"),
+    (
+        {"engine": FOUR_BAR},
+        "loads[1] is a GasPressure on a FourBar, which has no cylinder: give another",
+    ),
     (
         {"engine": replace(ENGINE, branch="both")},
         'loads[1] is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"',

@@ -23,10 +23,10 @@ import xarray as xr
 
 from linksweep.analysis.balance.compare import sizes_named
 from linksweep.analysis.balance.counterweights import Counterweight, by_link
-from linksweep.analysis.balance.regressor import OF_LINK, own_links, regressor
+from linksweep.analysis.balance.regressor import OF_LINK, regressor
 from linksweep.base.validate import Rule, name_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import require
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_number
 from linksweep.scene.designs.selection import design_sizes
@@ -109,13 +109,14 @@ def best_counterweights(
     >>> bool(table.Fs_rms.sel(balance="after") < table.Fs_rms.sel(balance="before"))
     True
     """
-    require_scene(scene)
+    require(scene, "bodies")
     sizes = design_sizes(scene)
     refuse([f"scene has designs over {', '.join(sizes)}: give one, as ls.scene_at(scene, ...)"] * bool(sizes))
     wanted = _wanted(scene, minimize)
-    grounded = [role for role in own_links(scene.mechanism) if role in ("crank", "rocker")]
+    carriers = scene.mechanism.parts()
+    grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]
     radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
-    refuse([p for link in radii for p in name_problems("radius", link, own_links(scene.mechanism))])
+    refuse([p for link in radii for p in name_problems("radius", link, carriers)])
     bounds = _bounds(most, list(radii))
     spokes = {link: _spokes(float(r)) for link, r in radii.items()}
     aims = _aims(scene, wanted, list(spokes), theta2, threads)

@@ -1,19 +1,6 @@
 """Counterweights: which cancel the shaking force, how to put them on, and which serve a mix of aims best.
 
-The moving links' centre of gravity moves with Σ m r_G. With h = m·(xG + i·yG) the first moment of a link about its
-first pin in its own axes, lengths a, b, c of crank, coupler and rocker, and the loop a·e^{iθ2} + b·e^{iθ3} = d +
-c·e^{iθ4} to eliminate the coupler's direction,
-
-    four-bar       Σ m r_G = (h2 + m3·a − h3·a/b) e^{iθ2} + (h4 + h3·c/b) e^{iθ4} + constant
-    slider-crank   Σ m r_G = (h2 + m3·a − h3·a/b) e^{iθ2} + (m4 + h3/b) r_C
-
-A four-bar shakes no more where both coefficients are zero, whatever its speed: two counterweights can see to that. Of a
-slider-crank one on the crank cancels the first coefficient and, of the slider's inertia along the guide, a fraction of
-the first order, which then appears across the guide.
-
-Sources: R. S. Berkof and G. G. Lowen, A New Method for Completely Force Balancing Simple Linkages, Journal of
-Engineering for Industry 91 (1969) 21–26; for engines R. L. Norton, Design of Machinery, chapter "Engine Dynamics"
-(balancing the single-cylinder engine).
+Equations and sources: `linksweep.mechanisms.balance`.
 """
 
 from __future__ import annotations
@@ -25,7 +12,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.balance.regressor import Placed, mass_of, moments, own_links
 from linksweep.base.equality import ByContent
 from linksweep.base.validate import (
     Number,
@@ -37,9 +23,9 @@ from linksweep.base.validate import (
     quote,
     refuse,
 )
-from linksweep.mechanisms import FourBar, LoopTrack, SliderCrank
+from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.links import Link
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import require, require_scene
 from linksweep.scene.checked_number import checked_number, said_unit_problems
 from linksweep.scene.loads.load import AT
 from linksweep.scene.scene import Scene
@@ -118,7 +104,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     refuse(
         [f"counterweights = {quote(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]
     )
-    carriers = own_links(scene.mechanism)
+    carriers = scene.mechanism.parts()
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
     loaded = {weight.link for weight in weights}
     moving = [
@@ -129,15 +115,14 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     refuse(
         [f'loads[{k}].origin = "cg": would move with the counterweight; give its place from the pin' for k in moving]
     )
-    mechanism: Any = scene.mechanism
-    links = {role: _carrying(getattr(mechanism, role), [w for w in weights if w.link == role]) for role in loaded}
-    return replace(scene, mechanism=replace(mechanism, **links))
+    links = {role: _carrying(carriers[role], [w for w in weights if w.link == role]) for role in loaded}
+    return replace(scene, mechanism=replace(scene.mechanism, **links))
 
 
 def _carrying(link: Any, weights: list[Counterweight]) -> Link:
     """The link with its weights: masses, first moments and moments of inertia about its pin add up."""
-    placed = (Placed(weight.at[0], weight.at[1], weight.mass, weight.inertia) for weight in weights)
-    parts = [moments(part) for part in (link, *placed)]
+    placed = (MassDistribution(weight.at[0], weight.at[1], weight.mass, weight.inertia) for weight in weights)
+    parts = [part.moments() for part in (distribution(link), *placed)]
     mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
     distance = np.hypot(x, y) / mass.where(mass > 0.0, 1.0)
     inertia = (about_pin - mass * distance * distance).clip(min=0.0)
@@ -187,15 +172,12 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
     >>> after < 1e-10 * before
     True
     """
-    require_scene(scene)
-    mechanism = scene.mechanism
-    kind = type(mechanism).__name__
-    refuse([f"scene is of a {kind}, which has no links: give another"] if isinstance(mechanism, LoopTrack) else [])
-    slides = isinstance(mechanism, SliderCrank)
+    require(scene, "bodies", "balancing_moments")
+    mechanism, kind = scene.mechanism, type(scene.mechanism).__name__
     wholly = f"fraction = {quote(fraction)}: must be left out, a {kind} is balanced wholly"
-    refuse([wholly] if fraction is not None and not slides else [])
+    refuse([wholly] if fraction is not None and not mechanism.balances_partly else [])
     share = checked_number("fraction", 0.5 if fraction is None else fraction, Rule("dimensionless"))
-    lacking = _lacking(mechanism, share)
+    lacking = mechanism.balancing_moments(share)
     radii = by_link("radius", radius, list(lacking))
     return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]
 
@@ -208,27 +190,6 @@ def by_link(word: str, given: Any, links: list[str], rule: Rule = RADIUS) -> dic
     refuse([p for link in by_link for p in choice_problems(word, link, links)])
     refuse([f"{word}.{link}: missing; give it {rule.number}" for link in links if link not in by_link])
     return {link: checked_number(f"{word}.{link}", number, rule) for link, number in by_link.items()}
-
-
-def _first_moment(link: Any) -> Any:
-    """h of the module's equations."""
-    _, x, y, _ = moments(link)
-    return xr.DataArray(x + 1j * y)
-
-
-def _lacking(mechanism: Any, fraction: Number) -> dict[str, Any]:
-    """First moments that the links lack for balance, by the module's equations."""
-    crank, a = _first_moment(mechanism.crank), mechanism.crank.length
-    if isinstance(mechanism, SliderCrank):
-        h3, b = _first_moment(mechanism.rod), mechanism.rod.length
-        turning = crank + mechanism.rod.mass * a - h3 * (a / b)
-        return {"crank": -turning - fraction * a * (mechanism.slider_mass + h3.real / b)}
-    rocker = _first_moment(mechanism.rocker)
-    if isinstance(mechanism, FourBar):
-        h3, b = _first_moment(mechanism.coupler), mechanism.coupler.length
-        turning = crank + mechanism.coupler.mass * a - h3 * (a / b)
-        return {"crank": -turning, "rocker": -rocker - h3 * (mechanism.rocker.length / b)}
-    return {"crank": -crank - mechanism.block_mass * a, "rocker": -rocker - _first_moment(mass_of(mechanism, "block"))}
 
 
 def _weight(link: str, moment: Any, radius: Number) -> Counterweight:

@@ -15,16 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import Number, refuse
-from linksweep.mechanisms import LoopTrack
-from linksweep.mechanisms.links import Bar, Disk, Link
-from linksweep.results.compute import quantity_problems, requested, require_scene
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.balance import MassDistribution
+from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined, provenance
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
@@ -34,15 +33,6 @@ PROBE = "_probe"
 LINEAR_UNITS = ("N", "N m", "W")
 UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m2"}
 OF_LINK = tuple(UNITS)
-
-
-class Placed(NamedTuple):
-    """A mass distribution, with the names that a link has for its numbers."""
-
-    cg_distance: Number
-    cg_angle: Number
-    mass: Number
-    inertia: Number
 
 
 def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
@@ -104,68 +94,39 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
 
 
 def _checked(scene: Scene, outputs: Iterable[str]) -> list[str]:
-    require_scene(scene)
-    mechanism, quantity = scene.mechanism, scene.table.quantity
-    kind = "a car in a loop has no links: give a mechanism of links"
-    refuse([f"scene is of a {type(mechanism).__name__}: {kind}"] if isinstance(mechanism, LoopTrack) else [])
+    require(scene, "bodies")
     names = requested("outputs", outputs)
-    linear = [name for name, q in quantity.items() if q.units in LINEAR_UNITS and not q.squared]
+    linear = [name for name, q in scene.table.quantity.items() if q.units in LINEAR_UNITS and not q.squared]
     refuse([problem for name in names for problem in quantity_problems("outputs", name, linear, scene)])
-    rubs = np.any(getattr(mechanism, "friction", 0.0))
+    rubs = np.any(scene.mechanism.friction)
     refuse(["friction is not 0: forces are not linear in the masses then; make it 0"] if rubs else [])
     return names
 
 
-def own_links(mechanism: Any) -> list[str]:
-    """Roles of the links whose mass distribution is given by a Link, Bar or Disk."""
-    return [role for role in mechanism.links if isinstance(getattr(mechanism, role, None), Link | Bar | Disk)]
+def _values(mechanism: Mechanism) -> dict[str, Number]:
+    """Return the parameters of a mechanism by label; a link that does not turn has no J."""
+    masses = mechanism.masses()
+    return {
+        f"{body.role}.{word}": number
+        for body in mechanism.bodies
+        for word, number in zip(OF_LINK, masses[body.role].moments(), strict=True)
+        if body.turns or word != "J"
+    }
 
 
-def moments(link: Any) -> tuple[Number, Number, Number, Number]:
-    """m, m·xG, m·yG and J of a link."""
-    cos, sin = cos_sin(link.cg_angle)
-    first = link.mass * link.cg_distance
-    return link.mass, first * cos, first * sin, link.inertia + first * link.cg_distance
-
-
-def mass_of(mechanism: Any, role: str) -> Any:
-    """Return a link, or the mass distribution of a block: numbers of the mechanism, such as block_mass."""
-    if role in own_links(mechanism):
-        return getattr(mechanism, role)
-    return Placed(*(getattr(mechanism, f"{role}_{name}", 0.0) for name in Placed._fields))
-
-
-def _values(mechanism: Any) -> dict[str, Number]:
-    """The parameters of a mechanism by label."""
-    found: dict[str, Number] = {}
-    for role in mechanism.links:
-        turns = role in own_links(mechanism) or hasattr(mechanism, f"{role}_inertia")
-        numbers = dict(zip(OF_LINK, moments(mass_of(mechanism, role)), strict=True))
-        found |= {f"{role}.{word}": number for word, number in numbers.items() if turns or word != "J"}
-    return found
-
-
-def _with_masses(mechanism: Any, labels: list[str]) -> Any:
-    """The mechanism over a dim of mass distributions, each with one parameter, or of mx and my one besides m and J.
-
-    Of no labels it has no mass at all, its centres of gravity where they are.
-    """
+def _with_masses(mechanism: Mechanism, labels: list[str]) -> Mechanism:
+    """Return the mechanism over a dim of mass distributions, each with one parameter, or of mx and my one besides m
+    and J; without labels it has no mass, and its centres of gravity stay where they are."""
 
     def only(role: str, *words: str) -> Number:
         chosen = np.array([label in [f"{role}.{word}" for word in words] for label in labels], dtype=float)
         return xr.DataArray(chosen, dims=PROBE) if labels else 0.0
 
-    changed: dict[str, Any] = {}
-    for role in mechanism.links:
-        part = mass_of(mechanism, role)
-        length = getattr(part, "length", mechanism.crank.length)
-        place = part.cg_distance, part.cg_angle
+    parts, masses = mechanism.parts(), {}
+    for role, own in mechanism.masses().items():
+        place = own.cg_distance, own.cg_angle
         if labels:
+            length = parts.get(role, next(iter(parts.values()))).length
             place = float(np.max(length)) * only(role, "mx", "my"), 90.0 * only(role, "my")
-        numbers = Placed(*place, only(role, "m", "mx", "my"), only(role, "J"))._asdict()
-        if role in own_links(mechanism):
-            changed[role] = Link(length, **numbers)
-        else:
-            own = {f"{role}_{name}": number for name, number in numbers.items()}
-            changed |= {name: number for name, number in own.items() if hasattr(mechanism, name)}
-    return replace(mechanism, **changed)
+        masses[role] = MassDistribution(*place, only(role, "m", "mx", "my"), only(role, "J"))
+    return mechanism.with_masses(masses)

@@ -20,30 +20,23 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import choice_problems, refuse
-from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.physics.algebra import planar
-from linksweep.results.check import check
-from linksweep.results.compute import compute, require_scene
+from linksweep.results.check import evaluated
+from linksweep.results.compute import compute, require
 from linksweep.results.dataset import design_coordinates, provenance, variable
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_pair
+from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.loads.load import AT
 from linksweep.scene.scene import Scene
 
-SAID = {
-    "swing": ("degree", "angle through which the rocker swings"),
-    "stroke": ("m", "travel of the slider from one dead centre to the other"),
-    "time_ratio": ("1", "crank angle of the slower way over that of the faster one"),
-    "reversal_angle": ("degree", "crank angle at which it turns round: stretched, folded"),
-}
+ANGLE = "transmission_angle"
 CURVE = {
     "P": ("m", "position of the point from A"),
     "vP": ("m s-1", "velocity of the point"),
@@ -86,63 +79,16 @@ def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
     >>> round(float(found.stroke), 12), round(float(found.time_ratio), 12)
     (0.086, 1.0)
     """
-    require_scene(scene)
-    refuse(["scene is of a LoopTrack, which has no links: give another"] * isinstance(scene.mechanism, LoopTrack))
-    unloaded = replace(scene, omega2=1.0, alpha2=0.0, loads=())
-    with np.errstate(invalid="ignore"):
-        found = _limits(unloaded)
-    angles = peaks(unloaded, of=["transmission_angle"], threads=threads)
-    told = xr.Dataset({**found, **angles.drop_vars(["status", "transmission_angle_peak"]).data_vars})
-    coordinates = {name: of for name, of in design_coordinates(scene).items() if {*of.dims} <= {*told.dims}}
-    return told.assign_coords(coordinates).assign_attrs(provenance(scene, "linksweep.geometry(scene)", coordinates))
-
-
-def _limits(scene: Scene) -> dict[str, Any]:
-    mechanism: Any = scene.mechanism
-    if isinstance(mechanism, InvertedSliderCrank):
-        told = check(scene)
-        return {name: told[name] for name in ("swing", "time_ratio", "reversal_angle")}
-    found = _of_rocker(mechanism) if isinstance(mechanism, FourBar) else _of_slider(mechanism)
-    turns = check(scene)["assembly"] == 0
-    found = {name: xr.DataArray(number).where(turns) for name, number in found.items()}
-    between = np.mod(found["folded"] - found["stretched"], 360.0)
-    found["time_ratio"] = np.maximum(between, 360.0 - between) / np.minimum(between, 360.0 - between)
-    ends = xr.concat([found.pop("stretched"), found.pop("folded")], "limit", coords="minimal", compat="override")
-    found["reversal_angle"] = np.mod(ends, 360.0).assign_coords(limit=["stretched", "folded"]).transpose(..., "limit")
-    return {name: array.assign_attrs(units=SAID[name][0], long_name=SAID[name][1]) for name, array in found.items()}
-
-
-def _of_rocker(mechanism: FourBar) -> dict[str, Any]:
-    a, b, c, d = (xr.DataArray(length) for length in mechanism.lengths().values())
-    rocker, line = [], []
-    for f in (b + a, b - a):
-        rocker.append(_degrees((c * c + d * d - f * f) / (2.0 * c * d)))
-        line.append(_degrees((d * d + f * f - c * c) / (2.0 * d * f)))
-    side, swing = _sign(mechanism), rocker[0] - rocker[1]
-    stretched, folded = (mechanism.ground_angle + side * angle for angle in line)
-    swings = ~np.isnan(swing)
-    return {"swing": swing, "stretched": stretched.where(swings), "folded": (folded + 180.0).where(swings)}
-
-
-def _of_slider(mechanism: SliderCrank) -> dict[str, Any]:
-    a, b, e = (xr.DataArray(length) for length in (mechanism.crank.length, mechanism.rod.length, mechanism.offset))
-    far, near = ((reach - e) * (reach + e) for reach in (b + a, b - a))
-    ahead = xr.where(_sign(mechanism) > 0.0, 0.0, 180.0) + mechanism.slide_angle
-    at_far, at_near = (np.degrees(np.arcsin(e / reach)) for reach in (b + a, b - a))
-    stretched, folded = ahead + _sign(mechanism) * at_far, ahead + 180.0 + _sign(mechanism) * at_near
-    return {"stroke": np.sqrt(far) - np.sqrt(near), "stretched": stretched, "folded": folded}
-
-
-def _sign(mechanism: FourBar | SliderCrank) -> xr.DataArray:
-    """1 of the open branch, −1 of the crossed one; over `branch` where both are meant."""
-    if mechanism.branch in BRANCH_SIGN:
-        return xr.DataArray(BRANCH_SIGN[mechanism.branch])
-    return xr.DataArray(list(BRANCH_SIGN.values()), {"branch": list(BRANCH_SIGN)}, "branch")
-
-
-def _degrees(cos: xr.DataArray) -> xr.DataArray:
-    """Angle of a cosine; NaN where there is none."""
-    return xr.DataArray(np.degrees(np.arccos(cos)))
+    require(scene, "bodies", "stroke_findings")
+    bare = in_memory(replace(scene, omega2=1.0, alpha2=0.0, loads=()))
+    variables, labels = evaluated(bare.mechanism.stroke_findings())
+    if ANGLE in bare.table.quantity:
+        angles = peaks(bare, of=[ANGLE], threads=threads).drop_vars(["status", f"{ANGLE}_peak"])
+        variables |= {str(name): angles[name].variable for name in angles.data_vars}
+    dims = {dim for variable in variables.values() for dim in variable.dims}
+    coordinates = {name: values for name, values in design_coordinates(scene).items() if {*values.dims} <= dims}
+    attributes = provenance(scene, "linksweep.geometry(scene)", coordinates)
+    return xr.Dataset(variables, coordinates | labels, attributes)
 
 
 def coupler_curve(
@@ -176,10 +122,9 @@ def coupler_curve(
     >>> curve.Py.dims, curve.aPy.units
     (('theta2',), 'm s-2')
     """
-    require_scene(scene)
+    require(scene, "bodies")
     bodies = {body.role: body for body in scene.mechanism.bodies}
-    refuse([] if bodies else [f"scene is of a {type(scene.mechanism).__name__}, which has no links: give another"])
-    role = next(name for name in ("coupler", "rod", "rocker") if name in bodies) if link is None else link
+    role = _floating(scene) if link is None else link
     refuse(choice_problems("link", role, bodies))
     at = checked_pair("at", at, AT, "(distance in m, angle in degrees)")
     body, cycle = bodies[role], sweep(scene, theta2, ["status"], threads=threads)
@@ -189,7 +134,7 @@ def coupler_curve(
     )
     line = _numbers(scene, theta2, (f"r{k}x", f"r{k}y"), threads)
     omega, alpha = _numbers(scene, theta2, (f"omega{k}", f"alpha{k}"), threads)
-    length = getattr(getattr(scene.mechanism, role, None), "length", 1.0)  # a block's axes are of unit length
+    length = scene.mechanism.parameters()[f"{role}_length"]
     cos, sin = cos_sin(at[1])
     arm = planar.to_ground_axes(at[0] * cos, at[0] * sin, length, *line)
     found = {
@@ -204,6 +149,12 @@ def coupler_curve(
     }
     command = f"linksweep.coupler_curve(scene, at=..., link={role!r})"
     return xr.Dataset({**variables, "status": cycle["status"]}, cycle.coords, cycle.attrs | {"command": command})
+
+
+def _floating(scene: Scene) -> str:
+    """Return the first link between moving pins that is a part of its own; else the last part."""
+    parts = [body for body in scene.mechanism.bodies if body.role in scene.mechanism.parts()]
+    return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
 
 
 def _said(name: str, role: str, axis: str) -> dict[str, str]:

@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.mechanisms import LoopTrack
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.peak_search.quadrature import cycle_time
 from linksweep.results.peaks import peaks
@@ -78,7 +77,7 @@ def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset
     ('J', True)
     """
     one = one_cylinder(scene)
-    require_scene(one)
+    require(one, "drives")
     refuse(turning_problems(one))
     drive = one.mechanism.drives[one.drive]
     entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
@@ -102,9 +101,6 @@ def _value(entry: Entry, found: xr.DataArray, time: Any) -> xr.DataArray:
 
 def turning_problems(scene: Scene) -> list[str]:
     """List why a scene has no crank that turns in one direction."""
-    kind = type(scene.mechanism).__name__
-    if kind == LoopTrack.__name__:
-        return [f"scene.mechanism is a {kind}, which has no crank"]
     grid = crank_grid(round(2.0 * scene.period), scene.period, scene.mechanism.index)
     omega2 = scene.at(grid).omega2 if scene.changes_speed else scene.omega2
     if np.any(np.equal(omega2, 0.0)):

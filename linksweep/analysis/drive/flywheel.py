@@ -22,7 +22,7 @@ import xarray as xr
 
 from linksweep.analysis.drive.duty import steady_problems
 from linksweep.base.validate import Number, Rule, quote, refuse
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_number
@@ -75,7 +75,7 @@ def flywheel(
     >>> found.flywheel_inertia.units, round(float(found.fluctuation), 12)
     ('kg m2', 0.05)
     """
-    require_scene(one_cylinder(scene))
+    require(one_cylinder(scene), "drives")
     refuse(_problems(one_cylinder(scene), fluctuation, inertia))
     if inertia is None:
         fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)

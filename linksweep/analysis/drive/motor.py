@@ -12,7 +12,7 @@ import xarray as xr
 from linksweep.base.conversion import all_to_float64, to_float64
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import require
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import array_unit_problems, checked_number
@@ -118,7 +118,7 @@ def motor_load(
     >>> bool((found.torque_margin > 0.0).all()), round(float(found.reflected_inertia), 9)
     (True, 0.02)
     """
-    require_scene(scene)
+    require(scene, "drives")
     refuse(_problems(scene, motor))
     ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
     refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
@@ -145,7 +145,7 @@ def motor_load(
 
 def _problems(scene: Scene, motor: Any) -> list[str]:
     problems = [] if isinstance(motor, Motor) else [f"motor = {quote(motor)}: must be a Motor"]
-    torque = scene.mechanism.drives.get(scene.drive)
+    torque = scene.mechanism.drives[scene.drive]
     if torque not in DRIVEN:
         problems.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
     return problems

@@ -27,7 +27,7 @@ from linksweep.base.validate import (
     refuse,
 )
 from linksweep.physics import bearing as plain
-from linksweep.results.compute import angles_missing, require_scene
+from linksweep.results.compute import angles_missing, require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import flags, joined
 from linksweep.results.peak_search.paths import Part
@@ -193,15 +193,9 @@ def _part_problems(part: Part | None, period: float) -> list[str]:
 
 def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
     """The pins of a scene's mechanism; ValueError for a scene without, and for bearings of pins that it lacks."""
-    require_scene(scene)
-    pins = scene.mechanism.pins
-    refuse(
-        []
-        if pins
-        else [f"scene is of a {type(scene.mechanism).__name__}, which has no pins: give a mechanism of links"]
-    )
-    refuse(bearing_problems(given, pins))
-    return pins
+    require(scene, "pins")
+    refuse(bearing_problems(given, scene.mechanism.pins))
+    return scene.mechanism.pins
 
 
 def bearing_problems(given: Any, pins: Iterable[str]) -> list[str]:

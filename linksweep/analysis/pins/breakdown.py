@@ -15,9 +15,8 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import count_problems, refuse
-from linksweep.mechanisms import LoopTrack
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import quantity_problems, requested, require_scene
+from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -68,8 +67,8 @@ def breakdown(
     load2 (rocker)   53.0       42.0
     Name: F32, dtype: float64
     """
-    require_scene(scene)
-    refuse([*_loop_problems(scene), *count_problems("threads", threads)])
+    require(scene, "pins")
+    refuse(count_problems("threads", threads))
     names = _names(scene, of)
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
@@ -86,12 +85,6 @@ def breakdown(
     made = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
     found = cycle[["status"]].assign(made).transpose("source", ...).assign_coords(source=list(shares))
     return found.assign_attrs(cycle.attrs | {"command": f"linksweep.breakdown(scene, {list(names)}, ...)"})
-
-
-def _loop_problems(scene: Scene) -> list[str]:
-    kind = type(scene.mechanism).__name__
-    known = "its normal force is m·a and weight alone"
-    return [f"scene.mechanism is a {kind}, which has no pins: {known}"] if kind == LoopTrack.__name__ else []
 
 
 def _names(scene: Scene, of: Any) -> tuple[str, ...]:
@@ -115,7 +108,7 @@ def _parts(scene: Scene, name: str) -> tuple[str, ...]:
 
 
 def has_friction(scene: Scene) -> bool:
-    return bool(np.any(getattr(scene.mechanism, "friction", 0.0) != 0.0))
+    return bool(np.any(scene.mechanism.friction != 0.0))
 
 
 def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:

@@ -122,7 +122,7 @@ def _rubbing(scene: Scene, given: Mapping[str, Bearing]) -> dict[str, RubbingPin
     refuse(
         [] if rubs else ['given: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}']
     )
-    both = getattr(scene.mechanism, "branch", "") == "both"
+    both = bool(scene.mechanism.coordinates())
     refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
     return {pin: RubbingPin(*pins[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
 

@@ -18,9 +18,8 @@ import xarray as xr
 
 from linksweep.analysis.pins.breakdown import forces_of, has_friction
 from linksweep.base.validate import Rule, refuse
-from linksweep.mechanisms import LoopTrack
 from linksweep.results.changed import quantities_with
-from linksweep.results.compute import quantity_problems, requested, require_scene
+from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import design_coordinates
 from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peaks import peaks
@@ -70,7 +69,7 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, theta2
     >>> bool((abs(again - ls.sweep(press).T12) < 1e-13).all())
     True
     """
-    require_scene(scene)
+    require(scene, "drives")
     refuse(_problems(scene))
     known = [name for name in forces_of(scene) if not scene.table.quantity[name].squared]
     unknowns = scene.mechanism.unknowns(scene.drive)
@@ -123,7 +122,7 @@ def speed_limit(scene: Scene, of: str, below: float) -> xr.Dataset:
     >>> round(float(ls.peaks(replace(press, omega2=limit), of=["F32"]).F32_peak), 6)
     1000.0
     """
-    require_scene(scene)
+    require(scene, "drives")
     (name,) = requested("of", of)[:1] or [""]
     refuse(_problems(scene))
     refuse(_branch_problems(scene))
@@ -155,9 +154,6 @@ def speed_limit(scene: Scene, of: str, below: float) -> xr.Dataset:
 
 def _problems(scene: Scene) -> list[str]:
     """Why its forces are not A·omega2² + B·alpha2 + C."""
-    kind = type(scene.mechanism).__name__
-    if kind == LoopTrack.__name__:
-        return [f"scene.mechanism is a {kind}, which has no crank"]
     advice = "take ls.peaks with an array of omega2 instead"
     problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
     dampers = [k for k, load in enumerate(scene.loads, 1) if hasattr(load, "coefficient")]

@@ -28,3 +28,14 @@ Findings = Callable[..., dict[str, Finding]]
 
 Checks = tuple[tuple[Findings, tuple[Any, ...]], ...]
 """Functions that find something in closed form, and the numbers that each takes."""
+
+
+def turning_round(stretched: np.ndarray, folded: np.ndarray) -> dict[str, Finding]:
+    """Return the time ratio and the crank angles [degree] of an output that turns round where two links are in line."""
+    between = np.mod(folded - stretched, 360.0)
+    ratio = np.maximum(between, 360.0 - between) / np.minimum(between, 360.0 - between)
+    angle, along = np.mod(np.stack([stretched, folded], axis=-1), 360.0), ("limit", ("stretched", "folded"))
+    return {
+        "time_ratio": Finding(ratio, "crank angle of the slower way over that of the faster one", "1"),
+        "reversal_angle": Finding(angle, "crank angle at which it turns round: stretched, folded", along=along),
+    }

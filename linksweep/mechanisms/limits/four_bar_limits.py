@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding, turning_round
 from linksweep.physics.closures.four_bar import extremes
 
 GRASHOF = (
@@ -66,20 +66,35 @@ def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_an
     }
 
 
+def swings(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
+    """Compute how far the rocker of a crank that turns fully swings, from stretched to folded."""
+    swing = _angle(c, a + b, d) - _angle(c, np.abs(a - b), d)
+    swing = np.where(limits(a, b, c, d).assembly == 0, swing, np.nan)
+    return {"swing": Finding(swing, "angle through which the rocker swings")}
+
+
+def reversals(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray, side: np.ndarray
+) -> dict[str, Finding]:
+    """Compute where the rocker of a crank that turns fully turns round; `side` is 1 for open, -1 for crossed."""
+    stretched, folded = (np.where(limits(a, b, c, d).assembly == 0, angle, np.nan) for angle in _in_line(a, b, c, d))
+    return turning_round(ground_angle + side * stretched, ground_angle + side * folded)
+
+
 def rocker_dead_centres(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
 ) -> dict[str, Finding]:
     """Crank angles at which the rocker turns round, and cannot drive."""
-    found = _crank_in_line(a + b, c, d), -_crank_in_line(a - b, c, d)
-    return _dead_centres(found, ground_angle, "rocker", "crank and coupler in one line")
+    return _dead_centres(_in_line(a, b, c, d), ground_angle, "rocker", "crank and coupler in one line")
 
 
 def coupler_dead_centres(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
 ) -> dict[str, Finding]:
     """Crank angles at which the coupler does not turn, and cannot drive."""
-    found = _crank_in_line(a - c, b, d), -_crank_in_line(a + c, b, d)
-    return _dead_centres(found, ground_angle, "coupler", "crank and rocker parallel")
+    return _dead_centres(
+        (_angle(a - c, b, d), -_angle(a + c, b, d)), ground_angle, "coupler", "crank and rocker parallel"
+    )
 
 
 def _dead_centres(
@@ -90,8 +105,16 @@ def _dead_centres(
     return {"dead_centre_angle": Finding(angle, said, along=("dead_centre", DEAD_CENTRES[driven]))}
 
 
-def _crank_in_line(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Angle φ in [0, 180] of the module's equation of dead centres; NaN where there is none."""
+def _in_line(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the crank's angles from the line A→D with the coupler in line with it: stretched, folded; branch open."""
+    return _angle(a + b, c, d), -_angle(a - b, c, d)
+
+
+def _angle(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Angle φ in [0, 180] between the sides g and d of a triangle, h opposite; NaN where there is none.
+
+    The module's equation of dead centres; a side g < 0 points the other way.
+    """
     with np.errstate(invalid="ignore", over="ignore"):
         near, far = ((h - d) + g) * ((h + d) - g), ((d - h) + g) * ((d + h) + g)
         angle = 2.0 * np.degrees(np.arctan2(np.sqrt(near * np.sign(g)), np.sqrt(far * np.sign(g))))

@@ -40,19 +40,11 @@ def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     whole = e < np.abs(d - a)
     assembly = np.where(whole, 0, np.where(e < d + a, 1, 2)).astype(np.int8)
     motion = np.where(whole, np.where(a < d, 0, 1), 2).astype(np.int8)
-    lean = _lean(a, d, e, whole)
     nearest = np.maximum(np.abs(d - a), e)
     angle = np.degrees(np.arctan2(np.sqrt((nearest - e) * (nearest + e)), e))
     return {
         "assembly": Finding(assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
         "rocker_motion": Finding(motion, "how the rocker moves", words=MOTIONS),
-        "swing": Finding(np.where(motion == 0, lean, np.nan), "angle through which the rocker swings"),
-        "time_ratio": Finding(
-            (180.0 + lean) / (180.0 - lean),
-            "time of the slow stroke over the quick one at constant omega2 (rocker turning fully: of its half-turns, "
-            "from square to the frame line to square)",
-            "1",
-        ),
         "transmission_angle_min": Finding(
             np.where(assembly == 2, np.nan, angle), "smallest acute angle between the line D-B and the normal force"
         ),
@@ -66,16 +58,34 @@ def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray
     start = np.where(whole, 0.0, np.mod(toggle + ground_angle, 360.0))
     end = start + np.where(whole, 360.0, 360.0 - 2.0 * toggle)
     toggles = np.mod(np.stack([toggle, -toggle], axis=-1) + ground_angle[..., None], 360.0)
-    swings = (a + np.abs(e) < d)[..., None]
-    reversals = np.where(swings, np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0), np.nan)
     return {
         "arc_start": Finding(start[..., None], "crank angle at which the assembled arc starts", along=("arc", ())),
         "arc_end": Finding(end[..., None], "crank angle at which it ends (may pass 360)", along=("arc", ())),
         "toggle_angle": Finding(toggles, "line D-B square to the rocker's line", along=("toggle", TOGGLES)),
-        "reversal_angle": Finding(
-            reversals, "crank angle at which the rocker turns round", along=("reversal", REVERSALS)
+    }
+
+
+def swings(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+    """Compute how far the rocker swings, and how evenly it moves."""
+    whole = np.abs(e) < np.abs(d - a)
+    lean = _lean(a, d, np.abs(e), whole)
+    return {
+        "swing": Finding(np.where(whole & (a < d), lean, np.nan), "angle through which the rocker swings"),
+        "time_ratio": Finding(
+            (180.0 + lean) / (180.0 - lean),
+            "time of the slow stroke over the quick one at constant omega2 (rocker turning fully: of its half-turns, "
+            "from square to the frame line to square)",
+            "1",
         ),
     }
+
+
+def reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+    """Compute the crank angles at which a rocker that swings turns round."""
+    swings = (a + np.abs(e) < d)[..., None]
+    angle = np.where(swings, np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0), np.nan)
+    said = "crank angle at which the rocker turns round"
+    return {"reversal_angle": Finding(angle, said, along=("reversal", REVERSALS))}
 
 
 def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.base.degrees import arcsine
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding, turning_round
 
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
 """Where the crank's height over the guide is largest, before and past the normal; and where it is least."""
@@ -47,6 +47,23 @@ def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray)
             np.mod(limits + slide_angle[..., None], 360.0), "rod square to the guide", along=("side", SIDES)
         ),
     }
+
+
+def travel(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+    """Compute the stroke of a slider whose crank turns fully."""
+    far, near = ((reach - e) * (reach + e) for reach in (b + a, b - a))
+    stroke = np.where(np.abs(e) + a < b, np.sqrt(far) - np.sqrt(near), np.nan)
+    return {"stroke": Finding(stroke, "travel of the slider from one dead centre to the other", "m")}
+
+
+def reversals(
+    a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray, side: np.ndarray
+) -> dict[str, Finding]:
+    """Compute where the slider of a crank that turns fully turns round; `side` is 1 for open, -1 for crossed."""
+    turns = np.abs(e) + a < b
+    stretched, folded = (np.where(turns, arcsine(e, reach), np.nan) for reach in (b + a, b - a))
+    ahead = slide_angle + 90.0 * (1.0 - side)
+    return turning_round(ahead + side * stretched, ahead + 180.0 + side * folded)
 
 
 def rod_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:

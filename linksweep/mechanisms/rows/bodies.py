@@ -38,6 +38,16 @@ class Body:
     pin_slope: tuple[Source, Source] = (0.0, 0.0)
 
     @property
+    def on_ground(self) -> bool:
+        """Whether its first pin stands."""
+        return self.pin_velocity == (0.0, 0.0)
+
+    @property
+    def turns(self) -> bool:
+        """Whether it turns, so that its moment of inertia counts."""
+        return self.ratio != 0.0
+
+    @property
     def axes(self) -> tuple[str, str, str]:
         """Names of the link's length and of its line of pins: its own axes."""
         return f"{self.role}_length", f"r{self.number}x", f"r{self.number}y"
@@ -225,7 +235,7 @@ def motion_quantities(body: Body) -> list[Quantity]:
         Quantity(f"omega{k}", "rad s-1", f"angular velocity of the {role}, positive counter-clockwise"),
         Quantity(f"alpha{k}", "rad s-2", f"angular acceleration of the {role}, positive counter-clockwise"),
     ]
-    return (turning if body.ratio else []) + [
+    return (turning if body.turns else []) + [
         Quantity(f"aG{k}x", "m s-2", f"acceleration of the {role}'s centre of gravity along x"),
         Quantity(f"aG{k}y", "m s-2", f"acceleration of the {role}'s centre of gravity along y"),
     ]

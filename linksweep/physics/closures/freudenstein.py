@@ -8,7 +8,37 @@ They cancel near a toggle, and A or D may vanish in a sound mechanism: they are 
 computing. Source: document 2 (ME 470), position; R. L. Norton, Design of Machinery, chapter "Position Analysis".
 """
 
+from typing import NamedTuple
+
 from linksweep.physics.algebra.arithmetic import Number
+
+
+class PositionEquation(NamedTuple):
+    """The formulas of a position equation's coefficients, and of its roots, by the names of their quantities."""
+
+    coefficients: dict[str, str]
+    roots: dict[str, str]
+
+
+POSITION_EQUATION = PositionEquation(
+    {
+        "K1": "d/a",
+        "K2": "d/c",
+        "K3": "(a**2 - b**2 + c**2 + d**2)/(2*a*c)",
+        "K4": "d/b",
+        "K5": "(c**2 - d**2 - a**2 - b**2)/(2*a*b)",
+        "A": "cos(theta2) - K1 - K2*cos(theta2) + K3",
+        "B": "-2*sin(theta2)",
+        "C": "K1 - (K2 + 1)*cos(theta2) + K3",
+        "D": "cos(theta2) - K1 + K4*cos(theta2) + K5",
+        "E": "-2*sin(theta2)",
+        "F": "K1 + (K4 - 1)*cos(theta2) + K5",
+    },
+    {
+        "theta3": "2*atan((-E ± sqrt(E**2 - 4*D*F))/(2*D)), - for open and + for crossed",
+        "theta4": "2*atan((-B ± sqrt(B**2 - 4*A*C))/(2*A)), - for open and + for crossed",
+    },
+)
 
 
 def ratios(

@@ -20,7 +20,7 @@ from linksweep.base.equality import ByContent
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
-from linksweep.mechanisms import SliderCrank
+from linksweep.mechanisms.capabilities import lack
 from linksweep.results.compute import requested
 from linksweep.results.cylinders.cylinder_sums import (
     QUANTITIES,
@@ -249,8 +249,10 @@ def one_cylinder(machine: Scene | MultiCylinder) -> Scene:
 
 
 def _engine_problems(engine: Any) -> list[str]:
-    if not isinstance(engine, Scene) or not isinstance(engine.mechanism, SliderCrank):
-        return [f"engine is a {type(engine).__name__}: must be a Scene of a SliderCrank"]
+    if not isinstance(engine, Scene):
+        return [f"engine is a {type(engine).__name__}: must be a Scene"]
+    if missing := lack(engine.mechanism, "cylinder"):
+        return [f"engine is of {missing}"]
     moving = [word for word in ("omega2", "alpha2") if _over_angle(getattr(engine, word))]
     problems = [
         f"engine.{word} = {quote(getattr(engine, word))}: must be the same at every crank angle" for word in moving

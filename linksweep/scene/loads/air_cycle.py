@@ -20,11 +20,11 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.conversion import all_to_float64
-from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, as_float, field_problems, is_lazy, parameter, quote
-from linksweep.mechanisms import SliderCrank
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN
+from linksweep.base.validate import Number, as_float, field_problems, is_lazy, parameter, quote, refuse
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.capabilities import lack
+from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.scene.dimensions import dims_of
 from linksweep.scene.parameters import along, bare, numbers
 
@@ -74,7 +74,7 @@ class OttoCycle(ByContent):
         end = "" if found else _below(self.peak_pressure, _compressed(self))
         return found or ([f"{path}.peak_pressure = {end}"] if end else [])
 
-    def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
+    def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
         """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
         return _labelled(self, engine, theta2, turning)
 
@@ -128,7 +128,7 @@ class DieselCycle(ByContent):
         end = "" if found or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
         return found or ([f"{path}.peak_pressure = {end}"] if end else [])
 
-    def pressure(self, engine: SliderCrank, theta2, turning: Number = 1.0) -> xr.DataArray:
+    def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
         """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
         return _labelled(self, engine, theta2, turning)
 
@@ -141,17 +141,16 @@ class DieselCycle(ByContent):
 Cycle = OttoCycle | DieselCycle
 
 
-def pressure_over(cycle: Cycle, engine: SliderCrank, angles: np.ndarray, turning: Number) -> xr.Variable:
-    """Pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
+def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning: Number) -> xr.Variable:
+    """Return the pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
 
     NaN for designs whose crank does not turn fully. The module's equations.
     """
-    lengths = engine.slide_angle, engine.offset, engine.crank.length, engine.rod.length
     given = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
-    dims = (*(dim for dim in dims_of((turning, *lengths, *given)) if dim != "theta2"), "theta2")
-    cycle, engine, turning = along(cycle, dims), along(engine, dims), along(turning, dims)
-    (peak, cutoff), (top, bottom) = cycle.combustion, engine.dead_centres()
-    opened = np.where(engine.turns_fully, _opened(engine, angles), np.nan)
+    taken = (turning, cylinder.slide_angle, cylinder.offset, cylinder.crank, cylinder.rod, *given)
+    dims = (*(dim for dim in dims_of(taken) if dim != "theta2"), "theta2")
+    cycle, cylinder, turning = along(cycle, dims), along(cylinder, dims), along(turning, dims)
+    (peak, cutoff), (top, bottom), opened = cycle.combustion, cylinder.dead_centres(), cylinder.opening(angles)
     turned, bottom = np.mod(turning * (angles - top), cycle.period), np.mod(turning * (bottom - top), 360.0)
     volume = 1.0 + (cycle.compression_ratio - 1.0) * opened  # over the least
     expansion = peak * np.minimum(1.0, cutoff / volume) ** cycle.gamma
@@ -162,20 +161,12 @@ def pressure_over(cycle: Cycle, engine: SliderCrank, angles: np.ndarray, turning
     return xr.Variable(dims, np.where(turned < bottom, expansion, later))
 
 
-def _opened(engine: SliderCrank, angles: np.ndarray) -> np.ndarray:
-    """The slider's distance from top dead centre over its stroke."""
-    a, b, e = engine.crank.length, engine.rod.length, engine.offset
-    sign, (cos, sin) = BRANCH_SIGN[engine.branch], cos_sin(angles - engine.slide_angle)
-    with np.errstate(all="ignore"):
-        reach, least = np.sqrt((a + b) * (a + b) - e * e), np.sqrt((b - a) * (b - a) - e * e)
-        opened = (reach - sign * a * cos - np.sqrt(b * b - (e - a * sin) ** 2)) / (reach - least)
-    return np.clip(opened, 0.0, 1.0)
-
-
-def _labelled(cycle: Cycle, engine: SliderCrank, theta2: Any, turning: Number) -> xr.DataArray:
+def _labelled(cycle: Cycle, engine: Mechanism, theta2: Any, turning: Number) -> xr.DataArray:
     """Pressure over crank angles [degree], with all labels."""
+    missing = lack(engine, "cylinder")
+    refuse([f"engine is {missing}"] if missing else [])
     angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
-    pressure = pressure_over(cycle, engine, angles, turning)
+    pressure = pressure_over(cycle, engine.cylinder, angles, turning)
     arrays = [number for owner in (cycle, engine) for _, number, _ in numbers(owner)] + [turning]
     labels = {
         dim: array[dim].variable

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from linksweep.base.frozen import field_values, unvalidated, with_sound
 from linksweep.base.validate import Number, Rule, field_problems, overflow_problems, parameter
-from linksweep.mechanisms import Mechanism, SliderCrank
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import LoadForm
 from linksweep.scene.loads.action import Revolution
@@ -94,12 +95,11 @@ class GasPressure(ChangingLoad):
         return problems + of_cycle + self.changing_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
-        if not isinstance(mechanism, SliderCrank):
-            kind = type(mechanism).__name__
-            return [f"{path} is a GasPressure on a {kind}: must be on a SliderCrank; give the {kind} a Load"]
+        if missing := lack(mechanism, "cylinder"):
+            return [f"{path} is a GasPressure on {missing}, or a Load"]
         if mechanism.branch not in BRANCH_SIGN:
             return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
-        turns = mechanism.turns_fully
+        turns = mechanism.cylinder.turns_fully
         if self.cycle and not hasattr(turns, "dims") and not turns:
             return [
                 f"{path}.pressure is a cycle, which takes full turns of the crank: rod.length must be greater than "
@@ -112,13 +112,13 @@ class GasPressure(ChangingLoad):
         if self.cycle is None:
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
-        engine = cast(SliderCrank, revolution.mechanism)
-        pressure = pressure_over(self.cycle, engine, revolution.grid.angles, revolution.turning)
+        cylinder = revolution.mechanism.cylinder
+        pressure = pressure_over(self.cycle, cylinder, revolution.grid.angles, revolution.turning)
         return unvalidated(SampledCycle, **field_values(self) | {"crankcase": crankcase, "in_cylinder": pressure})
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
-        dead_centres = cast(SliderCrank, mechanism).dead_centres() if self.cycle else ()
+        dead_centres = mechanism.cylinder.dead_centres() if self.cycle else ()
         return (*dead_centres, *super().jumps(mechanism))
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
