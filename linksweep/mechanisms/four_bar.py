@@ -192,6 +192,7 @@ class FourBar(Mechanism):
         return ((found[drive], (*self.lengths().values(), self.ground_angle)),) if drive in found else ()
 
     def stroke_findings(self) -> Checks:
+        """Return the closed forms of the rocker's swing, time ratio and reversals."""
         lengths = tuple(self.lengths().values())
         return (swings, lengths), (reversals, (*lengths, self.ground_angle, self.branch_sign))
 

@@ -202,6 +202,7 @@ class InvertedSliderCrank(Mechanism):
         return (classes, lengths), (angles, (*lengths, self.ground_angle)), *self.stroke_findings()
 
     def stroke_findings(self) -> Checks:
+        """Return the closed forms of the rocker's swing, time ratio and reversals."""
         return (swings, self.lengths()), (reversals, (*self.lengths(), self.ground_angle))
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:

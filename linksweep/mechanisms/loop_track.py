@@ -78,10 +78,10 @@ class LoopTrack(Mechanism):
         """Return the allowed profiles."""
         return {"profile": cls.profiles}
 
-    def motion_parameters(self, given: Mapping[str, Any]) -> dict[str, Number]:
+    def motion_parameters(self, values: Mapping[str, Any]) -> dict[str, Number]:
         """Return the entry speed, the thrust, and 1 or 0 for work that counts or not."""
-        work_counts = self.profiles[given["profile"]]
-        return {"entry_speed": given["speed"], "thrust": given["thrust"], "work_counts": work_counts}
+        work_counts = self.profiles[values["profile"]]
+        return {"entry_speed": values["speed"], "thrust": values["thrust"], "work_counts": work_counts}
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name."""

@@ -81,7 +81,7 @@ class Mechanism(ByContent, ABC):
     friction = 0.0
     """Coefficient of Coulomb friction of the part that slides; a machine without one has no such parameter."""
     balances_partly: ClassVar[bool] = False
-    """Whether counterweights on the links can take no more than a fraction of the shaking force of first order."""
+    """True where counterweights on the links cancel no more than a fraction of the first order of the shaking force."""
     position_equation: ClassVar[PositionEquation | None] = None
     """The position equation that a source document prints for the machine."""
 
@@ -128,13 +128,10 @@ class Mechanism(ByContent, ABC):
         """Return the allowed values of each parameter of `motion` that is a choice."""
         return {"drive": cls.drives}
 
-    def motion_parameters(self, given: Mapping[str, Any]) -> dict[str, Number]:
-        """Return the numbers of the motion under the names that the physics takes.
-
-        `given` are a scene's parameters by name.
-        """
-        alpha2 = given["alpha2"]
-        return {"omega2": given["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
+    def motion_parameters(self, values: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the numbers of the motion under the names that the physics takes, of a scene's parameters by name."""
+        alpha2 = values["alpha2"]
+        return {"omega2": values["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
 
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Return functions that derive further numbers of the physics from the design and its motion."""
@@ -208,7 +205,7 @@ class Mechanism(ByContent, ABC):
 
     @property
     def closes_everywhere(self) -> bool:
-        """Whether every design closes at every angle, with a margin far above rounding."""
+        """True where every design closes at every angle, with a margin far above rounding."""
         return False
 
     def always_ok(self, drive: str) -> bool:

@@ -227,6 +227,7 @@ class SliderCrank(Mechanism):
         return Cylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
 
     def stroke_findings(self) -> Checks:
+        """Return the closed forms of the slider's travel, time ratio and reversals."""
         return (travel, self._lengths), (reversals, (*self._lengths, self.slide_angle, self.branch_sign))
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:

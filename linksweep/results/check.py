@@ -11,6 +11,7 @@ from linksweep.results.dataset import design_coordinates, flags, origin_attribut
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.revolution import Revolution
 from linksweep.scene.scene import Scene
 
 
@@ -80,7 +81,8 @@ def check(scene: Scene) -> xr.Dataset:
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     variables, labels = evaluated((*scene.mechanism.findings(), *driven))
     variables |= _acceleration(scene)
-    if overshoots := scene.overshoots():
+    overshoots = {path: curve.overshoot for path, curve in scene.curves.items() if curve.overshoot is not None}
+    if overshoots:
         said = {"units": "1", "long_name": "how far its spline leaves the range of an array, relative to that range"}
         variables["overshoot"] = xr.Variable("spline", list(overshoots.values()), said)
         labels["spline"] = xr.Variable("spline", list(overshoots))
@@ -109,7 +111,8 @@ def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
     if scene.alpha2 is None or not scene.changes_speed:
         return {}
     grid = crank_grid(_count(scene), scene.period, scene.mechanism.index)
-    difference = abs(scene.at(grid).alpha2 - scene.derived_acceleration(grid))
+    revolution = Revolution(scene, grid)
+    difference = abs(revolution.alpha2 - revolution.derived_alpha2)
     at = difference["theta2"][difference.argmax("theta2")]
     words = "of alpha2 from omega2·d(omega2)/d(theta2)"
     return {

@@ -1,9 +1,9 @@
-"""Numbers of a scene as the engine takes them: fields over dims, and what planning knows of them."""
+"""A scene as the engine takes it: numbers as fields over dims, and their forms for the planner."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -11,24 +11,47 @@ from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
 from linksweep.mechanisms.rows.crank import OverDesigns
 from linksweep.scene.dimensions import side_by_side
+from linksweep.scene.grid import NAMES as GRID_ROWS
+
+if TYPE_CHECKING:
+    from linksweep.scene.scene import Scene
 
 
 class Inputs(NamedTuple):
-    """A scene as the engine takes it: numbers with dims, their forms for the planner, and the size of each dim."""
+    """Numbers with dims, their forms for the planner, and the size of each dim."""
 
     fields: Mapping[str, Field]
     forms: InputForms
     sizes: Mapping[str, int]
 
 
-def over_designs(functions: OverDesigns) -> dict[str, Any]:
-    """Return what functions of numbers return, with the dims of their numbers."""
-    found: dict[str, Any] = {}
-    for function, given in functions:
-        dims, arrays = side_by_side(given)
-        returned: Mapping[str, Any] = function(*arrays)
-        found |= {name: Field(dims, values) for name, values in returned.items()}
-    return found
+def engine_inputs(scene: Scene) -> Inputs:
+    """Return the inputs of a scene whose parameters have been evaluated at the angles of a grid."""
+    fields = {name: as_field(value) for name, value in _named_values(scene).items()}
+    grid_rows = tuple((name, (scene.mechanism.index,)) for name in GRID_ROWS)
+    forms = (*((name, form_of(field)) for name, field in fields.items()), *grid_rows)
+    sizes = {dim: n for field in fields.values() for dim, n in zip(field.dims, field.values.shape, strict=True)}
+    sizes.pop(scene.mechanism.index, None)
+    return Inputs(fields, forms, sizes)
+
+
+def _named_values(scene: Scene) -> dict[str, Any]:
+    """Return the numbers of motion, machine and loads under the names that the physics takes."""
+    values = scene.motion | scene.mechanism.parameters()
+    values |= over_designs(scene.mechanism.driven(scene.motion))
+    for k, load in enumerate(scene.loads, 1):
+        values |= load.parameters(f"load{k}", values)
+    return values
+
+
+def over_designs(functions: OverDesigns) -> dict[str, Field]:
+    """Evaluate functions of numbers over the dims of these numbers."""
+    fields: dict[str, Field] = {}
+    for function, numbers in functions:
+        dims, arrays = side_by_side(numbers)
+        results: Mapping[str, Any] = function(*arrays)
+        fields |= {name: Field(dims, values) for name, values in results.items()}
+    return fields
 
 
 def as_field(value: Any) -> Field:
@@ -41,5 +64,5 @@ def as_field(value: Any) -> Field:
 
 
 def form_of(field: Field) -> tuple[str, ...] | float:
-    """Return the dims of a number, or itself where it is just 0 or 1: what it multiplies can then be left out."""
+    """Return the dims of a number; of a plain 0 or 1 the number itself, so that its products can be left out."""
     return float(field.values) if not field.dims and field.values in (0.0, 1.0) else field.dims

@@ -10,6 +10,7 @@ import unicodedata
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from linksweep.base.validate import quote
 
@@ -47,6 +48,15 @@ def label_problem(variable: Any) -> str:
         return _text_problem(variable.values.ravel().tolist())
     allowed = "float64, float32, integers of numpy, truth values, texts, or times without a zone"
     return f"labels of dtype {dtype}: must be {allowed}"
+
+
+def storable_coordinate(variable: xr.Variable) -> xr.Variable:
+    """Return a coordinate with those of its attributes that every file format allows, and without its encoding."""
+    attributes = {name: value for name, value in variable.attrs.items() if type(value) is not bool}
+    attributes = {name: value for name, value in attributes.items() if isinstance(value, str | int | float)}
+    values = variable.values
+    texts = np.array([str(label) for label in values], object) if values.dtype == object else values
+    return xr.Variable(variable.dims, texts, attributes)
 
 
 def _text_problem(labels: list[Any]) -> str:

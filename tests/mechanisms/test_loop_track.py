@@ -234,7 +234,7 @@ def test_each_mechanism_takes_its_own_words():
     assert refusal(ls.Scene, CAR, omega2=30.0, drive="crank", loads=[ls.Load("crank", torque=1.0)]) == [
         "omega2 = 30.0: is no word of LoopTrack; give its own: speed, thrust, profile, gravity",
         "drive = 'crank': is no word of LoopTrack; give its own: speed, thrust, profile, gravity",
-        "loads = [Load(link='crank', force=None, at=(0.0, 0.0), frame='gro...: is no word of LoopTrack; "
+        "loads = (Load(link='crank', force=None, at=(0.0, 0.0), frame='gro...: is no word of LoopTrack; "
         "give its own: speed, thrust, profile, gravity",
         "speed: missing; give LoopTrack a number in m/s",
     ]

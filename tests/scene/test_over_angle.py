@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import linksweep as ls
 from linksweep.base.validate import Rule
-from linksweep.scene.curves.over_angle import at_angles
+from linksweep.scene.curves.over_angle import ArrayCurve, at_angles
 from linksweep.scene.grid import crank_grid
 
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
@@ -35,7 +35,7 @@ def over_angles(values, angles) -> xr.DataArray:
 
 def brought(value, theta2) -> np.ndarray:
     """A torque brought to the angles of a sweep."""
-    sampled = at_angles("torque", value, TORQUE, crank_grid(theta2, 360.0), 360.0)
+    sampled = at_angles("torque", value, TORQUE, crank_grid(theta2, 360.0), ArrayCurve("torque", value, 360.0))
     return sampled.transpose("theta2", ...).values
 
 

@@ -230,7 +230,7 @@ def test_any_mechanism_takes_them(mechanism):
 @pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS)
 def test_a_spring_gives_back_what_it_takes(mechanism):
     """Over a closed cycle: by its own power, and by what the drive does with and without it."""
-    frictionless = replace(mechanism, friction=0.0) if hasattr(mechanism, "friction") else mechanism
+    frictionless = replace(mechanism, friction=0.0) if mechanism.friction else mechanism
     springs = [load for load in all_kinds(mechanism) if isinstance(load, ls.Spring)]
     springs.append(ls.TorsionSpring("ground", mechanism.links[2], rate=5.0, free_angle=150.0))
     for spring in springs:

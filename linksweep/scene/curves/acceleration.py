@@ -17,10 +17,9 @@ import xarray as xr
 from linksweep.base.validate import Rule, refuse
 from linksweep.engine.run import Grid
 from linksweep.scene.curves.over_angle import (
-    Curves,
+    ArrayCurve,
     at_angles,
     called,
-    curve_of,
     knots,
     over_grid,
     period_of,
@@ -38,7 +37,7 @@ JUMP = 1e-6
 
 
 def acceleration(
-    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, curves: Curves | None = None
+    path: str, omega: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None
 ) -> xr.DataArray:
     """Return ω·dω/dθ [rad/s²] at the grid's angles, of a speed that is a function of theta2 or an array over it.
 
@@ -52,7 +51,7 @@ def acceleration(
     """
     if callable(omega) and not hasattr(omega, "dims"):
         return _of_function(path, omega, rule, grid, period_of_function(omega, turn))
-    return _of_array(path, omega, rule, grid, turn, {} if curves is None else curves)
+    return _of_array(path, omega, rule, grid, turn, curve)
 
 
 def acceleration_problems(acceleration: xr.DataArray) -> list[str]:
@@ -95,18 +94,21 @@ def _limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     return best
 
 
-def _of_array(path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float, curves: Curves) -> xr.DataArray:
+def _of_array(
+    path: str, omega: xr.DataArray, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None
+) -> xr.DataArray:
     """Differentiate the periodic spline; at the angles of a part of a turn, the spline through these alone."""
     from scipy.interpolate import CubicSpline
 
     omega = omega if "theta2" in omega.coords else omega.assign_coords(theta2=grid.angles)
+    curve = curve or ArrayCurve(path, omega, turn)
     known, values = knots(omega)
     problems = period_problems(path, known, values, period_of(omega, turn))
     if not problems:
-        slope = curve_of(path, omega, turn).slope(grid.angles)
+        slope = curve.unwarned.slope(grid.angles)
     elif len(known) > 1 and np.isin(grid.angles, known).all():
         slope = CubicSpline(known, values)(grid.angles, 1)
     else:
         refuse([f"{problem}; or give alpha2" for problem in problems])
-    speed = at_angles(path, omega, rule, grid, turn, curves=curves)
+    speed = at_angles(path, omega, rule, grid, curve)
     return (speed * over_grid(np.degrees(slope), omega, grid)).transpose(*omega.dims)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,9 +14,6 @@ import xarray as xr
 from linksweep.base.validate import Rule, is_quantity, number_problems, refuse
 from linksweep.engine.run import Grid
 from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarning, PeriodicCurve
-
-Curves = dict[str, PeriodicCurve]
-"""The curves through a scene's arrays over theta2, by path: each is made when it is first needed."""
 
 LARGEST = 1e290
 """Values from here on are not interpolated."""
@@ -84,15 +83,12 @@ def at_angles(
     value: Any,
     rule: Rule,
     grid: Grid,
-    period: float,
-    interpolation: str | None = None,
-    curves: Curves | None = None,
+    curve: ArrayCurve | None = None,
 ) -> Any:
-    """A function or DataArray of theta2 as a DataArray over the grid's angles; any other number as it is.
+    """Evaluate a function or DataArray of theta2 at the grid's angles; return any other number as it is.
 
-    At angles that a DataArray does not hold it is interpolated (by a periodic cubic spline, unless `interpolation` says
-    otherwise), over as many turns of `period` degrees as its angles span; at angles that it holds, or that are whole
-    periods from them, its values come back to the bit. Its curve is kept in `curves`.
+    At angles that a DataArray does not hold its `curve` is evaluated; at angles that it holds, or that are whole
+    periods from them, its values come back to the bit.
 
     Raises
     ------
@@ -102,7 +98,7 @@ def at_angles(
     Warns
     -----
     OvershootWarning
-        Where a spline leaves its data's range, when its curve is made.
+        Where a spline leaves its data's range, once for each curve.
     """
     if callable(value) and not hasattr(value, "dims"):
         return called(path, value, rule, grid.angles)
@@ -116,11 +112,8 @@ def at_angles(
     place = {angle: k for k, angle in enumerate(known)}
     if all(angle in place for angle in grid.angles):
         return value.isel(theta2=[place[angle] for angle in grid.angles])
-    curves = {} if curves is None else curves
-    if path not in curves:
-        curves[path] = curve_of(path, value, period, interpolation)
-        _warn_of_overshoot(path, curves[path].overshoot)
-    return over_grid(curves[path](grid.angles), value, grid)
+    assert curve is not None, path
+    return over_grid(curve.periodic(grid.angles), value, grid)
 
 
 def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
@@ -172,12 +165,37 @@ def _slope_problems(path: str, known: np.ndarray, values: np.ndarray) -> list[st
     return [f"{path}: two of its angles are {closest:g} degrees apart; give one"] if closest < CLOSEST else []
 
 
-def overshoot_of(value: xr.DataArray, period: float) -> float | None:
-    """Return how far the spline through an array leaves its range; None for angles that do not go all the way round."""
-    try:
-        return curve_of("", value, period).overshoot
-    except ValueError:
-        return None
+@dataclass(frozen=True, eq=False)
+class ArrayCurve:
+    """The periodic curve through an array over theta2, a cubic spline unless `interpolation` states another.
+
+    Its period is as many turns of `turn` degrees as the array's angles span. Its two properties are caches: the curve
+    is computed when it is first needed.
+    """
+
+    path: str
+    array: xr.DataArray
+    turn: float
+    interpolation: str | None = None
+
+    @cached_property
+    def unwarned(self) -> PeriodicCurve:
+        """The curve, without a warning where it leaves the range of the array."""
+        return curve_of(self.path, self.array, self.turn, self.interpolation)
+
+    @cached_property
+    def periodic(self) -> PeriodicCurve:
+        """The curve, with a warning where it leaves the range of the array."""
+        _warn_of_overshoot(self.path, self.unwarned.overshoot)
+        return self.unwarned
+
+    @property
+    def overshoot(self) -> float | None:
+        """Distance by which a spline leaves the range of the array, relative to it; None where there is no spline."""
+        try:
+            return self.unwarned.overshoot if self.interpolation in (None, CUBIC) else None
+        except ValueError:  # angles that do not go all the way round
+            return None
 
 
 def _warn_of_overshoot(path: str, overshoot: float) -> None:

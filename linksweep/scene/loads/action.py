@@ -2,43 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
-
-import numpy as np
-import xarray as xr
+from collections.abc import Mapping
+from typing import Any
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, Rule, field_problems, is_lazy
-from linksweep.engine.run import Grid
+from linksweep.base.validate import Number, field_problems
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.scene.curves.over_angle import Curves, at_angles
-
-
-class Revolution(NamedTuple):
-    """A revolution for a sweep: the machine, its angles, the crank's speed at them, and the curves of its scene.
-
-    `kinematics` gives quantities that angles and lengths alone decide, by name, over the angles.
-    """
-
-    mechanism: Mechanism
-    grid: Grid
-    omega2: Number
-    curves: Curves
-    kinematics: Callable[..., list[xr.DataArray]]
-
-    @property
-    def turning(self) -> Number:
-        """1 for a crank that turns counter-clockwise, -1 for clockwise; one number where all are known to do so."""
-        clockwise = self.omega2 < 0.0
-        if not is_lazy(clockwise) and (np.all(clockwise) or not np.any(clockwise)):
-            return -1.0 if np.any(clockwise) else 1.0
-        return 1.0 - 2.0 * clockwise
-
-    def sample(self, path: str, value: Any, rule: Rule, interpolation: str | None = None) -> Any:
-        """A number at the angles, where it changes with them."""
-        return at_angles(path, value, rule, self.grid, self.mechanism.period, interpolation, self.curves)
+from linksweep.scene.revolution import Revolution
 
 
 class Action(ByContent):

@@ -15,9 +15,9 @@ from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import LoadForm
-from linksweep.scene.loads.action import Revolution
 from linksweep.scene.loads.air_cycle import ATMOSPHERE, Cycle, pressure_over
 from linksweep.scene.loads.changing_load import ChangingLoad
+from linksweep.scene.revolution import Revolution
 
 PRESSURE = Rule("pressure", over_angle=True)
 
@@ -108,9 +108,9 @@ class GasPressure(ChangingLoad):
         return []
 
     def sampled(self, path: str, revolution: Revolution) -> GasPressure:
-        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE, self.interpolation)
+        crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE)
         if self.cycle is None:
-            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE, self.interpolation)
+            pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
         cylinder = revolution.mechanism.cylinder
         pressure = pressure_over(self.cycle, cylinder, revolution.grid.angles, revolution.turning)

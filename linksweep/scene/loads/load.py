@@ -19,8 +19,8 @@ from linksweep.mechanisms.rows.load_forms import LoadForm
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
 from linksweep.scene.curves.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
-from linksweep.scene.loads.action import Revolution
 from linksweep.scene.loads.changing_load import ChangingLoad
+from linksweep.scene.revolution import Revolution
 from linksweep.scene.units import unit_problems
 
 FORCE = Rule("force", over_angle=True)
@@ -167,9 +167,8 @@ class Load(ChangingLoad):
         return (*reached, *(stroke.turning if self.while_ else ()))
 
     def sampled(self, path: str, revolution: Revolution) -> Load:
-        sample = partial(revolution.sample, interpolation=self.interpolation)
-        if self.over is not None:
-            sample = partial(self._followed, *self._positions(revolution))
+        following = self.over is not None
+        sample = partial(self._followed, *self._positions(revolution)) if following else revolution.sample
         rules = (*(FORCE,) * len(self.force or ()), TORQUE)
         *force, torque = (
             sample(at, number, rule) for (at, number), rule in zip(self._changing_at(path), rules, strict=True)

@@ -1,0 +1,74 @@
+"""A scene over the angles of a sweep: each parameter that changes over the revolution, evaluated at them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import Number, Rule, is_lazy, refuse
+from linksweep.engine.run import Grid, evaluate
+from linksweep.engine.trace.plan import plan
+from linksweep.mechanisms import Mechanism
+from linksweep.scene.curves.acceleration import acceleration, acceleration_problems
+from linksweep.scene.curves.over_angle import at_angles
+
+if TYPE_CHECKING:
+    from linksweep.scene.scene import Scene
+
+OMEGA2 = Rule("angular_velocity", over_angle=True)
+ALPHA2 = Rule("angular_acceleration", over_angle=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Revolution:
+    """A scene and the angles of a grid. The properties `omega2`, `alpha2` and `derived_alpha2` are caches."""
+
+    scene: Scene
+    grid: Grid
+
+    @property
+    def mechanism(self) -> Mechanism:
+        return self.scene.mechanism
+
+    @cached_property
+    def omega2(self) -> Number:
+        """Angular velocity of the crank [rad/s], at the angles where it changes with them."""
+        return self.sample("omega2", self.scene.omega2, OMEGA2)
+
+    @cached_property
+    def alpha2(self) -> Number:
+        """Angular acceleration of the crank [rad/s²]; None where it is left out and omega2 is constant."""
+        if self.scene.alpha2 is not None or not self.scene.changes_speed:
+            return self.sample("alpha2", self.scene.alpha2, ALPHA2)
+        refuse(acceleration_problems(self.derived_alpha2))
+        return self.derived_alpha2
+
+    @cached_property
+    def derived_alpha2(self) -> xr.DataArray:
+        """Angular acceleration ω2·dω2/dθ2 [rad/s²] of a crank whose omega2 changes with theta2."""
+        curve = self.scene.curves.get("omega2")
+        return acceleration("omega2", self.scene.omega2, OMEGA2, self.grid, self.mechanism.period, curve)
+
+    @property
+    def turning(self) -> Number:
+        """1 for a crank that turns counter-clockwise, -1 for clockwise; one number if all turn the same way."""
+        clockwise = self.omega2 < 0.0
+        if not is_lazy(clockwise) and (np.all(clockwise) or not np.any(clockwise)):
+            return -1.0 if np.any(clockwise) else 1.0
+        return 1.0 - 2.0 * clockwise
+
+    def sample(self, path: str, value: Any, rule: Rule) -> Any:
+        """Return the parameter at a path, evaluated at the angles if it changes with them."""
+        return at_angles(path, value, rule, self.grid, self.scene.curves.get(path))
+
+    def kinematics(self, *names: str) -> list[xr.DataArray]:
+        """Return quantities over the angles, of those that angles and lengths alone decide."""
+        unloaded = self.scene.unloaded
+        request = plan(unloaded.table, names, unloaded.inputs.forms)
+        results = evaluate(request, unloaded.inputs.fields, self.grid, unloaded.inputs.sizes)
+        fields = [results[name] for name in names]
+        return [xr.DataArray(field.values, {self.grid.dim: self.grid.angles}, field.dims) for field in fields]
