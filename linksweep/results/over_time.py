@@ -8,12 +8,14 @@ from __future__ import annotations
 import xarray as xr
 
 
-def mean_over_time(signal: xr.DataArray, cycle: xr.Dataset, index: str = "theta2") -> xr.DataArray:
+def mean_over_time(
+    signal: xr.DataArray, cycle: xr.Dataset, index: str = "theta2", pace: str = "omega2"
+) -> xr.DataArray:
     """Return the mean of a signal over a cycle's samples, of those that are not NaN.
 
-    Where omega2 changes with the index, the cycle has it as a coordinate; a steady crank takes as long for each sample.
+    A pace that changes with the index must be in the cycle; a steady one takes as long for each sample.
     """
-    speed = cycle.get("omega2")
+    speed = cycle.get(pace)
     if speed is None or index not in speed.dims:
         return signal.mean(index)
     return signal.weighted((1.0 / abs(speed)).fillna(0.0)).mean(index)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -53,8 +54,8 @@ def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: in
     require_scene(before)
     require_scene(after)
     wanted = sizes_named("of", before, [of] if isinstance(of, str) else of)
-    outputs = [name for name, _ in wanted]
-    sides = [_sizes(sweep(scene, theta2, outputs, threads=threads), wanted) for scene in (before, after)]
+    outputs = [*(name for name, _ in wanted), before.mechanism.pace]
+    sides = [_sizes(scene, sweep(scene, theta2, outputs, threads=threads), wanted) for scene in (before, after)]
     found = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}
     quantity = before.table.quantity
     for name, word in wanted:
@@ -63,12 +64,13 @@ def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: in
     return xr.Dataset(found, attrs=origin_attributes(before, "linksweep.compare(before, after, ...)"))
 
 
-def _sizes(cycle: xr.Dataset, wanted: list[tuple[str, str]]) -> dict[str, xr.DataArray]:
-    found = {}
+def _sizes(scene: Scene, cycle: xr.Dataset, wanted: list[tuple[str, str]]) -> dict[str, xr.DataArray]:
+    found, index = {}, scene.mechanism.index
+    mean = partial(mean_over_time, cycle=cycle, index=index, pace=scene.mechanism.pace)
     for name, word in wanted:
-        signal = cycle[name].broadcast_like(cycle["theta2"])
-        signal = signal - mean_over_time(signal, cycle) if word == "ripple" else signal
-        size = abs(signal).max("theta2") if word == "peak" else np.sqrt(mean_over_time(signal * signal, cycle))
+        signal = cycle[name].broadcast_like(cycle[index])
+        signal = signal - mean(signal) if word == "ripple" else signal
+        size = abs(signal).max(index) if word == "peak" else np.sqrt(mean(signal * signal))
         found[f"{name}_{word}"] = xr.DataArray(size)
     return found
 

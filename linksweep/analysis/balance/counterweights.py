@@ -107,11 +107,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     carriers = scene.mechanism.parts()
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
     loaded = {weight.link for weight in weights}
-    moving = [
-        k
-        for k, load in enumerate(scene.loads, 1)
-        if getattr(load, "origin", "") == "cg" and getattr(load, "link", "") in loaded
-    ]
+    moving = [k for k, load in enumerate(scene.loads, 1) if load.on_centre_of in loaded]
     refuse(
         [f'loads[{k}].origin = "cg": would move with the counterweight; give its place from the pin' for k in moving]
     )

@@ -75,7 +75,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     for name in names:
         signal = ds[name].broadcast_like(ds[index])  # what does not change is all mean
         variables |= _named(name, ds[name], *(weight * xr.dot(signal, wave, dim=index) for wave in waves))
-    said_order = {"units": "1", "long_name": f"multiple of one turn of the {'crank' if index == 'theta2' else 'car'}"}
+    said_order = {"units": "1", "long_name": f"cycles in one turn of {index}"}
     return xr.Dataset(variables).assign_coords(order=("order", order, said_order))
 
 

@@ -7,6 +7,7 @@ do as a load on a slider without friction.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -22,6 +23,8 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 FRICTIONLESS = {"friction": 0.0}
+FORCE = re.compile("[FT][0-9][0-9][a-z]?")
+"""Names of forces and torques between two links, as F32x, T12."""
 
 
 def breakdown(
@@ -98,7 +101,7 @@ def _names(scene: Scene, of: Any) -> tuple[str, ...]:
 def forces_of(scene: Scene) -> list[str]:
     """Names of what is linear in the sources: the unknowns of the square system, and what is made of them."""
     drive = scene.mechanism.drives[scene.drive]
-    numbered = [name for name in scene.table.quantity if name[0] in "FT" and name[1:3].isdigit() and "_" not in name]
+    numbered = [name for name in scene.table.quantity if FORCE.fullmatch(name)]
     return list(dict.fromkeys([*numbered, drive, "reduced_torque"]))
 
 
@@ -123,20 +126,12 @@ def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
         found["gravity"] = (bare, FRICTIONLESS | {"omega2": 0.0, "alpha2": 0.0})
     for k, load in enumerate(sampled.loads, 1):
         alone = replace(sampled, loads=(load,))
-        found[f"load{k} ({_on(load)})"] = (alone, weightless | _massless(links))
+        found[f"load{k} ({load.form.place})"] = (alone, weightless | _massless(links))
     return found
 
 
 def _massless(links: Iterable[str]) -> dict[str, float]:
     return {f"{link}_{kind}": 0.0 for link in links for kind in ("mass", "inertia")}
-
-
-def _on(load: Any) -> str:
-    """What a load acts on, in words."""
-    if hasattr(load, "from_"):
-        ends = (end if isinstance(end, str) else end[0] for end in (load.from_, load.to))
-        return "–".join(ends)
-    return load.form.link
 
 
 def _stacked(name: str, shares: Mapping[str, dict[str, xr.DataArray]]) -> xr.DataArray:

@@ -156,7 +156,7 @@ def _problems(scene: Scene) -> list[str]:
     """Why its forces are not A·omega2² + B·alpha2 + C."""
     advice = "take ls.peaks with an array of omega2 instead"
     problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
-    dampers = [k for k, load in enumerate(scene.loads, 1) if hasattr(load, "coefficient")]
+    dampers = [k for k, load in enumerate(scene.loads, 1) if load.form.damps]
     return problems + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
 
 

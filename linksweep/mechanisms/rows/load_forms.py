@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.rows.bodies import Body
@@ -29,6 +29,16 @@ class Form(Protocol):
     @property
     def full_turns(self) -> bool:
         """Whether it takes a crank that turns fully: elsewhere it has no value, and the status says so."""
+        ...
+
+    @property
+    def damps(self) -> bool:
+        """Whether its force grows with the speed."""
+        ...
+
+    @property
+    def place(self) -> str:
+        """Where it acts, in words."""
         ...
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
@@ -57,6 +67,11 @@ class LoadForm:
     torque: bool
     link_axes: bool
     full_turns: bool = False
+    damps: ClassVar[bool] = False
+
+    @property
+    def place(self) -> str:
+        return self.link
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         body = bodies[self.link]

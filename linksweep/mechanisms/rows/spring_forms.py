@@ -27,6 +27,11 @@ class Between:
     from_: str
     to: str
     full_turns: ClassVar[bool] = False
+    damps: ClassVar[bool] = False
+
+    @property
+    def place(self) -> str:
+        return f"{self.from_}–{self.to}"
 
     def ends(self, name: str) -> Iterator[tuple[str, str]]:
         """The ends on moving links, by name, and the link of each."""
@@ -105,6 +110,8 @@ class SpringForm(LineForm):
 class DamperForm(LineForm):
     """A viscous damper."""
 
+    damps: ClassVar[bool] = True
+
     def tension(self, name: str) -> Row:
         return Row(planar.product, (f"{name}_tension",), (f"{name}_coefficient", f"{name}_lengthening"))
 
@@ -161,6 +168,8 @@ class TorsionSpringForm(TurningForm):
 @dataclass(frozen=True)
 class TorsionDamperForm(TurningForm):
     """A viscous damper of rotation."""
+
+    damps: ClassVar[bool] = True
 
     def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
         return [Row(planar.product, (f"{name}_resistance",), (f"{name}_coefficient", f"{name}_turning"))]

@@ -33,6 +33,11 @@ class Action(ByContent):
         return []
 
     @property
+    def on_centre_of(self) -> str:
+        """The link with whose centre of gravity its place moves; "" for none."""
+        return ""
+
+    @property
     def over_positions(self) -> tuple[Any, ...]:
         """Its tables and functions of a position: curves, which have neither designs nor crank angles."""
         return ()

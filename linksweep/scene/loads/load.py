@@ -131,6 +131,10 @@ class Load(ChangingLoad):
             + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
         )
 
+    @property
+    def on_centre_of(self) -> str:
+        return self.link if self.origin == "cg" else ""
+
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if self.over is None:
             return []
