@@ -145,7 +145,7 @@ def _demo(options: argparse.Namespace) -> None:
     scene = example(options.scene)
     cycle = sweep(scene)
     print(f"{title(options.scene)}\n")
-    print(peak_table(peaks(scene), scene.mechanism.index))
+    print(peak_table(peaks(scene), scene.mechanism))
     data, picture = (options.stem.with_name(options.stem.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
     write_figure(_figure(cycle), picture)
@@ -168,7 +168,7 @@ def _sweep(options: argparse.Namespace) -> None:
 def _peaks(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
     found = peaks(scene, of=options.of, theta2=options.theta2)
-    print(peak_table(found, scene.mechanism.index))
+    print(peak_table(found, scene.mechanism))
     if options.output:
         save(found, options.output)
         print(f"\nwritten: {options.output}")
@@ -186,7 +186,7 @@ def _study(options: argparse.Namespace) -> None:
     there = options.output.exists()
     of = None if options.of is None else [name for names in options.of for name in names]
     with study(scene, options.output, of, options.chunk) as found:
-        print(study_report(found, scene.mechanism.index))
+        print(study_report(found, scene.mechanism))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
 

@@ -9,16 +9,17 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.text_table import aligned
+from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.interpolation import RINGING
 
 
-def peak_table(found: xr.Dataset, index: str = "theta2") -> str:
-    """The peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
-    rows = [("quantity", "value", "unit", f"at {index}", *(f"worst {dim}" for dim in found.sizes))]
+def peak_table(found: xr.Dataset, machine: Mechanism) -> str:
+    """Return the peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
+    rows = [("quantity", "value", "unit", f"at {machine.index}", *(f"worst {dim}" for dim in found.sizes))]
     for name in map(str, found.data_vars):
         if f"{name}_at" in found or name.endswith(("_mean", "_rms")):
             rows.append(_row(found, name))
-    return "\n".join([*aligned(rows), *_remarks(found)])
+    return "\n".join([*aligned(rows), *_remarks(found, machine)])
 
 
 def _row(found: xr.Dataset, name: str) -> tuple[str, ...]:
@@ -48,29 +49,26 @@ def _unit(values: xr.DataArray) -> str:
     return str(values.attrs["units"])
 
 
-def _remarks(found: xr.Dataset) -> list[str]:
+def _remarks(found: xr.Dataset, machine: Mechanism) -> list[str]:
+    """Return what the status of peaks means, where it is not ok throughout."""
     status = np.asarray(found.status.values).reshape(-1)
     partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
-    who = "It" if status.size == 1 else f"{partly} of {status.size} designs"
-    if "never_on_track" in found.status.attrs["flag_meanings"]:
-        somewhere = "does not stay on the track all the way round: peaks are those of where it is."
-        nowhere = "not on the track at any position."
-    else:
-        somewhere = (
-            "cannot be assembled at every angle, jams, or has dead centres: peaks are those of the angles that are ok."
-        )
-        nowhere = "cannot be assembled at any angle."
-    said = [f"{who} {somewhere}"] * bool(partly)
-    said += [f"{never} of {status.size} designs {nowhere}"] * bool(never)
-    grows = "grows without bound at a toggle, where it wedges or at a dead centre: its peak is inf."
-    which = "" if status.size == 1 else f" of {unbounded} of {status.size} designs"
-    said += [f"Some quantity{which} {grows}"] * bool(unbounded)
-    return ["", *said] if said else []
+    who, which = "It does", ""
+    if status.size > 1:
+        who, which = f"{partly} of {status.size} designs do", f" of {unbounded} of {status.size} designs"
+    infinite = "grows without bound at a toggle, where it wedges or at a dead centre: its peak is inf."
+    lines = {
+        f"{who} not {machine.runs} all the way round: peaks are those of the {machine.spot}s that are ok.": partly,
+        f"{never} of {status.size} designs: no result at any {machine.spot}, {machine.round_meanings[2]}.": never,
+        f"Some quantity{which} {infinite}": unbounded,
+    }
+    remarks = [line for line, count in lines.items() if count]
+    return ["", *remarks] if remarks else []
 
 
-def study_report(found: xr.Dataset, index: str = "theta2") -> str:
-    """A study in short: the worst design of each peak, the best of each, and how many designs are ok."""
-    text = peak_table(found, index)
+def study_report(found: xr.Dataset, machine: Mechanism) -> str:
+    """Return a summary of a study: the worst and the best design of each peak, and the number of designs by status."""
+    text = peak_table(found, machine)
     if not found.sizes:
         return text
     rows = [_best(found, name) for name in map(str, found.data_vars) if name.endswith("_peak")]

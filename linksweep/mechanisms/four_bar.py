@@ -11,6 +11,7 @@ import numpy as np
 from linksweep.base.validate import Number, is_lazy, parameter
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
+from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.four_bar_limits import (
     angles,
@@ -114,6 +115,19 @@ class FourBar(Mechanism):
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     position_equation: ClassVar[PositionEquation | None] = freudenstein.POSITION_EQUATION
+    title: ClassVar[str] = "Four-bar"
+    drawing: ClassVar[Drawing] = Drawing(
+        joints=PINS,
+        journals=JOURNALS,
+        frames={
+            2: Frame("crank, A→B", "theta2"),
+            3: Frame("coupler, B→C", "theta3"),
+            4: Frame("rocker, D→C", "theta4"),
+        },
+        bars={2: ("A", "B"), 3: ("B", "C"), 4: ("D", "C")},
+        moving=("B", "C"),
+        fixed=ground_pins,
+    )
 
     def lengths(self) -> dict[str, Number]:
         return {

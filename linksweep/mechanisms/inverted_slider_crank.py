@@ -12,6 +12,7 @@ import numpy as np
 from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment
+from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     angles,
@@ -126,6 +127,19 @@ class InvertedSliderCrank(Mechanism):
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
+    title: ClassVar[str] = "Inverted slider-crank"
+    drawing: ClassVar[Drawing] = Drawing(
+        joints={name.removesuffix(" (at B)"): links for name, links in PINS.items()},
+        journals=JOURNALS,
+        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rocker", "theta4"), 4: Frame("rocker", "theta4")},
+        bars={2: ("A", "B")},
+        moving=("B",),
+        fixed=ground_pins,
+        carrier=Carrier("rocker", 4, "D"),
+        block=Block(3, "B", on=(4, "D")),
+        acts_at={"slide": "B"},
+        ideal={"friction": 0.0},
+    )
 
     def lengths(self) -> tuple[Number, Number, Number]:
         """What decides how it moves: crank, ground, offset."""

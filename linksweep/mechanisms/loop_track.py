@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.drawing import Track
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.loop_track_limits import events, lap
 from linksweep.mechanisms.mechanism import Mechanism, register
@@ -72,6 +73,10 @@ class LoopTrack(Mechanism):
     status_meanings: ClassVar[tuple[str, ...]] = ("ok", "left_track", "stalled")
     round_trip: ClassVar[str] = "whether the car stays on the track all the way round"
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_lap", "never_on_track")
+    title: ClassVar[str] = "Car in a loop"
+    runs: ClassVar[str] = "stay on the track"
+    highlights: ClassVar[Mapping[str, str]] = {"speed": "speed", "a_total": "largest acceleration"}
+    track: ClassVar[Track] = Track("radius", "normal_force", "speed", "The track and its force on the car")
 
     @classmethod
     def choices(cls) -> Mapping[str, Collection[str]]:
@@ -82,6 +87,11 @@ class LoopTrack(Mechanism):
         """Return the entry speed, the thrust, and 1 or 0 for work that counts or not."""
         work_counts = self.profiles[values["profile"]]
         return {"entry_speed": values["speed"], "thrust": values["thrust"], "work_counts": work_counts}
+
+    def remarks(self, parameters: Mapping[str, Any]) -> dict[str, str]:
+        """Return the positions at which the car has its speed."""
+        constant = parameters["profile"] == "constant"
+        return {"speed": "at every position" if constant else "at the bottom, then by work and energy"}
 
     def parameters(self) -> dict[str, Any]:
         """The numbers that the physics wires by name."""

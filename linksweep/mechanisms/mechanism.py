@@ -15,6 +15,7 @@ from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.cylinder import Cylinder
+from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import Bar, Disk, Link, link_problems
 from linksweep.mechanisms.rows.bodies import Body, Equation
@@ -76,6 +77,16 @@ class Mechanism(ByContent, ABC):
     """Description of the status of peaks."""
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")
     """Meaning of each value of the status of peaks."""
+    title: ClassVar[str] = ""
+    """Kind of machine in words; where empty, the name of the class."""
+    runs: ClassVar[str] = "run"
+    """Verb for a machine that has results all the way round."""
+    highlights: ClassVar[Mapping[str, str]] = {}
+    """Titles of the quantities whose peak, or range, a report shows besides forces."""
+    drawing: ClassVar[Drawing | None] = None
+    """Linkage as plots draw it; None where it cannot be drawn."""
+    track: ClassVar[Track | None] = None
+    """Track of a car, where the machine is one."""
     branch = "open"
     """The assembly: "open", "crossed" or "both"; a machine with a single assembly has no such parameter."""
     friction = 0.0
@@ -132,6 +143,10 @@ class Mechanism(ByContent, ABC):
         """Return the numbers of the motion under the names that the physics takes, of a scene's parameters by name."""
         alpha2 = values["alpha2"]
         return {"omega2": values["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
+
+    def remarks(self, parameters: Mapping[str, Any]) -> dict[str, str]:
+        """Return remarks on parameters of the motion, by name, for a report. `parameters` are a scene's."""
+        return {}
 
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Return functions that derive further numbers of the physics from the design and its motion."""

@@ -14,6 +14,7 @@ from linksweep.base.validate import Number, parameter
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.cylinder import Cylinder
+from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Guide, direction
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.slider_crank_limits import (
     angles,
@@ -43,6 +44,11 @@ SLIDER = {
     "alpha4": 0.0,
 }
 """The slider as a body that does not turn, so that any inertia would do; its axes lie along and across the guide."""
+
+
+def _guide(mechanism: Any) -> Guide:
+    along = direction(mechanism.slide_angle)
+    return Guide(float(mechanism.offset) * np.array([-along[1], along[0]]), along)
 
 
 @register
@@ -104,6 +110,19 @@ class SliderCrank(Mechanism):
     bodies: ClassVar[tuple[Body, ...]] = BODIES
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
     balances_partly: ClassVar[bool] = True
+    title: ClassVar[str] = "Slider-crank"
+    drawing: ClassVar[Drawing] = Drawing(
+        joints=PINS,
+        journals=JOURNALS,
+        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: Frame("guide", "slide_angle")},
+        bars={2: ("A", "B"), 3: ("B", "C")},
+        moving=("B", "C"),
+        carrier=Carrier("rod", 3, "B"),
+        block=Block(4, "C"),
+        guide=_guide,
+        acts_at={"guide": "C"},
+        ideal={"friction": 0.0},
+    )
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: crank and rod do not reach the guide."""

@@ -1,131 +1,33 @@
-"""All plots by name, and the page that shows a cycle: mechanism, forces, torque and the bearing of the worst pin.
+"""All plots: a new one is a file, and a line here, from which `linksweep.plot` and the accessor of Datasets take it.
 
-Each function draws into `ax` where one is given, and returns the axes; it never shows a window nor changes matplotlib's
-settings. Peaks marked are the exact ones, over the angles of a Dataset of one design that holds its scene; else
-those of the samples. Colours are Okabe and Ito's, told apart by colour-blind readers; lines also differ in dashes, so
-that one force on top of another is seen, in grey too.
+Each function draws into `ax` where one is passed, and returns the axes; it neither shows a window nor changes
+matplotlib's settings. Marked peaks are exact where the Dataset is of one design and holds its scene; else they are the
+largest samples. Colours are Okabe and Ito's, which colour-blind readers tell apart; lines also differ in dashes, so
+that a force on top of another is seen, in grey too.
 """
 
-from __future__ import annotations
+from linksweep.plot.animation import animate as animate
+from linksweep.plot.balancing import balance as balance
+from linksweep.plot.curves import forces as forces
+from linksweep.plot.curves import torque as torque
+from linksweep.plot.cycle_page import cycle as cycle
+from linksweep.plot.drives import flywheel as flywheel
+from linksweep.plot.drives import motor_load as motor_load
+from linksweep.plot.drives import torque_with_flywheel as torque_with_flywheel
+from linksweep.plot.heat_maps import heat_map as heat_map
+from linksweep.plot.load_analysis import breakdown as breakdown
+from linksweep.plot.load_analysis import over_speed as over_speed
+from linksweep.plot.load_diagrams import bearing as bearing
+from linksweep.plot.load_diagrams import bearings as bearings
+from linksweep.plot.machine import mechanism as mechanism
+from linksweep.plot.shaking_force import hodograph as hodograph
+from linksweep.plot.shaking_force import orders as orders
+from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
+from linksweep.plot.study_plots import scatter as scatter
+from linksweep.plot.track import loop as loop
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-import xarray as xr
-
-from linksweep.mechanisms import LoopTrack
-from linksweep.plot.animation import animate
-from linksweep.plot.balancing import balance
-from linksweep.plot.curves import force_names, forces, kind_of, torque
-from linksweep.plot.drives import flywheel, motor_load, torque_with_flywheel
-from linksweep.plot.heat_maps import heat_map
-from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import drawing_of_results
-from linksweep.plot.kit.style import small_type
-from linksweep.plot.kit.with_peaks import with_peaks
-from linksweep.plot.load_analysis import breakdown, over_speed
-from linksweep.plot.load_diagrams import bearing, bearings
-from linksweep.plot.loop_track import loop
-from linksweep.plot.machine import mechanism
-from linksweep.plot.shaking_force import hodograph, orders
-from linksweep.plot.study_plots import parallel_coordinates, scatter
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-__all__ = [
-    "animate",
-    "balance",
-    "bearing",
-    "bearings",
-    "breakdown",
-    "cycle",
-    "flywheel",
-    "forces",
-    "heat_map",
-    "hodograph",
-    "loop",
-    "mechanism",
-    "motor_load",
-    "orders",
-    "over_speed",
-    "parallel_coordinates",
-    "scatter",
-    "torque",
-    "torque_with_flywheel",
-]
-
-A4_WIDTH = 7.1  # inches between the margins of an A4 page
+__all__ = [name for name, item in [*globals().items()] if getattr(item, "__module__", "").startswith(__name__)]
 
 
 def __dir__() -> list[str]:
     return __all__
-
-
-def cycle(ds: xr.Dataset) -> Figure:
-    """Plot a cycle on half an A4 page: the mechanism where a pin is loaded most, forces, drive, that pin's bearing.
-
-    Of a car in a loop, what `loop` plots.
-
-    Parameters
-    ----------
-    ds : Dataset
-        From `linksweep.sweep`, with pin forces and torque, of one design.
-
-    Returns
-    -------
-    matplotlib Figure
-        7.1 inches wide; save it with ``figure.savefig("cycle.png", dpi=200)``.
-
-    Raises
-    ------
-    ValueError
-        For more than one design, and when there is no result at any angle.
-
-    Examples
-    --------
-    >>> import linksweep as ls
-    >>> figure = ls.sweep(ls.example("press")).linksweep.cycle()
-    >>> [ax.get_title(loc="left") for ax in figure.axes[1:]]
-    ['Pin forces', 'Load of pin C: $F_{43}$', 'Drive torque']
-    """
-    import matplotlib.pyplot as plt
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    if LoopTrack.index in ds.dims:
-        return loop(ds)
-    signals.require_angles(ds)
-    samples, ds = ds, with_peaks(ds)
-    pin, angle = _most_loaded(ds)
-    bounded = not np.isinf(signals.magnitude(ds, pin)).any()
-    angle = angle if bounded else _most_loaded(samples)[1]
-    drawing = drawing_of_results(ds)
-    with small_type():
-        layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
-        figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout=layout)
-        mechanism(ds, theta2=angle, ax=panels[0, 0], forces=True)
-        forces(ds, ax=panels[0, 1])
-        bearing(ds, pin, ax=panels[1, 0])
-        torque(ds, ax=panels[1, 1])
-        where = "Largest pin force, at" if bounded else "Beside infinite pin forces, at"
-        where += f" $\\theta_2$ = {signals.angle_text(angle)}"
-        kind = kind_of(drawing, force_names(ds, None)).capitalize()
-        drive = signals.drive_kind(signals.drive_name(ds)).capitalize()
-        titles = (where, f"{kind} forces", f"Load of {drawing.said(pin)}: {signals.symbol(pin)}", drive)
-        for panel, title in zip(panels.flat, titles, strict=True):
-            panel.set_title(title, loc="left")
-    return figure
-
-
-def _most_loaded(ds: xr.Dataset) -> tuple[str, float]:
-    """The pin force that is largest, and the crank angle [degree] where it is."""
-    found = {}
-    for name in force_names(ds, None):
-        if not drawing_of_results(ds).at_pin(name):
-            continue
-        largest = signals.peak(*signals.revolution(ds, signals.magnitude(ds, name)))
-        if largest is None:
-            raise ValueError("there is no result at any angle of the Dataset: see its status, and linksweep.check")
-        found[name] = largest
-    name = max(found, key=lambda force: found[force].value)
-    return name, found[name].angle

@@ -17,11 +17,11 @@ import xarray as xr
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.files.netcdf import scene_of
-from linksweep.mechanisms import LoopTrack
-from linksweep.plot import loop_track as loop_plot
+from linksweep.mechanisms.drawing import Drawing, Track
+from linksweep.plot import track as track_plot
 from linksweep.plot.curves import HEADROOM, forces
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import Drawing, drawing_of
+from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.style import BLACK, BLUE, FORCE_COLORS, GREY, small_type
 from linksweep.plot.machine import ARROW, CURVE, Shape, draw_ground, draw_links, positions, shape_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
@@ -98,8 +98,8 @@ def animate(
     scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
     angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
     with small_type():
-        if isinstance(scene.mechanism, LoopTrack):
-            return _of_loop(scene, angles, frames)
+        if scene.mechanism.track:
+            return _of_track(scene, scene.mechanism.track, angles, frames)
         return _of_crank(scene, drawing_of(scene.mechanism), angles, frames, point)
 
 
@@ -284,35 +284,34 @@ def scale(ax: Axes, top: float, longest: float) -> None:
 # -------------------------------------------------------------------------------------------------- a car in a loop
 
 
-def _of_loop(scene: Scene, angles: Any, frames: int) -> Film:
+def _of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
     from linksweep.plot.kit.film import Film
 
-    names, index = ["normal_force", "speed"], {scene.mechanism.index: signals.INDEX}
+    names, index = [track.force, track.speed], {scene.mechanism.index: signals.INDEX}
     cycle = sweep(scene, angles, names).rename(index)
     signals.require_one_design(cycle[name] for name in names)
-    at = way(cycle, cycle["speed"], frames, to_and_fro=False)
+    at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
     shots = sweep(scene, at, names).rename(index)
     force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
-    figure, track, curve = panels()
-    loop_plot.draw_track(track, cycle)
-    loop_plot.draw_force(curve, cycle)
-    say = readings(track, "$\\theta$ =", {"normal_force": "$F_N$", "speed": "speed"})
-    follow = follower(curve, ["normal_force"])
-    machine: Any = scene.mechanism
-    radius, largest = float(machine.radius), float(np.nanmax(cycle["normal_force"].values))
+    figure, ax, curve = panels()
+    radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))
+    track_plot.draw_track(ax, cycle, track.force, radius)
+    track_plot.draw_force(curve, cycle, scene)
+    write = readings(ax, "$\\theta$ =", {track.force: "$F_N$", track.speed: "speed"})
+    follow = follower(curve, [track.force])
     moving: list[Artist] = []
 
     def draw(k: int) -> list[Artist]:
-        renewed(track, moving, partial(_car, track, at[k], radius, force[k] / largest))
-        said = {"normal_force": f"{signals.number(force[k])} N", "speed": f"{signals.number(speed[k])} m/s"}
-        return [*moving, *say(at[k], said), *follow(at[k], {"normal_force": force[k]})]
+        renewed(ax, moving, partial(_car, ax, at[k], radius, force[k] / largest))
+        values = {track.force: f"{signals.number(force[k])} N", track.speed: f"{signals.number(speed[k])} m/s"}
+        return [*moving, *write(at[k], values), *follow(at[k], {track.force: force[k]})]
 
     return Film(figure, draw, len(at))
 
 
 def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
-    loop_plot.draw_car(ax, radius, angle)
-    loop_plot.press(ax, angle, radius * (1.0 + loop_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
+    track_plot.draw_car(ax, radius, angle)
+    track_plot.press(ax, angle, radius * (1.0 + track_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
 
 
 # ----------------------------------------------------------------------------------------------------- what all share

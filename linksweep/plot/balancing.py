@@ -58,7 +58,7 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
 
     drawing = drawing_of(before.mechanism)
     drive = before.mechanism.drives[before.drive]
-    pins = [force for force in drawing.forces if drawing.at_pin(force)]
+    pins = drawing.pin_forces
     cycles = {
         name: sweep(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in (("before", before), ("after", after))
     }
@@ -70,7 +70,7 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
         kind = signals.drive_kind(drive).capitalize()
         units = cycles["before"][drive].attrs["units"]
         _over_angle(panels[1, 0], cycles, drive, kind, f"{signals.symbol(drive)} [{units}]".strip())
-        _over_angle(panels[1, 1], cycles, worst, f"Load of {drawing.said(worst)}", f"{signals.symbol(worst)} [N]")
+        _over_angle(panels[1, 1], cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [N]")
     return figure
 
 

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import Drawing, drawing_of_results
+from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import (
     BLACK,
     BLUE,

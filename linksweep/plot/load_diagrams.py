@@ -10,8 +10,9 @@ import xarray as xr
 from linksweep.analysis.pins.bearings import FRAMES
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import Drawing, drawing_of_results
+from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import BLUE, FORCE_COLORS, GREY, VERMILION, axes_or_new, grid, small_type
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
@@ -113,14 +114,14 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
 
     refuse(choice_problems("frame", frame, FRAMES))
     drawing, ds = drawing_of_results(ds), with_peaks(ds)
-    forces = [force for force in drawing.forces if drawing.at_pin(force) and signals.has_pin(ds, force)]
+    forces = [force for force in drawing.pin_forces if signals.has_pin(ds, force)]
     refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
     rows = (len(forces) + 1) // 2
     with small_type():
         figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
         for force, panel in zip(forces, panels.flat, strict=False):
             bearing(ds, force, frame, panel)
-            panel.set_title(f"Load of {drawing.said(force)}: {signals.symbol(force)}", loc="left")
+            panel.set_title(f"Load of {drawing.joint_text(force)}: {signals.symbol(force)}", loc="left")
         if len(forces) % 2:
             _to_one_scale(panels[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
     return figure
@@ -132,9 +133,8 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
     shown = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
     _cross(ax)
     for force, (_, x, y) in loci.items():
-        ax.plot(
-            x, y, color=FORCE_COLORS[force], label=f"{signals.symbol(force)} ({drawing_of_results(ds).said(force)})"
-        )
+        text = f"{signals.symbol(force)} ({drawing_of_results(ds).joint_text(force)})"
+        ax.plot(x, y, color=FORCE_COLORS[force], label=text)
     near = [np.hypot(x, y) <= BEYOND * shown for _, x, y in loci.values()]
     _limits(
         ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))

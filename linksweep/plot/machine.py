@@ -12,8 +12,9 @@ import xarray as xr
 from linksweep.base.conversion import to_float64
 from linksweep.base.degrees import cos_sin
 from linksweep.files.netcdf import scene_of
+from linksweep.mechanisms.drawing import Block, Drawing, Guide
 from linksweep.plot.kit import machine_parts, signals
-from linksweep.plot.kit.drawings import Block, Drawing, Guide, drawing_of
+from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.style import BLACK, FORCE_COLORS, GREY, SKY, axes_or_new, grid
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene

@@ -11,10 +11,19 @@ import xarray as xr
 from linksweep.plot.kit import signals
 from linksweep.reports.markup import Markup, angle, joined, number, safe, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import STEPS, Results
+from linksweep.reports.tables import UNITS
 
 LEAST_TRANSMISSION = 40.0
 """Degrees, below which a linkage is commonly said to transmit badly: R. L. Norton, Design of Machinery, chapter 3."""
 BALANCED = 1e-9  # of what the powers are made of: what rounding leaves, with room
+SOUND = {"whole", "everywhere"}
+"""Meanings of a flag that all is well: such a flag has a verdict."""
+KNOWN = {
+    *("grashof", "rocker_motion", "assembly", "arc_start", "arc_end", "toggle_angle", "dead_centre_angle", "overshoot"),
+    *("transmission_angle_min", "swing", "time_ratio", "reversal_angle", "jam_angle", "friction_to_jam"),
+    *("alpha2_difference", "alpha2_difference_at", "slide_at_dead_centre"),
+}
+"""Findings that have a row of their own here, or in the table of the geometry."""
 EXACT = 1e-6  # of the largest force: far below what anybody knows of masses and loads
 
 
@@ -34,43 +43,51 @@ class Check(NamedTuple):
 
 def checks(results: Results) -> Markup:
     """The table of all checks."""
-    made = [*(_of_loop(results) if results.loop else _of_linkage(results))]
-    return table((), ((item.title, item.found, item.verdict) for item in made), class_="checks")
+    rows = ((item.title, item.found, item.verdict) for item in _checks(results))
+    return table((), rows, class_="checks")
 
 
-def _of_loop(results: Results) -> Iterator[Check]:
+def _other(name: str, finding: xr.DataArray, results: Results) -> Iterator[Check]:
+    """Yield a finding of the mechanism that this page does not know: a flag, special angles, or numbers."""
+    title, values = name.replace("_", " "), finding.values[np.isfinite(finding.values)]
+    if "flag_meanings" in finding.attrs:
+        words = _words(finding)
+        yield Check(title, joined(words), words in SOUND if SOUND & {*_meanings(finding)} else None)
+    elif finding.attrs["units"] == "degree" and values.size:
+        yield _special(title, finding, results)
+    elif values.size:
+        units = UNITS.get(finding.attrs["units"], finding.attrs["units"])
+        yield Check(title, _listed([number(float(value), units) for value in values.ravel()]))
+
+
+def _checks(results: Results) -> Iterator[Check]:
     found = results.check
-    yield Check("lap", joined(_words(found["lap"])), int(found["lap"]) == 0)
-    for name in ("leaves_track_at", "stalls_at"):
-        if np.isfinite(found[name]):
-            yield Check(name.replace("_", " "), angle(float(found[name]), 2), False)
-    at = "at every position" if results.scene.profile == "constant" else "at the bottom"
-    yield Check("least speed", joined(number(float(found["least_entry_speed"]), "m/s"), f" {at}"))
-
-
-def _of_linkage(results: Results) -> Iterator[Check]:
-    found = results.check
+    for name in [str(name) for name in found.data_vars if name not in KNOWN]:
+        yield from _other(name, found[name], results)
     if "grashof" in found:
         yield Check("Grashof class", joined(_words(found["grashof"]).replace(" ", "-")))
     if "rocker_motion" in found:
         yield Check("rocker", joined(_words(found["rocker_motion"])))
-    arcs = [(a, b) for a, b in zip(found["arc_start"].values, found["arc_end"].values, strict=True) if np.isfinite(a)]
-    everywhere = int(found["assembly"]) == 0
-    said = (
-        "at every crank angle"
-        if everywhere
-        else _listed([joined(angle(a, 2), " to ", angle(b % 360.0, 2)) for a, b in arcs])
-    )
-    yield Check("assembly", joined(said), everywhere or (results.part is not None and results.sound))
-    yield _special("toggles", found["toggle_angle"], results)
-    if "dead_centre_angle" in found:
-        yield _special("dead centres of the drive", found["dead_centre_angle"], results)
+    if "arc_start" in found:
+        yield _assembly(results)
+    for name, title in {"toggle_angle": "toggles", "dead_centre_angle": "dead centres of the drive"}.items():
+        if name in found:
+            yield _special(title, found[name], results)
     yield from _transmission(results)
     if "friction_to_jam" in found:
         yield from _friction(results)
     if "alpha2_difference" in found:
         yield _acceleration(results)
     yield from _numerical(results.cycle)
+
+
+def _assembly(results: Results) -> Check:
+    """Check at which crank angles the machine can be assembled."""
+    found, everywhere = results.check, int(results.check["assembly"]) == 0
+    arcs = [(a, b) for a, b in zip(found["arc_start"].values, found["arc_end"].values, strict=True) if np.isfinite(a)]
+    parts = _listed([joined(angle(a, 2), " to ", angle(b % 360.0, 2)) for a, b in arcs])
+    sound = everywhere or (results.part is not None and results.sound)
+    return Check("assembly", joined("at every crank angle" if everywhere else parts), sound)
 
 
 def _special(title: str, angles: xr.DataArray, results: Results) -> Check:
@@ -83,6 +100,8 @@ def _special(title: str, angles: xr.DataArray, results: Results) -> Check:
 def _transmission(results: Results) -> Iterator[Check]:
     """The angles of the coupler, where the crank drives: with another drive they say nothing."""
     found = results.peaks
+    if "transmission_angle_min" not in found:
+        return
     least, most = (float(found[f"transmission_angle_{end}"]) for end in ("min", "max"))
     if results.scene.drive != "crank" or not np.isfinite(least):
         return
@@ -111,28 +130,27 @@ def _acceleration(results: Results) -> Check:
 
 def _numerical(cycle: xr.Dataset) -> Iterator[Check]:
     """How far the powers of a sample are from balance, and how far rounding can be felt, at worst."""
-    for name, title, said, limit in (
+    for name, title, of, limit in (
         ("power_residual", "balance of power", "of its terms, at worst", BALANCED),
         ("error_bound", "rounding", "of the largest pin force", EXACT),
     ):
-        worst = float(abs(cycle[name]).max())
+        worst = float(abs(cycle[name]).max()) if name in cycle else np.nan
         if np.isfinite(worst):
-            yield Check(title, joined(tiny(worst), f" {said}"), worst <= limit)
+            yield Check(title, joined(tiny(worst), f" {of}"), worst <= limit)
 
 
 def warnings(results: Results) -> Markup:
     """What must be said before all numbers."""
     if results.sound:
         return Markup()
-    subject = "The car does not stay on the track" if results.loop else "It does not run"
     way = "all the way" if results.part else "all the way round"
-    title = f"{subject} {way}." if results.moves else "There is no result at any angle."
-    said = [tag("p", tag("b", title), " ", _where(results))]
+    title = f"It does not {results.scene.mechanism.runs} {way}."
+    lines = [tag("p", tag("b", title if results.moves else "There is no result at any angle."), " ", _where(results))]
     infinite = [symbol(name) for name in results.forces if np.isinf(results.peaks[f"{name}_peak"])]
     if infinite:
         why = "Without bound at toggles, at dead centres or where it wedges, so that the peak is infinite: "
-        said.append(tag("p", why, ", ".join(infinite), "."))
-    return tag("section", *said, class_="warning", role="alert")
+        lines.append(tag("p", why, ", ".join(infinite), "."))
+    return tag("section", *lines, class_="warning", role="alert")
 
 
 def _where(results: Results) -> Markup:
@@ -142,7 +160,7 @@ def _where(results: Results) -> Markup:
     for gap in signals.gaps(ds, ds["status"]):
         by_reason.setdefault(gap.reason, []).append(_angles(gap))
     found = [joined(reason, " ", _listed(angles)) for reason, angles in by_reason.items()]
-    lost = "" if results.loop else ", no work of a cycle, no flywheel, no orders"
+    lost = ", no work of a cycle, no flywheel, no orders" if results.linkage else ""
     lost = "" if results.part else f"; there are no means{lost}"
     rest = f"Peaks and figures are those of the other {results.scene.mechanism.spot}s{lost}."
     return joined("No result: ", _listed(found), ". ", rest) if found else safe(rest)
@@ -156,8 +174,12 @@ def _angles(gap: signals.Gap) -> Markup:
 
 
 def _words(flag: xr.DataArray) -> str:
-    """What a flag means."""
-    return str(flag.attrs["flag_meanings"]).split()[int(flag)].replace("_", " ")
+    """Return the meaning of a flag's value."""
+    return _meanings(flag)[int(flag)]
+
+
+def _meanings(flag: xr.DataArray) -> list[str]:
+    return [word.replace("_", " ") for word in str(flag.attrs["flag_meanings"]).split()]
 
 
 def _listed(parts: list[Markup]) -> Markup:

@@ -13,8 +13,8 @@ import numpy as np
 from linksweep import plot
 from linksweep.analysis.balance.orders import orders
 from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import Drawing, drawing_of
 from linksweep.reports.markup import Markup, symbol, tag
 from linksweep.reports.results_of_page import STEPS, Results
 from linksweep.results.sweep import sweep
@@ -42,20 +42,22 @@ class Picture(NamedTuple):
 
 def of_the_cycle(results: Results) -> Markup:
     """The mechanism where a pin is loaded most, pin forces, the drive, and why that pin is loaded."""
-    if results.loop:
-        return _wide("The track and its force on the car", plot.loop, results) if results.moves else Markup()
-    return pictures(_of_cycle(results)) if results.moves else Markup()
+    track, drawing = results.scene.mechanism.track, results.scene.mechanism.drawing
+    if track and results.moves:
+        return _wide(track.title, plot.loop, results)
+    return pictures(_of_cycle(results, drawing)) if drawing and results.moves else Markup()
 
 
 def of_bearings_and_shaking(results: Results) -> Markup:
     """Load diagrams of all pins, and the path and the orders of the shaking force."""
-    if results.loop or not results.moves:
+    drawing = results.scene.mechanism.drawing
+    if not drawing or not results.moves:
         return Markup()
-    return pictures([*_of_bearings(results), *_of_shaking(results)])
+    return pictures([*_of_bearings(results, drawing), *_of_shaking(results)])
 
 
-def _of_cycle(results: Results) -> Iterator[Picture]:
-    ds, drawing = results.cycle, drawing_of(results.scene.mechanism)
+def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
+    ds = results.cycle
     force, where = worst(results, drawing)
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
     what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
@@ -67,19 +69,18 @@ def _of_cycle(results: Results) -> Iterator[Picture]:
     if not bounded:  # there, it is the nearness of the toggle that loads the pin
         return
     shares = breakdown(results.scene, force, results.cycle[signals.INDEX].values[::STEPS])
-    title = f"Where the load of {drawing.said(force)} comes from: {symbol(force)}"
+    title = f"Where the load of {drawing.joint_text(force)} comes from: {symbol(force)}"
     yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax)))
 
 
-def _of_bearings(results: Results) -> Iterator[Picture]:
-    ds, drawing = results.cycle, drawing_of(results.scene.mechanism)
-    for force in filter(drawing.at_pin, drawing.forces):
-        title = f"Load of {drawing.said(force)}: {symbol(force)}"
-        yield Picture(title, SQUARE, partial(plot.bearing, ds, force, "ground"))
+def _of_bearings(results: Results, drawing: Drawing) -> Iterator[Picture]:
+    for force in drawing.pin_forces:
+        title = f"Load of {drawing.joint_text(force)}: {symbol(force)}"
+        yield Picture(title, SQUARE, partial(plot.bearing, results.cycle, force, "ground"))
 
 
 def _of_shaking(results: Results) -> Iterator[Picture]:
-    if float(results.peaks["Fs_peak"]) == 0.0:
+    if "Fs_peak" not in results.peaks or float(results.peaks["Fs_peak"]) == 0.0:
         return
     ds = results.cycle.isel({signals.INDEX: slice(STEPS * int(results.inertia_period))})
     yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(ds, ax=ax))
@@ -91,7 +92,7 @@ def _of_shaking(results: Results) -> Iterator[Picture]:
 def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
     """The pin force that is largest, and its crank angle [degree]: the exact one where that has a position to draw."""
     found = results.peaks
-    pins = [name for name in drawing.forces if drawing.at_pin(name)]
+    pins = drawing.pin_forces
     force = max(pins, key=lambda name: float(found[f"{name}_peak"]))
     at = float(found[f"{force}_peak_at"])
     if np.isfinite(found[f"{force}_peak"]) and int(sweep(results.scene, [at], ["status"])["status"][0]) == 0:

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.validate import UNITS
-from linksweep.mechanisms import LoopTrack
 from linksweep.mechanisms.links import Bar, Disk
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
 from linksweep.scene.grid import crank_grid
@@ -33,14 +32,13 @@ SHOWN = {
 LEFT_OUT = ("length", "angle")
 """Kinds of which a mechanism's own default, no offset and no turn, need not be said."""
 LONG = 10.0  # m: from here on a length is shown in m
-NAMES = {"FourBar": "Four-bar", "SliderCrank": "Slider-crank", "LoopTrack": "Car in a loop"}
-NAMES |= {"InvertedSliderCrank": "Inverted slider-crank"}
+KIND_OF = {item.name: item.metadata["rule"].kind for item in fields(Scene) if "rule" in item.metadata}
 SAMPLES = 720  # angles at which what changes over the revolution is looked at
 
 
 def kind_of(scene: Scene) -> str:
-    """What machine it is, in words."""
-    return NAMES[type(scene.mechanism).__name__]
+    """Return the kind of machine, in words."""
+    return scene.mechanism.title or type(scene.mechanism).__name__
 
 
 def links(scene: Scene) -> Markup:
@@ -105,19 +103,19 @@ def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
 
 
 def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
-    """What drives it, and how fast."""
-    if isinstance(sampled.mechanism, LoopTrack):
-        where = "at every position" if sampled.profile == "constant" else "at the bottom, then by work and energy"
-        yield "speed", f"{quantity(sampled.speed, 'velocity')} {where}"
-        yield "thrust", quantity(sampled.thrust, "force")
-        return
-    unknown = sampled.mechanism.drives[sampled.drive]
-    yield "drive", f"{sampled.drive}; sought: {symbol(unknown)}"
-    yield "speed of the crank", _speed(sampled.omega2)
-    alpha2 = sampled.motion["alpha2"]
-    if np.any(np.not_equal(alpha2, 0.0)):
-        yield "its acceleration", quantity(alpha2, "angular_acceleration")
-    turns = round(sampled.period / sampled.mechanism.period)
+    """Yield the parameters of the motion that the mechanism takes, in words."""
+    mechanism, remarks = sampled.mechanism, sampled.mechanism.remarks(vars(sampled))
+    if "drive" in mechanism.motion:
+        yield "drive", f"{sampled.drive}; unknown: {symbol(mechanism.drives[sampled.drive])}"
+    if "omega2" in mechanism.motion:
+        yield "speed of the crank", _speed(sampled.omega2)
+    if np.any(np.not_equal(sampled.motion.get("alpha2", 0.0), 0.0)):
+        yield "its acceleration", quantity(sampled.motion["alpha2"], "angular_acceleration")
+    for name in ("speed", "thrust"):
+        if name in mechanism.motion:
+            size = quantity(getattr(sampled, name), KIND_OF[name])
+            yield name, f"{size} {remarks.get(name, '')}".rstrip()
+    turns = round(sampled.period / mechanism.period)
     if turns > 1:
         yield "cycle", f"{turns} turns of the crank"
 

@@ -123,7 +123,7 @@ def _filled(parts: Mapping[str, Any]) -> str:
 
 
 def _left(results: Results) -> Iterator[Markup]:
-    yield section("Machine" if results.loop else "Motion", page_inputs.settings(results.scene))
+    yield section("Motion" if results.linkage else "Machine", page_inputs.settings(results.scene))
     yield section("Peaks", page_tables.peaks(results), tag("p", EXACTNESS, class_="note"))
     yield section("Geometry", page_tables.geometry(results))
 
@@ -131,7 +131,8 @@ def _left(results: Results) -> Iterator[Markup]:
 def _right(results: Results) -> Iterator[Markup]:
     yield section("Checks", page_checks.checks(results))
     yield section("Drive", page_tables.drive(results))
-    yield section("Motion" if results.loop else "Shaking, by the inertia of the links", page_tables.shaking(results))
+    yield section("Motion", page_tables.highlights(results))
+    yield section("Shaking, by the inertia of the links", page_tables.shaking(results))
 
 
 def _part_problems(part: Any, period: float) -> list[str]:

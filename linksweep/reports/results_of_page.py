@@ -10,7 +10,6 @@ import xarray as xr
 from linksweep.analysis.design.geometry import geometry
 from linksweep.analysis.drive.duty import duty, steady_problems, turning_problems
 from linksweep.analysis.drive.flywheel import flywheel
-from linksweep.mechanisms import LoopTrack
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.results.sweep import sweep
@@ -18,8 +17,8 @@ from linksweep.scene.scene import Scene
 
 STEPS = 10  # samples in a degree
 SHAKING = ("Fs", "Ms")
-OF_LINKAGE = (*SHAKING, "power", "transmission_angle")
-OF_CAR = ("a_total", "speed")
+BESIDE_FORCES = (*SHAKING, "power", "transmission_angle")
+"""Quantities whose peaks the page shows of any machine that has them, besides its own highlights."""
 FLUCTUATIONS = (0.02, 0.1)
 
 Range = tuple[float, float]
@@ -44,8 +43,9 @@ class Results(NamedTuple):
         return self.scene.mechanism.peak_quantities(self.scene.drive)
 
     @property
-    def loop(self) -> bool:
-        return isinstance(self.scene.mechanism, LoopTrack)
+    def linkage(self) -> bool:
+        """Return whether the machine has links, and so pins, a drive's power and shaking."""
+        return bool(self.scene.mechanism.bodies)
 
     @property
     def inertia_period(self) -> float:
@@ -77,11 +77,10 @@ class Results(NamedTuple):
 def results_of(scene: Scene, part: Range | None = None) -> Results:
     """All that the report shows of a scene of one design."""
     theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
-    loop = isinstance(scene.mechanism, LoopTrack)
-    cycle = sweep(scene, theta2, None if loop else _outputs(scene))
+    cycle = sweep(scene, theta2, _outputs(scene))
     worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
     found = Results(scene, part, cycle, worst, check(scene))
-    if loop or part is not None:
+    if not found.linkage or part is not None:
         return found
     found = found._replace(geometry=geometry(scene))
     if turning_problems(scene) or not found.whole:
@@ -94,10 +93,14 @@ def _angles(first: float, last: float) -> np.ndarray:
 
 
 def _outputs(scene: Scene) -> tuple[str, ...]:
-    """What is drawn and checked."""
-    mechanism = scene.mechanism
-    drawn = (*mechanism.kinematics(), *mechanism.dynamics(scene.drive), "Fsx", "Fsy")
-    return (*drawn, "power_residual", "error_bound")
+    """Return the quantities over the angle that the page draws and checks."""
+    own = (*scene.mechanism.kinematics(), *scene.mechanism.dynamics(scene.drive))
+    return (*own, *_known(scene, "Fsx", "Fsy", "power_residual", "error_bound"))
+
+
+def _known(scene: Scene, *names: str) -> list[str]:
+    """Return those quantities that can be computed of a scene."""
+    return [name for name in names if name in scene.table.quantity]
 
 
 def _sought(scene: Scene) -> tuple[str, ...]:
@@ -108,8 +111,8 @@ def _peaks_of(scene: Scene) -> list[str]:
     return [*_sought(scene), *(f"{name}_bound" for name in _sought(scene)), *_others(scene)]
 
 
-def _others(scene: Scene) -> tuple[str, ...]:
-    return OF_CAR if isinstance(scene.mechanism, LoopTrack) else OF_LINKAGE
+def _others(scene: Scene) -> list[str]:
+    return [*_known(scene, *BESIDE_FORCES), *scene.mechanism.highlights]
 
 
 def _exact(scene: Scene) -> xr.Dataset:

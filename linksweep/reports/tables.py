@@ -25,7 +25,7 @@ SHAKEN = {"Fs": "N", "Ms": "N m"}
 def peaks(results: Results) -> Markup:
     """The worst of each pin force and of the drive, and where; how sure that is; of a whole revolution the mean."""
     more = [kind for kind in ("bound", "mean", "rms") if f"{results.forces[0]}_{kind}" in results.peaks]
-    header = ("", "", "peak", f"at {'θ' if results.loop else 'θ₂'}", *more)
+    header = ("", "", "peak", f"at {symbol(results.scene.mechanism.index.replace('theta', 'θ'))}", *more)
     rows = [row for name in results.forces for row in _peak(results, name, more)]
     return table(header, rows, class_="peaks")
 
@@ -62,7 +62,7 @@ def _where(results: Results, name: str) -> str:
 
 def drive(results: Results) -> Markup:
     """Power; of a crank that comes round, work; and of one that turns steadily, its flywheel."""
-    if results.loop:
+    if "power_peak" not in results.peaks:
         return Markup()
     ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))
     works = [] if results.duty is None else _works(results.duty, float(results.peaks["power_peak"]))
@@ -110,10 +110,10 @@ def _reversals(results: Results) -> Iterable[float]:
 
 
 def shaking(results: Results) -> Markup:
-    """The force and the moment of the links' inertia on the ground; of a car in a loop, its speed and acceleration."""
+    """Return the table of the force and the moment of the links' inertia on the ground."""
     found = results.peaks
-    if results.loop:
-        return table((), _of_car(found), class_="numbers")
+    if not {"Fs_peak", "Ms_peak"} <= {*found}:
+        return Markup()
     at = float(found["Fs_peak_at"])
     at = at % results.inertia_period if results.part is None else at
     force = joined(number(float(found["Fs_peak"]), "N"), " at ", angle(at))
@@ -130,10 +130,18 @@ def _with_rms(results: Results, name: str, row: tuple[str, Markup]) -> tuple[str
     return row[0], joined(row[1], ", rms ", rms)
 
 
-def _of_car(found: xr.Dataset) -> list[tuple[Any, ...]]:
-    speed = joined(number(float(found["speed_min"]), "m/s"), " to ", number(float(found["speed_max"]), "m/s"))
-    total = joined(number(float(found["a_total_peak"]), "m/s²"), " at ", angle(float(found["a_total_peak_at"])))
-    return [("speed", speed), ("largest acceleration", total)]
+def highlights(results: Results) -> Markup:
+    """Return the table of a mechanism's highlights: the range of a signed quantity, the peak of a magnitude."""
+    rows = [(title, _highlight(results, name)) for name, title in results.scene.mechanism.highlights.items()]
+    return table((), rows, class_="numbers") if rows else Markup()
+
+
+def _highlight(results: Results, name: str) -> Markup:
+    peaks, units = results.peaks, results.scene.table.quantity[name].units
+    unit = UNITS.get(units, units)
+    if f"{name}_min" in peaks:
+        return joined(number(float(peaks[f"{name}_min"]), unit), " to ", number(float(peaks[f"{name}_max"]), unit))
+    return joined(number(float(peaks[f"{name}_peak"]), unit), " at ", angle(float(peaks[f"{name}_peak_at"])))
 
 
 def _of(size: float, value: float, unit: str) -> Markup:

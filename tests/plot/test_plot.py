@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -288,6 +289,15 @@ def test_functions_draw_where_they_are_told_and_the_accessor_delegates(cycles):
         assert draw(ax=ax) is ax
     assert len(plt.get_fignums()) == 1
     assert ds.linksweep.scene == SCENES["press"]
+
+
+def test_every_plot_of_a_dataset_is_a_method_of_the_accessor():
+    """One line in linksweep/plot/__init__.py adds a plot to ``ls.plot``, its dir and the accessor."""
+    methods = {name for name in vars(linksweep.plot.accessor.Cycle) if name in plot.__all__}
+    assert {*plot.__all__} - methods == {"balance", "over_speed"}  # these take scenes
+    assert dir(plot) == sorted(plot.__all__)
+    path = Path(plot.__file__)
+    assert len(plot.__all__) == path.read_text(encoding="utf-8").count("from linksweep.plot.")
 
 
 def test_what_is_missing_is_named(cycles):

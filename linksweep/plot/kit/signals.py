@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.plot.kit.drawings import drawing_of_results, drive_of_results
+from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
 
 INDEX = "theta2"
@@ -69,13 +69,12 @@ def _known_force(ds: xr.Dataset, pin: str) -> None:
 
 
 def drive_name(ds: xr.Dataset) -> str:
-    """The torque or force of the drive: the scene says which, for a T14 may be the moment of a guide."""
-    drives, drive = drawing_of_results(ds).drives, drive_of_results(ds)
-    wanted = [drives[drive]] if drive else list(drives.values())
-    for name in wanted:
+    """Return the drive's torque or force: the scene states which, for a T14 may be the moment of a guide."""
+    names = efforts(ds)
+    for name in names:
         if name in ds:
             return name
-    raise ValueError(f"the Dataset has no {' nor '.join(wanted)}: sweep with outputs=[..., {wanted[0]!r}]")
+    raise ValueError(f"the Dataset has no {' nor '.join(names)}: sweep with outputs=[..., {names[0]!r}]")
 
 
 def unit(signal: xr.DataArray, default: str) -> str:
@@ -117,13 +116,18 @@ def _said(value: object) -> str:
 
 def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
     """Angles and signals as arrays: sorted by angle, and a grid of a whole cycle closed by its first sample again."""
-    angles = ds[INDEX].values.astype(float)
-    order = np.argsort(angles, kind="stable")
-    rows = [angles[order], *(_spread(signal, len(angles))[order] for signal in signals)]
+    rows = by_angle(ds, *signals)
     period = ds.attrs.get(WHOLE_TURN) or full_turn(rows[0])
     if period is None:
-        return tuple(rows)
+        return rows
     return (np.append(rows[0], rows[0][0] + period), *(np.append(row, row[0]) for row in rows[1:]))
+
+
+def by_angle(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
+    """Return angles and signals as arrays sorted by angle."""
+    angles = ds[INDEX].values.astype(float)
+    order = np.argsort(angles, kind="stable")
+    return (angles[order], *(_spread(signal, len(angles))[order] for signal in signals))
 
 
 def _spread(signal: xr.DataArray, count: int) -> np.ndarray:

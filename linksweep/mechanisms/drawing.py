@@ -1,0 +1,139 @@
+"""Numbers and names that a plot needs of a machine: joints, bars, axes of links, block and guide; or a car's track."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.base.degrees import cos_sin
+
+Points = dict[str, np.ndarray]
+
+
+class Frame(NamedTuple):
+    """Axes of a link: the direction of x in words, and the name of its angle [degree], a quantity or a parameter."""
+
+    along: str
+    angle: str
+
+    @property
+    def across(self) -> str:
+        return self.along.split(",")[0]
+
+
+class Block(NamedTuple):
+    """A link that slides: its number, and the pin at its centre; its sides lie in the axes of its frame.
+
+    It slides in a guide on the ground, or on a link that turns about a pin: `on` has the number of that link, and the
+    pin.
+    """
+
+    number: int
+    pin: str
+    on: tuple[int, str] | None = None
+
+
+class Guide(NamedTuple):
+    """A straight line on the ground that a block slides on: the foot of pin A on it [m], and its direction."""
+
+    foot: np.ndarray
+    along: np.ndarray
+
+
+class Carrier(NamedTuple):
+    """The link whose point draws a curve: its name, its number, and the pin from which `point` is measured."""
+
+    role: str
+    number: int
+    pin: str
+
+
+COUPLER = Carrier("coupler", 3, "B")
+
+
+class Track(NamedTuple):
+    """A circular track on which a car runs from the bottom, counter-clockwise.
+
+    `radius` names the parameter [m], `force` the quantity that is the force on the car towards the centre [N], `speed`
+    that of the car [m/s].
+    """
+
+    radius: str
+    force: str
+    speed: str
+    title: str
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A linkage as plots draw it.
+
+    `joints` are the pairs of links (i, j) whose force Fij is plotted, by the joint's name: a pin, or a word where links
+    touch otherwise. `journals` are the links that carry the pins' journals. `acts_at` is the pin where the arrow of a
+    force starts that acts at no pin. `fixed` returns the pins on the ground [m], `guide` the guide. `moving` are the
+    pins with positions among the quantities. `ideal` are parameters to set aside where only positions are computed.
+    """
+
+    joints: Mapping[str, tuple[int, int]]
+    journals: Mapping[str, int] = field(default_factory=dict)
+    frames: Mapping[int, Frame] = field(default_factory=dict)
+    bars: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+    moving: tuple[str, ...] = ()
+    fixed: Callable[[Any], Points] = lambda mechanism: {"A": np.zeros(2)}
+    carrier: Carrier = COUPLER
+    block: Block | None = None
+    guide: Callable[[Any], Guide] | None = None
+    acts_at: Mapping[str, str] = field(default_factory=dict)
+    ideal: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def forces(self) -> dict[str, str]:
+        """Name of the joint of each force, such as F12."""
+        return {f"F{i}{j}": name for name, (i, j) in self.joints.items()}
+
+    @property
+    def joint_of(self) -> dict[str, str]:
+        """Name of the joint of each force and of its reaction."""
+        return {f"F{i}{j}": name for name, pair in self.joints.items() for i, j in (pair, pair[::-1])}
+
+    @property
+    def pin_forces(self) -> list[str]:
+        """Forces that act at a pin."""
+        return [force for force in self.forces if self.at_pin(force)]
+
+    @property
+    def angles(self) -> list[str]:
+        """Names of the angles of the links' axes."""
+        return [frame.angle for frame in self.frames.values()]
+
+    def start_of(self, force: str) -> str:
+        """Return the pin where the arrow of a force starts."""
+        joint = self.joint_of[force]
+        return self.acts_at.get(joint, joint)
+
+    def link_of(self, force: str, frame: str) -> int:
+        """Return the link of a frame in which a force Fij is plotted; in a slide, link j takes the journal's place."""
+        i, j = int(force[1]), int(force[2])
+        journal = self.journals.get(self.joint_of.get(force, ""), j)
+        return {"ground": 1, "link": j, "journal": journal, "bearing": i + j - journal}[frame]
+
+    def at_pin(self, force: str) -> bool:
+        """Return whether a force acts at a pin, which has a letter for a name."""
+        return len(self.joint_of[force]) == 1
+
+    def joint_text(self, force: str) -> str:
+        """Return the joint of a force in words: "pin C", "guide"."""
+        return f"{'pin ' if self.at_pin(force) else ''}{self.joint_of[force]}"
+
+
+def direction(angle: Any) -> np.ndarray:
+    """Return the unit vector at an angle [degree], exact at the multiples of 90."""
+    return np.array([float(part) for part in cos_sin(angle)])
+
+
+def ground_pins(mechanism: Any) -> Points:
+    """Return the pins A and D [m] of a machine with a frame of length `ground` at `ground_angle`."""
+    return {"A": np.zeros(2), "D": float(mechanism.ground) * direction(mechanism.ground_angle)}
