@@ -1,1 +1,5 @@
-"""What comes out: Datasets indexed by crank angle, peaks, the labelled system, checks."""
+"""Results of a scene as Datasets: `sweep`, `peaks`, `check`, `system`, `quantities`.
+
+`compute` goes from a scene to arrays, `dataset` from arrays to labelled Datasets; `peak_search/` finds exact peaks and
+integrals, `cylinders/` has engines of several cylinders.
+"""

@@ -29,7 +29,8 @@ from linksweep.results.compute import (
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
-from linksweep.results.peak_search.exact import Found, exact_peaks, peaks_where, peaks_within
+from linksweep.results.peak_search.along_paths import Found
+from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means

@@ -67,6 +67,29 @@ def test_the_pin_of_a_crank_at_rest_bears_the_whole_spring_in_every_direction_th
     np.testing.assert_allclose([found.F12x_min, found.F12y_min], [-along_x, -along_y], rtol=0.0, atol=4.0 * sagitta)
 
 
+def test_the_drive_works_against_a_spring_on_both_arcs_of_a_crank_that_turns_partly():
+    """Without masses ∫ T12 dθ2 is the spring's gain of ½·rate·stretch² from toggle to toggle. The spring's ends would
+    come close between the arcs, where nothing can be assembled."""
+    lengths, fixed, rate, free_length = (0.2, 0.15, 0.12), 0.05 + 0.1j, 2000.0, 0.01
+    machine = ls.FourBar(*(ls.Link(x, mass=0.0, inertia=0.0) for x in lengths), ground=0.2)
+    spring = ls.Spring(("ground", fixed.real, fixed.imag), ("coupler", 0.1, 15.0), rate, free_length)
+    scene = ls.Scene(machine, omega2=30.0, loads=[spring])
+    peaks = ls.peaks(scene, of=["F32", "T12_mean"])
+    assert peaks.status.attrs["flag_meanings"].split()[peaks.status.item()] == "unbounded"
+
+    def energy(theta2):
+        """Return the spring's energy where coupler and rocker lie in one line, at |BD| = |BC| ± |CD|."""
+        b = lengths[0] * np.exp(1j * np.radians(theta2))
+        toward_d = (0.2 - b) / np.abs(0.2 - b)
+        point = b + 0.1 * toward_d * np.exp(1j * np.radians(15.0))
+        return 0.5 * rate * (np.abs(point - fixed) - free_length) ** 2
+
+    arcs = ls.check(scene)
+    gain = (energy(arcs.arc_end.values) - energy(arcs.arc_start.values)).sum()
+    turned = np.radians(arcs.arc_end - arcs.arc_start).sum()
+    assert peaks.T12_mean.item() == pytest.approx(gain / turned.item(), rel=1e-7)
+
+
 def test_approaches_on_the_crank_are_those_of_a_point_on_a_circle():
     """Distance √((ρ − R)² + 4ρR·sin²(Δ/2)): least, |ρ − R|, in line, and the width there |ρ − R|/ρ."""
     distance = xr.DataArray([1e-3, 1e-4, 1e-6], dims="design")

@@ -137,6 +137,22 @@ def test_limits_at_the_ends_of_a_revolution_that_toggles():
     assert 0.0 <= float(found.Cx_max - dense.max()) < 1e-3 and 0.0 <= float(dense.min() - found.Cx_min) < 1e-3
 
 
+def test_a_function_of_theta2_on_arcs_that_reach_beyond_a_turn():
+    """The one arc of the first design, 235 to 485 degrees, has angles of the second one's, 17 to 116, a turn later."""
+    push = ls.Load("coupler", force=(lambda theta2: 50.0 * np.sin(np.radians(theta2)), -80.0), at=(0.1, 15.0))
+    cranks, rockers = (xr.DataArray(x, dims="design") for x in ([0.25, 0.2], [0.2, 0.14]))
+
+    def scene(crank, rocker):
+        bars = (ls.Bar(length, width=0.02, thickness=0.02, density=7750) for length in (crank, 0.2, rocker))
+        return ls.Scene(ls.FourBar(*bars, ground=0.2), omega2=30.0, loads=[push])
+
+    both = ls.peaks(scene(cranks, rockers), of=["Cx", "F32_mean"])
+    for k in range(2):
+        alone = ls.peaks(scene(cranks[k].item(), rockers[k].item()), of=["Cx", "F32_mean"])
+        for name, value in alone.data_vars.items():
+            assert value.item() == both[name][k].item(), name
+
+
 def test_what_nothing_loads_is_zero_up_to_the_toggle():
     links = (ls.Link(x, **WEIGHTLESS) for x in (0.3, 0.25, 0.28))
     found = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=1.0))

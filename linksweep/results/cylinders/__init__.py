@@ -1,1 +1,5 @@
-"""Hold engines of several cylinders on one crankshaft: their sums, and exact peaks of these."""
+"""Engines of several cylinders on one crankshaft.
+
+`multi_cylinder` is the machine, `cylinder_sums` its quantities as sums over cylinders, `cylinders_between` these sums
+at any angle for the peak search, and `cylinder_peaks` their peaks.
+"""

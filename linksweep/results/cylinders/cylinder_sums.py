@@ -1,4 +1,4 @@
-"""Sum quantities over the cylinders of an engine, and compute others from such sums.
+"""Sum quantities over the cylinders of an engine, and compute further ones from the sums.
 
 Cylinder k is the engine's slider-crank turned by its bank angle β about A, its crank ahead by its crank angle φ. In
 axes that turn with the cylinder its crank stands at θ2 + φ − β: each cylinder is thus the same cycle at other angles,
@@ -8,8 +8,8 @@ its forces turned by β. With z the place along the crankshaft, forces of the cy
     Msx = −Σ z·Fsy,  Msy = Σ z·Fsx    (moments about the axes x and y at z = 0)
 
 and so do powers, kinetic energy, the inertia reduced to the crank and the torque reduced to it. A main bearing at m
-carries of each throw in the bays beside it what the lever rule leaves it, as if the crankshaft were hinged at every
-main (statically determinate; a stiff crankshaft on more than two mains loads them otherwise):
+carries a part of the force of each throw in the bays beside it, by the lever rule, as if the crankshaft were hinged at
+every main (statically determinate; a stiff crankshaft on more than two mains loads them otherwise):
 
     F_main = Σ (1 − |z − m|/bay) R(β) F12(θ2 + φ − β)
 
@@ -31,7 +31,7 @@ from linksweep.physics.algebra import planar
 
 
 class Throw(NamedTuple):
-    """How a cylinder stands: its own angle is θ2 + `ahead` [degree]; cos β and sin β; z; what the mains carry of it."""
+    """A cylinder's place: its own angle is θ2 + `ahead` [degree], `bank` cos β and sin β, `shares` each main's part."""
 
     ahead: float
     bank: tuple[float, float]
@@ -40,15 +40,15 @@ class Throw(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """Return the contribution of each throw, from the quantities `sources` of its cylinder."""
+    """A sum over throws: `part` gives each contribution from the quantities `sources` of its cylinder."""
 
     sources: tuple[str, ...]
     part: Callable[..., Any]
     join: Callable[[Any, Any], Any] = add
 
 
-class Made(NamedTuple):
-    """Return a function's value of sums."""
+class Derived(NamedTuple):
+    """A function of sums, or of other derived quantities."""
 
     sources: tuple[str, ...]
     function: Callable[..., Any]
@@ -76,7 +76,7 @@ def _yaw(throw: Throw, x: Any, y: Any) -> Any:
     return throw.z * _along_x(throw, x, y)
 
 
-def _first(one: Any, other: Any) -> Any:
+def _first(one: Any, _: Any) -> Any:
     return one
 
 
@@ -112,15 +112,15 @@ SUMS = {
     **{name: Sum((name,), _plain) for name in ADDED},
     **{name: Sum(SHAKING, part) for name, (part, _, _) in TURNED.items()},
 }
-MADE = {
-    "Fs_squared": Made(SHAKING, planar.square),
-    "Fs": Made(("Fs_squared",), np.sqrt),
-    "power_fed": Made(("power",), _fed),
-    "power_regenerated": Made(("power",), _regenerated),
+DERIVED = {
+    "Fs_squared": Derived(SHAKING, planar.square),
+    "Fs": Derived(("Fs_squared",), np.sqrt),
+    "power_fed": Derived(("power",), _fed),
+    "power_regenerated": Derived(("power",), _regenerated),
 }
 QUANTITIES = (
-    *(Quantity(name, units, said) for name, (units, said) in ADDED.items()),
-    *(Quantity(name, units, said) for name, (_, units, said) in TURNED.items()),
+    *(Quantity(name, units, long_name) for name, (units, long_name) in ADDED.items()),
+    *(Quantity(name, units, long_name) for name, (_, units, long_name) in TURNED.items()),
     Quantity("Fs", "N", "magnitude of the shaking force of all cylinders", squared="Fs_squared"),
     Quantity("power_fed", "W", "power of the drive where it feeds the engine, else 0"),
     Quantity("power_regenerated", "W", "power that the drive takes back where the engine drives it, else 0"),
@@ -133,60 +133,61 @@ def main(k: int) -> str:
 
 
 def main_quantities(count: int) -> tuple[Quantity, ...]:
-    """Return the loads of so many main bearings."""
-    said = "of main bearing {} on its journal"
+    """Return the quantities of so many main bearings: their forces."""
     return tuple(
-        Quantity(name, "N", words.format(said.format(k)), squared)
+        Quantity(name, "N", long_name, squared)
         for k in range(1, count + 1)
-        for name, words, squared in (
-            (f"F_{main(k)}x", "force {}, component along x (positive to the right)", None),
-            (f"F_{main(k)}y", "force {}, component along y (positive upwards)", None),
-            (f"F_{main(k)}", "magnitude of the force {}", f"F_{main(k)}_squared"),
+        for force in [f"force of main bearing {k} on its journal"]
+        for name, long_name, squared in (
+            (f"F_{main(k)}x", f"{force}, component along x (positive to the right)", None),
+            (f"F_{main(k)}y", f"{force}, component along y (positive upwards)", None),
+            (f"F_{main(k)}", f"magnitude of the {force}", f"F_{main(k)}_squared"),
         )
     )
 
 
-def makers(mains: int) -> dict[str, Sum | Made]:
-    """Return how each quantity of an engine with so many main bearings is made, by name."""
-    found: dict[str, Sum | Made] = {**SUMS, **MADE}
+def rules_of(mains: int) -> dict[str, Sum | Derived]:
+    """Return the sum or function for each quantity of an engine with so many main bearings, by name."""
+    rules: dict[str, Sum | Derived] = {**SUMS, **DERIVED}
     for k in range(1, mains + 1):
         name = f"F_{main(k)}"
         for axis, along in (("x", _along_x), ("y", _along_y)):
-            found[f"{name}{axis}"] = Sum(("F12x", "F12y"), _carried(k - 1, along))
-        found[f"{name}_squared"] = Made((f"{name}x", f"{name}y"), planar.square)
-        found[name] = Made((f"{name}_squared",), np.sqrt)
-        found[f"omega_{main(k)}"] = Made(("omega2",), np.positive)
-    return found | {opposite_of(name): Made((name,), np.negative) for name in found}
+            rules[f"{name}{axis}"] = Sum(("F12x", "F12y"), _carried(k - 1, along))
+        rules[f"{name}_squared"] = Derived((f"{name}x", f"{name}y"), planar.square)
+        rules[name] = Derived((f"{name}_squared",), np.sqrt)
+        rules[f"omega_{main(k)}"] = Derived(("omega2",), np.positive)
+    return rules | {opposite_of(name): Derived((name,), np.negative) for name in rules}
 
 
 def _carried(k: int, along: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function for the part of a throw's force that main k carries, counted from 0."""
     return lambda throw, x, y: throw.shares[k] * along(throw, x, y)
 
 
-def sources_of(names: Iterable[str], made: Mapping[str, Sum | Made]) -> tuple[str, ...]:
-    """Return the quantities of one cylinder that these take."""
-    found: dict[str, None] = {}
+def sources_of(names: Iterable[str], rules: Mapping[str, Sum | Derived]) -> tuple[str, ...]:
+    """Return the quantities of one cylinder from which these quantities of the engine are computed."""
+    sources: dict[str, None] = {}
     for name in names:
-        maker = made[name]
-        own = maker.sources if isinstance(maker, Sum) else sources_of(maker.sources, made)
-        found |= dict.fromkeys(own)
-    return tuple(found)
+        rule = rules[name]
+        own = rule.sources if isinstance(rule, Sum) else sources_of(rule.sources, rules)
+        sources |= dict.fromkeys(own)
+    return tuple(sources)
 
 
-def together(
-    names: Iterable[str], made: Mapping[str, Sum | Made], throws: Iterable[Throw], cylinders: Iterable[Any]
+def combined(
+    names: Iterable[str], rules: Mapping[str, Sum | Derived], throws: Iterable[Throw], cylinders: Iterable[Any]
 ) -> dict[str, Any]:
-    """Return quantities of the whole engine from those of its cylinders by name, each at its own angles."""
+    """Return quantities of the whole engine from those of its cylinders by name, each cylinder's at its own angles."""
     each, known = list(zip(throws, cylinders, strict=True)), dict[str, Any]()
 
     def value(name: str) -> Any:
         if name not in known:
-            maker = made[name]
-            if isinstance(maker, Sum):
-                parts = [maker.part(throw, *(cylinder[s] for s in maker.sources)) for throw, cylinder in each]
-                known[name] = reduce(maker.join, parts)
+            rule = rules[name]
+            if isinstance(rule, Sum):
+                parts = [rule.part(throw, *(cylinder[s] for s in rule.sources)) for throw, cylinder in each]
+                known[name] = reduce(rule.join, parts)
             else:
-                known[name] = maker.function(*map(value, maker.sources))
+                known[name] = rule.function(*map(value, rule.sources))
         return known[name]
 
     return {name: value(name) for name in names}

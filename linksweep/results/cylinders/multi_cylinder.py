@@ -24,13 +24,13 @@ from linksweep.mechanisms.capabilities import lack
 from linksweep.results.compute import requested
 from linksweep.results.cylinders.cylinder_sums import (
     QUANTITIES,
-    Made,
+    Derived,
     Sum,
     Throw,
+    combined,
     main_quantities,
-    makers,
+    rules_of,
     sources_of,
-    together,
 )
 from linksweep.results.dataset import index_coordinate, origin_attributes
 from linksweep.results.sweep import sweep
@@ -140,9 +140,9 @@ class MultiCylinder(ByContent):
         return {quantity.name: quantity for quantity in (*QUANTITIES, *main_quantities(len(self.mains)))}
 
     @cached_property
-    def makers(self) -> Mapping[str, Sum | Made]:
-        """How each of them is made of the cylinders' own."""
-        return makers(len(self.mains))
+    def rules(self) -> Mapping[str, Sum | Derived]:
+        """Return the sum over cylinders, or function of sums, for each quantity."""
+        return rules_of(len(self.mains))
 
     @property
     def in_memory(self) -> MultiCylinder:
@@ -204,12 +204,12 @@ class MultiCylinder(ByContent):
         refuse([problem for name in names for problem in name_problems("outputs", name, [*self.quantity, "status"])])
         grid = crank_grid(theta2, self.period)
         wanted = dict.fromkeys((*names, "status"))
-        sources = sources_of(wanted, self.makers)
+        sources = sources_of(wanted, self.rules)
         cycles = [
             _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), sources, threads=threads))
             for scene, throw in zip(self.cylinders, self.throws, strict=True)
         ]
-        found = together(wanted, self.makers, self.throws, cycles)
+        found = combined(wanted, self.rules, self.throws, cycles)
         status = found.pop("status").assign_attrs(cycles[0]["status"].attrs)
         labelled = {name: self._labelled(name, values.where(status == 0)) for name, values in found.items()}
         command = f"linksweep.MultiCylinder(...).sweep(theta2={quote(theta2)})"

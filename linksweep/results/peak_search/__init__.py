@@ -1,1 +1,5 @@
-"""Search for exact peaks and integrals outside the kernel: along arcs between toggles, jumps and quick loads."""
+"""Exact peaks and integrals over the continuous revolution.
+
+`exact` sends each design to the fused search or along paths; `paths` and `arcs` lay these, `along_paths` searches and
+`quadrature` integrates along them. `between` evaluates quantities at any angles.
+"""

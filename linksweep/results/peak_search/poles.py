@@ -1,8 +1,8 @@
-"""Poles: crank angles inside a turn or an arc at which quantities grow without bound, and which of them do.
+"""Find poles: crank angles inside a turn or an arc at which quantities grow without bound.
 
-Where they may be is known in closed form: the dead centres of the drive and of the output, the angles from which on
-friction wedges, and, in a crank that turns fully, its change points. There a quantity has a pole if it grows as a power
-of the distance, on one side at least: no rounding does that, nor a quantity that has a limit.
+Their possible angles are known in closed form: the dead centres of the drive and of the output, the angles from which
+on friction wedges, and, where the crank turns fully, its change points. A quantity has a pole at such an angle if it
+grows as a power of the distance, on one side at least: neither rounding nor a quantity that has a limit does that.
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ import xarray as xr
 from linksweep.engine.run import Field
 from linksweep.mechanisms.limits.finding import Finding
 from linksweep.results.compute import surely_ok
-from linksweep.results.peak_search.between import Array, Group
+from linksweep.results.peak_search.between import PARTLY, Array, Group
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.scene import Scene
 
 CLOSEST = 1e-8
-"""How near to a dead centre or jam a quantity is looked at [degree]."""
+"""Distance from a dead centre or jam of the closest sample [degree]."""
 CLOSEST_TO_TOGGLE = 1e-5, 1e-4
-"""How near to a change point [degree]: clear of what cannot be told from it, by whichever power leads there."""
+"""Distances from a change point of the closest samples [degree].
+
+Nearer ones have the status of a toggle; two distances, as quantities may grow by different powers near and far."""
 BESIDE = np.array([1.0, 2.0, 4.0, 8.0])
+"""Distances of the samples beside a possible pole, as multiples of the closest one."""
 LEAST_GROWTH = 1.5
-"""By which a quantity grows at least over half the way to a pole: the power of 2 that it is of, nearly."""
+"""Least growth over half the way to a pole, where a quantity that goes as 1/distance**n grows 2**n times."""
 EVENNESS = 1.1
-"""Growths over halves of the way to a pole differ by less than this factor."""
-PARTLY = 1.0
-"""The assembly of what moves over a part of the turn."""
+"""Factor by which the growths over two halves of the way differ at most: a power grows evenly."""
 TOGGLE = 2.0
-
-
+"""Status of a sample in a toggle."""
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
-"""Quantities with a pole where the output stands still, whatever drives."""
+"""Quantities with a pole where the output stands still, whichever link drives."""
 
-
-Places = tuple[Array, Array, Array]
+Candidates = tuple[Array, Array, Array]
+"""Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
 
 
 class Poles(NamedTuple):
-    """Angles [degree] of the designs `row` of a group, and whether each signal grows to +inf there (pole, signal)."""
+    """Possible poles: rows of designs in a group, angles [degree], and which signals are inf there (pole, signal)."""
 
     row: Array
     angle: Array
@@ -60,20 +60,20 @@ def _of_output(signals: tuple[str, ...]) -> bool:
 
 
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:
-    """Return `assembly`, made 1 where a dead centre or friction forbids some angles of a whole turn."""
-    status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # without waking dask to see whether it is its
+    """Return `assembly` as it is, but PARTLY where a dead centre or friction forbids some angles of a whole turn."""
+    status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # else xarray imports dask to look at them
     if "unbounded" in scene.mechanism.round_meanings:
         for findings, numbers in scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive}):
             dims, arrays = side_by_side(numbers)
             for angles in _singular_angles(findings(*arrays)):
-                there = xr.Variable(dims, np.isfinite(angles).any(axis=-1))
-                status = xr.where(there & (status < PARTLY), PARTLY, status)
+                some = xr.Variable(dims, np.isfinite(angles).any(axis=-1))
+                status = xr.where(some & (status < PARTLY), PARTLY, status)
     return Field(tuple(map(str, status.dims)), status.values)
 
 
 def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> Poles:
     """Return the poles of these designs, inside the angles at which they can be assembled."""
-    row, angle, step = places_of_poles(group, signals)
+    row, angle, step = pole_candidates(group, signals)
     if not len(row):
         return Poles(row, angle, np.zeros((0, len(signals)), dtype=bool))
     side = np.array([-1.0, 1.0])
@@ -86,43 +86,45 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
 
 
 @singledispatch
-def places_of_poles(group: Any, signals: tuple[str, ...]) -> Places:
-    """Return designs, angles [degree] at which poles may be, and how near to look."""
-    row, angle, step = (
-        np.concatenate(parts) for parts in zip(_known(group, signals), _change_points(group), strict=True)
-    )
+def pole_candidates(group: Any, signals: tuple[str, ...]) -> Candidates:
+    """Return the possible poles of these signals."""
+    return concatenated([_dead_centres_and_jams(group, signals), _change_points(group)])
+
+
+def concatenated(parts: list[Candidates]) -> Candidates:
+    """Return all candidates in one."""
+    row, angle, step = (np.concatenate(part) for part in zip(*parts, strict=True))
     return row, angle, step
 
 
 def _grows_as_a_power(size: Array) -> Array:
-    """Return whether sizes (…, step), the nearest first, grow by the same factor with each half of the way."""
+    """Return whether sizes (…, step), the closest first, grow by the same factor over each half of the way."""
     with np.errstate(all="ignore"):
         growth = size[..., :-1] / size[..., 1:]
     least, largest = growth.min(axis=-1), growth.max(axis=-1)
     return (least > LEAST_GROWTH) & (largest < EVENNESS * least)
 
 
-def _singular_angles(found: dict[str, Finding]) -> list[Array]:
-    """Dead centres and jams among what was found in closed form [degree], several on a trailing axis."""
-    return [found[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in found]
+def _singular_angles(findings: dict[str, Finding]) -> list[Array]:
+    """Return the dead centres and jams among findings in closed form [degree], several on a trailing axis."""
+    return [findings[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in findings]
 
 
-def _known(group: Group, signals: tuple[str, ...]) -> Places:
-    """Dead centres and jams: designs, angles [degree], and how near to look."""
+def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     checks += scene.mechanism.output_findings() if _of_output(signals) else ()
-    found = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
-    angle = np.concatenate([np.empty((len(group.designs), 0)), *chain(*found)], axis=1)
+    angles = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
+    angle = np.concatenate([np.empty((len(group.designs), 0)), *chain(*angles)], axis=1)
     row, which = np.nonzero(np.isfinite(angle))
     return row, angle[row, which], np.full(len(row), CLOSEST)
 
 
-def _change_points(group: Group) -> Places:
-    """The middles of the pinches of these designs where they cannot be told from toggles."""
+def _change_points(group: Group) -> Candidates:
+    """Return the near-toggles of these designs that cannot be distinguished from toggles, with two distances each."""
     middle = group.number(group.scene.mechanism.near_toggle_angle)
     row, angle = np.tile(np.arange(len(middle)), 2), np.concatenate([middle, middle + 180.0])
     (status,) = group.values(("status",), row, angle)
-    there, steps = np.flatnonzero(status == TOGGLE), np.array(CLOSEST_TO_TOGGLE)
-    twice = np.repeat(there, len(steps))
-    return row[twice], angle[twice], np.tile(steps, len(there))
+    toggles = np.flatnonzero(status == TOGGLE)
+    twice = np.repeat(toggles, len(CLOSEST_TO_TOGGLE))
+    return row[twice], angle[twice], np.tile(CLOSEST_TO_TOGGLE, len(toggles))

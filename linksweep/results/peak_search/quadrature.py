@@ -1,9 +1,9 @@
-"""Integrals over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
+"""Integrate over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
 
-The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree. One
-that never does reaches to where the integrand grows without bound, and so fast that it has no integral: that is
-infinite. Where a quantity is not known (jammed, off the track) it is left out, of a mean also as to the time. Arcs are
-followed by x with θ2 = middle + half·sin x, as in `linksweep.results.peak_search.paths`.
+The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree. If
+they never do, the integrand grows so fast towards a pole that it has no integral: that is infinite. Angles at which a
+quantity is not known (jammed, off the track) are left out, of a mean also as to their time. Arcs are followed by x with
+θ2 = middle + half·sin x, as in `linksweep.results.peak_search.arcs`.
 
     mean of q over time = ∫ q dt / ∫ dt,        dt = dθ2/|ω2|        (a car in a loop: dθ/|v|)
 """
@@ -19,27 +19,29 @@ import xarray as xr
 
 from linksweep.engine.run import Field
 from linksweep.results.compute import changing_pace
-from linksweep.results.peak_search.between import Array, Group, empty, groups
-from linksweep.results.peak_search.paths import Part, Paths, arcs, limits, turns, within
+from linksweep.results.peak_search.arcs import arc_ends, arcs, within
+from linksweep.results.peak_search.between import EVERYWHERE, PARTLY, Array, Group, assembled_groups, empty_over_all
+from linksweep.results.peak_search.paths import Part, Paths, turns
 from linksweep.scene.scene import Scene
 
 Power = tuple[str, int]
-"""A quantity and the power whose mean is wanted."""
+"""A quantity, and the power of it to be averaged."""
 Key = TypeVar("Key")
 
 HALVINGS = 45
+"""Most halvings of a piece: from 15 degrees down to the last few digits of an angle."""
 TOLERANCE = 1e-13
-"""Of a piece, relative to the whole: a revolution has up to a hundred pieces that matter."""
-BURSTING = 1e5
-"""A piece that outgrows the first estimate of the whole so far diverges,"""
-NARROW = 12
-"""once it has been halved so often: a load may have a peak that the first estimate passed over."""
+"""Error allowed on a piece, relative to the whole: up to a hundred pieces of a revolution matter."""
+DIVERGENCE = 1e5
+"""Size of a piece, relative to the first estimate of the whole, from which on the integral diverges."""
+FIRST_DIVERGENCE = 12
+"""Halvings after which that is checked: a load may have a narrow peak that the first estimate missed."""
 LAST_DIGIT = 2.0**-44
-"""Of an angle [degree]."""
+"""Spacing of floating-point numbers at an angle of 360 [degree]."""
 POLE = 1e-3
-"""Rules that differ so much, relative to a piece, where all digits of the angle are spent: it has no integral."""
+"""Difference of the rules, relative to a piece where all digits of the angle are spent, that means a pole."""
 ROUNDING = 1e-13
-"""Of a piece, relative to itself: less cannot be told from the rounding of its samples."""
+"""Difference of the rules, relative to a piece, that is not told from the rounding of its samples."""
 
 NODES = np.array([
     0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
@@ -64,16 +66,18 @@ INNER[1::2] = np.concatenate([GAUSS, GAUSS[-2::-1]])
 
 
 class Pieces(NamedTuple):
-    """Parts of paths, from `start` to `end` in their x."""
+    """Pieces of paths, from `start` to `end` in the path's x."""
 
     path: Array
     start: Array
     end: Array
 
     def some(self, which: Array) -> Pieces:
+        """Return the pieces with these indices."""
         return Pieces(*(numbers[which] for numbers in self))
 
     def halved(self) -> Pieces:
+        """Return the first halves of all pieces, then their second halves."""
         middle = 0.5 * (self.start + self.end)
         return Pieces(np.tile(self.path, 2), np.append(self.start, middle), np.append(middle, self.end))
 
@@ -86,9 +90,10 @@ class Integrand(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """Integrals (row, piece) by both rules, and of the magnitude; a row for each integrand.
+    """Integrals (integrand, piece) by both rules: `outer` with 15 points, `inner` with 7.
 
-    `blur` is what the last digit of the angle makes of an integral: as much as the rows go up and down.
+    `size` is the integral of the magnitude, `blur` the error that rounding of the angles causes: their last digit times
+    the total variation of the integrand.
     """
 
     outer: Array
@@ -98,18 +103,18 @@ class Rules(NamedTuple):
 
 
 def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
-    """Return means over time of powers of quantities, for every design; NaN where no angle is ok."""
+    """Return the mean over time of each power of a quantity, for every design; NaN where no angle is ok."""
     return means_at(changing_pace(scene, scene.at_one_angle.inputs), scene, powers, threads)
 
 
 def means_at(pace: tuple[str, ...], scene: Any, powers: tuple[Power, ...], threads: int | None) -> dict[Power, Field]:
-    """Return such means where a quantity, or none, says how fast the index runs."""
+    """Return means over time where `pace` names the quantity that is the rate of the crank angle, or none if steady."""
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
-    found = integrals(scene, weighted | times, threads=threads)
+    totals = integrals(scene, weighted | times, threads=threads)
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = {power: found[power, True].values / found[power, False].values for power in powers}
-    return {power: Field(found[power, True].dims, values) for power, values in mean.items()}
+        mean = {power: totals[power, True].values / totals[power, False].values for power in powers}
+    return {power: Field(totals[power, True].dims, values) for power, values in mean.items()}
 
 
 def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
@@ -117,7 +122,7 @@ def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
 
 
 def _time(value: Array, pace: Array | float = 1.0) -> Array:
-    """Return the time of a small angle, over that angle, where the value is known."""
+    """Return the time for a small angle, per angle, where the value is known."""
     return np.where(np.isfinite(value / pace), 1.0 / np.abs(pace), 0.0)
 
 
@@ -133,92 +138,88 @@ def cycle_time(scene: Scene, threads: int | None = None) -> xr.DataArray:
 def integrals(
     scene: Any, integrands: Mapping[Key, Integrand], part: Part | None = None, threads: int | None = None
 ) -> dict[Key, Field]:
-    """Integrate over the crank angle [degree] for every design, the whole cycle or between two angles; NaN, or 0,
-    where no angle is ok."""
+    """Integrate over the crank angle [degree], the whole cycle or between two angles, for every design.
+
+    Where no angle of a design is ok, its integrals are NaN or 0.
+    """
     names = tuple(dict.fromkeys(name for integrand in integrands.values() for name in integrand.names))
-    found = {key: _nothing(scene, integrand.names) for key, integrand in integrands.items()}
-    for group in groups(scene, (*names, "assembly")):
-        (assembly,) = group.constants("assembly")
-        for kind in (1.0, 0.0):
-            if np.any(assembly == kind):
-                alike = group.some(assembly == kind)
-                paths = arcs(alike) if kind == 1.0 and limits(alike) else turns(alike)
-                paths = paths if part is None else within(paths, part, scene.period)
-                _put(alike, found, integrands, paths, threads)
-    return found
+    totals = {key: empty_over_all(scene, integrand.names) for key, integrand in integrands.items()}
+    # whole turns last: an integral that designs share, such as the time of a cycle, is that of a whole turn
+    for kind, group in assembled_groups(scene, names, (PARTLY, EVERYWHERE)):
+        paths = arcs(group) if kind == PARTLY and arc_ends(group) else turns(group)
+        paths = paths if part is None else within(paths, part, scene.period)
+        _integrate(group, totals, integrands, paths, threads)
+    return totals
 
 
-def _nothing(scene: Any, names: tuple[str, ...]) -> Field:
-    """NaN for every design that one of these quantities tells from others."""
-    fields = empty(scene, names).values()
-    sizes = {dim: n for field in fields for dim, n in zip(field.dims, field.values.shape, strict=True)}
-    return Field(tuple(sizes), np.full(tuple(sizes.values()), np.nan))
-
-
-def _put(
-    group: Group,
-    found: Mapping[Key, Field],
-    integrands: Mapping[Key, Integrand],
-    paths: Paths,
-    threads: int | None,
+def _integrate(
+    group: Group, totals: Mapping[Key, Field], integrands: Mapping[Key, Integrand], paths: Paths, threads: int | None
 ) -> None:
+    """Integrate along the paths of a group's designs, and store the totals of each design."""
     if not np.any(paths.cuts[:, 1:] > paths.cuts[:, :-1]):
         return
-    with np.errstate(invalid="ignore"):  # without bound both ways: NaN
+    with np.errstate(invalid="ignore"):  # inf − inf is NaN: unbounded both ways
         along = _integrals(group, tuple(integrands.values()), paths, threads)
-        totals = _by_owner(along, paths.row, len(group.designs))
-    for field, total in zip(found.values(), totals, strict=True):
+        sums = _by_owner(along, paths.row, len(group.designs))
+    for field, total in zip(totals.values(), sums, strict=True):
         field.values[tuple(group.places[dim] for dim in field.dims)] = total if field.dims else total[0]
 
 
 def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, threads: int | None) -> Array:
-    """Integrals (integrand, path) over each path. What has settled on a piece stands, whatever others take there."""
+    """Return the integrals (integrand, path) over each path.
+
+    A piece is halved for the integrands alone whose rules disagree there, so that an integral has the same bits
+    whichever others are computed with it.
+    """
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
-    done = np.zeros((len(integrands), count))
-    sought = np.ones((len(integrands), len(pieces.path)), dtype=bool)
+    total = np.zeros((len(integrands), count))
+    pending = np.ones((len(integrands), len(pieces.path)), dtype=bool)
     for halvings in range(HALVINGS):
         rules = _rules(group, integrands, paths, pieces, threads)
         scale = np.maximum(_by_owner(rules.size, pieces.path, count), 1e-300) if scale is None else scale
-        rest = sought & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
-        rest = _burst(rules, rest, scale, pieces.path) if halvings >= NARROW else rest
-        done += _by_owner(np.where(sought & ~rest, rules.outer, 0.0), pieces.path, count)
-        unsettled = rest.any(axis=0)
-        if not unsettled.any():
-            return done
-        sought, ends = np.tile(rest[:, unsettled], 2), np.where(rest, np.copysign(np.inf, rules.outer), 0.0)
-        owner, pieces = pieces.path, pieces.some(np.flatnonzero(unsettled)).halved()
-    return done + _by_owner(ends, owner, count)
+        unsettled = pending & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
+        if halvings >= FIRST_DIVERGENCE:
+            unsettled = _without_divergent(rules, unsettled, scale, pieces.path)
+        total += _by_owner(np.where(pending & ~unsettled, rules.outer, 0.0), pieces.path, count)
+        halved = unsettled.any(axis=0)
+        if not halved.any():
+            return total
+        pending, infinite = np.tile(unsettled[:, halved], 2), np.where(unsettled, np.copysign(np.inf, rules.outer), 0.0)
+        owner, pieces = pieces.path, pieces.some(np.flatnonzero(halved)).halved()
+    return total + _by_owner(infinite, owner, count)
 
 
-def _burst(rules: Rules, rest: Array, scale: Array, path: Array) -> Array:
-    """Make infinite what diverges; which pieces are left to halve. Of a path that diverges none is."""
+def _without_divergent(rules: Rules, unsettled: Array, scale: Array, path: Array) -> Array:
+    """Make the integrals of divergent pieces infinite, and return the open pieces of paths that have none."""
     size = rules.size / scale[:, path]
-    diverges = _by_owner(rest & (size > BURSTING), path, scale.shape[1]) > 0.0
-    beside = rest & (size > 0.01 * BURSTING) & diverges[:, path]  # a pole has two sides
+    diverges = _by_owner(unsettled & (size > DIVERGENCE), path, scale.shape[1]) > 0.0
+    beside = unsettled & (size > 0.01 * DIVERGENCE) & diverges[:, path]  # a pole has two sides
     rules.outer[beside] = np.copysign(np.inf, rules.outer[beside])
-    return rest & ~diverges[:, path]
+    return unsettled & ~diverges[:, path]
 
 
 def _disagree(rules: Rules, scale: Array, beside_toggles: bool) -> Array:
-    """Where the rules differ by more than rounding, and by too much of the whole.
+    """Return where the rules differ by more than rounding, and by too much of the whole.
 
-    QUADPACK's smaller estimate of the error holds where the integrand is smooth, not at the kinks of friction and of
-    power that is fed. On arcs it is taken all the same: nearer to their ends samples have fewer digits than the rules.
-    What no more digits can better is left, or infinite beside a pole.
+    QUADPACK's smaller estimate of the error, (200·difference)^1.5, holds where the integrand is smooth, not at the
+    kinks of friction and of the power that is fed. It is used on arcs alone: samples near their ends have fewer digits
+    than the plain difference asks for. A difference that rounding of the angles explains is accepted; beside a pole it
+    makes the integral infinite.
     """
     difference = np.abs(rules.outer - rules.inner)
-    above_rounding = difference > ROUNDING * rules.size  # beside a pole a piece may be larger than the rest together
-    share = difference / scale
-    rest = above_rounding & (share > TOLERANCE)
-    rest &= (200.0 * share) ** 1.5 > TOLERANCE if beside_toggles else True
-    blurred = rest & (difference <= rules.blur)
+    relative = difference / scale
+    # both: beside a pole one piece may be larger than all others together
+    disagree = (difference > ROUNDING * rules.size) & (relative > TOLERANCE)
+    if beside_toggles:
+        disagree &= (200.0 * relative) ** 1.5 > TOLERANCE
+    blurred = disagree & (difference <= rules.blur)
     poles = blurred & (difference > POLE * rules.size)
     rules.outer[poles] = np.copysign(np.inf, rules.outer[poles])
-    return rest & ~blurred
+    return disagree & ~blurred
 
 
 def _by_owner(rows: Array, owner: Array, count: int) -> Array:
-    """Sums (row, owner) of what belongs to each of so many owners."""
+    """Return the sums (row, owner) of the numbers that belong to each of so many owners."""
     return np.stack([np.bincount(owner, row, count) for row in rows])
 
 
@@ -228,20 +229,18 @@ def _first_pieces(paths: Paths) -> Pieces:
 
 
 def _rules(group: Group, integrands: tuple[Integrand, ...], paths: Paths, pieces: Pieces, threads: int | None) -> Rules:
+    """Integrate each piece by both rules."""
     middle, half = 0.5 * (pieces.start + pieces.end), 0.5 * (pieces.end - pieces.start)
     x = (middle[:, None] + half[:, None] * POINTS).ravel()
     path = np.repeat(pieces.path, len(POINTS))
     names = tuple(dict.fromkeys(name for integrand in integrands for name in integrand.names))
     values = dict(zip(names, group.values(names, paths.row[path], paths.angles(path, x), threads), strict=True))
-    with np.errstate(all="ignore"):  # what is not known has a height of 0
+    with np.errstate(all="ignore"):  # a NaN has a height of 0
         rows = [integrand.height(*(values[name] for name in integrand.names)) for integrand in integrands]
     heights = np.stack(rows).reshape(len(rows), len(half), len(POINTS))
     blur = LAST_DIGIT * np.abs(np.diff(heights, axis=-1)).sum(axis=-1)
     samples = heights * paths.stretch(path, x).reshape(-1, len(POINTS)) * half[:, None]
-    # no matrix products: how they sum, and so the last bit, depends on how many pieces there are
-    outer, inner, size = ((part * weights).sum(axis=-1) for part, weights in _by_rules(samples))
+    # no matrix product: the order in which it sums, and so the last bit, depends on the number of pieces
+    weighted = samples * OUTER, samples * INNER, np.abs(samples) * OUTER
+    outer, inner, size = (products.sum(axis=-1) for products in weighted)
     return Rules(outer, inner, size, blur)
-
-
-def _by_rules(samples: Array) -> tuple[tuple[Array, Array], ...]:
-    return (samples, OUTER), (samples, INNER), (np.abs(samples), OUTER)

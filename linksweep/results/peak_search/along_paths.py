@@ -1,0 +1,215 @@
+"""Search for peaks along paths, with the functions of the fused search: `linksweep.engine.peaks.search`.
+
+Signals are evaluated at the samples of each path; lanes about their summits are refined until they promise nothing
+above the peak that stands. Ends of arcs are reached by extrapolation, poles by their place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.engine.peaks import search
+from linksweep.engine.peaks.find_peaks import search_functions
+from linksweep.engine.run import Field
+from linksweep.results.peak_search.between import Array, Group, Places, in_period
+from linksweep.results.peak_search.paths import QUARTER, Part, Paths
+from linksweep.results.peak_search.poles import poles
+
+NODES = 8
+"""Samples near the end of an arc from which a signal is extrapolated to the end."""
+PROBE, LEAST_PROBE = 0.025, 1e-5
+"""Distance from the end, as part of a step and at least, of the sample that tells whether a signal is unbounded."""
+NEAR_PERIOD = 1e-6
+"""Distance from the end of a period within which a peak counts as at its start [degree]: less than its accuracy."""
+
+PathsOf = Callable[[Any], Paths]
+"""A function that returns the paths of a group of designs."""
+
+
+class Found(NamedTuple):
+    """A signal's largest value, its angle [degree], a bound on how much higher it may be, and the samples it took."""
+
+    value: Field
+    angle: Field
+    beyond: Field
+    samples: Field
+
+
+class Best(NamedTuple):
+    """The best of each signal on each path: arrays (path, signal) of the numbers that `Found` has."""
+
+    value: Array
+    angle: Array
+    beyond: Array
+    samples: Array
+
+
+def nothing(field: Field) -> Found:
+    """Return peaks that are all NaN, from a field of NaN."""
+    return Found(*(Field(field.dims, field.values.copy()) for _ in Found._fields))
+
+
+def unbounded(peak: Found) -> Found:
+    """Return a peak whose bound is inf: the signal depends on a load that changes too quickly to be followed."""
+    beyond = np.where(np.isfinite(peak.value.values), np.inf, peak.beyond.values)
+    return peak._replace(beyond=Field(peak.beyond.dims, beyond))
+
+
+def angle_in_period(angle: Array, period: float) -> Array:
+    """Return the angles of peaks in [0, period); one within rounding of the period becomes 0."""
+    folded = in_period(angle, period)
+    return np.where(folded < period - NEAR_PERIOD, folded, 0.0 * folded)
+
+
+def follow(group: Any, peaks: dict[str, Found], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
+    """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
+    for paths_of in all_paths:
+        _follow(group, peaks, paths_of(group), threads)
+
+
+def _follow(group: Group, peaks: dict[str, Found], paths: Paths, threads: int | None) -> None:
+    if not len(paths.row):
+        return
+    places = group.some(paths.row).places
+    at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
+    standing = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
+    best = _search(group, tuple(peaks), paths, np.stack(standing, axis=1), threads)
+    best = best if paths.steps is None else _with_limits(group, tuple(peaks), paths, best, threads)
+    for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
+        _raise(peak, index, Best(*(numbers[:, k] for numbers in best)))
+
+
+def raise_to_poles(group: Any, peaks: dict[str, Found], threads: int | None, part: Part | None = None) -> None:
+    """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
+    row, angle, infinite = poles(group, tuple(peaks), threads)
+    if part is not None:
+        inside = in_period(angle - part[0], group.scene.period) <= part[1] - part[0]
+        row, angle, infinite = row[inside], angle[inside], infinite[inside]
+    places, angle = group.some(row).places, angle_in_period(angle, group.scene.period)
+    for k, peak in enumerate(peaks.values()):
+        at = _flat_index(peak.value, places, len(row))[infinite[:, k]]
+        for field, values in zip(peak[:3], (np.inf, angle[infinite[:, k]], 0.0), strict=True):
+            field.values.reshape(-1)[at] = values
+
+
+def _flat_index(field: Field, places: Places, count: int) -> Array:
+    """Return the row-major index into a field's values of each of so many places."""
+    if not field.dims:
+        return np.zeros(count, dtype=int)
+    return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
+
+
+def _raise(peak: Found, at: Array, best: Best) -> None:
+    """Replace a signal's peak at each index by the highest best of that index, where it is higher."""
+    value, angle, beyond, samples = (field.values.reshape(-1) for field in peak)
+    height = np.nan_to_num(best.value, nan=-np.inf)
+    order = np.lexsort((-np.arange(len(at)), height, at))  # by index, then height; of equals the first path comes last
+    last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each index
+    place = at[last]
+    with np.errstate(invalid="ignore"):
+        reach = np.nan_to_num(value + beyond, nan=-np.inf, posinf=np.inf, neginf=-np.inf)
+        np.maximum.at(reach, at, height + best.beyond)
+        higher = last[~(height[last] <= value[place]) & (height[last] > -np.inf)]
+        value[at[higher]], angle[at[higher]] = best.value[higher], best.angle[higher]
+        beyond[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
+    known = np.where(np.isfinite(value[place]), beyond[place], 0.0)  # nothing is above an infinite peak
+    beyond[place] = np.where(np.isnan(value[place]), np.nan, known)
+    samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, best.samples, len(value))[place]
+
+
+# ------------------------------------------------------------------------------------- lanes about summits
+
+
+def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Array, threads: int | None) -> Best:
+    """Return the best of each signal on each path; lanes that cannot exceed `standing` (path, signal) are dropped."""
+    count_of_paths, per_path = paths.x.shape
+    every = np.repeat(np.arange(count_of_paths), per_path)
+    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
+    rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
+    room, tags = search.in_blocks(rows.size // 2 + 1), count_of_paths * len(signals)
+    lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
+    best, samples = np.empty((search.BEST_ROWS, tags)), np.full(count_of_paths, per_path)
+    run = search_functions(rows.size)
+    with np.errstate(all="ignore"):
+        where = paths.x, paths.before, paths.after, paths.joined
+        count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
+        best[search.PEAK] = np.fmax(best[search.PEAK], standing.ravel())
+        count = _keep(lanes, _promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
+        for _ in range(search.ROUNDS):
+            if not count:
+                break
+            run["place_trials"](lanes, trials, count)
+            column = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
+            tag, x = trials[search.TRIAL_TAG, column].astype(int), trials[search.X, column]
+            path = tag // len(signals)
+            values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+            trials[search.VALUE, column] = values[tag % len(signals), np.arange(len(tag))]
+            samples += np.bincount(path, minlength=count_of_paths)
+            count = run["advance"](lanes, trials, count, best)
+    value, x, beyond = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
+    angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
+    return Best(value, angle, beyond, np.broadcast_to(samples[:, None], value.shape))
+
+
+def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
+    """Return which lanes promise more than the peak that stands.
+
+    At the ends of a window, beyond which the signals go on unseen, no lane does: it may be a slope, not a summit.
+    """
+    tag, x = lanes[search.TAG].astype(int), lanes[search.XB]
+    ratio = (lanes[search.XC] - x) / (x - lanes[search.XA])
+    promise = search.might_reach(lanes[search.FA], lanes[search.FB], lanes[search.FC], ratio) > peak[tag]
+    path = tag // signals
+    known = (lanes[search.FA] > -np.inf) & (lanes[search.FC] > -np.inf)
+    return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
+
+
+def _keep(lanes: Array, which: Array) -> int:
+    """Move some lanes to the front, and return how many they are."""
+    kept = np.flatnonzero(which)
+    lanes[:, : len(kept)] = lanes[:, kept]
+    return len(kept)
+
+
+# ------------------------------------------------------------------------------------- limits at ends of arcs
+
+
+def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best, threads: int | None) -> Best:
+    """Return the best on arcs, raised to the limits at their ends: infinite where a signal is unbounded."""
+    value, angle, beyond, samples = best
+    for end, side in enumerate((-1.0, 1.0)):
+        limit, error = _limits(group, signals, paths, end, np.abs(value), threads)
+        raised = limit > value
+        edge = paths.middle + side * paths.half
+        value, beyond = np.where(raised, limit, value), np.where(raised, error, beyond)
+        angle = np.where(raised, angle_in_period(edge, group.scene.period)[:, None], angle)
+    return Best(value, angle, beyond, samples + 2 * (NODES + 2))
+
+
+def _limits(
+    group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array, threads: int | None
+) -> tuple[Array, Array]:
+    """Return the limits (path, signal) at one end of arcs, and their errors: polynomials through samples before it."""
+    step = paths.steps[:, end]
+    probes = np.maximum(PROBE * step, LEAST_PROBE)[:, None] * [1.0, 0.1]
+    before = np.concatenate([step[:, None] * np.arange(1.0, NODES + 1), probes], axis=1)
+    path = np.repeat(np.arange(len(step)), before.shape[1])
+    x = (2 * end - 1) * (QUARTER - before).ravel()
+    values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+    values = values.reshape(len(signals), *before.shape).swapaxes(0, 1)
+    probe, closer = values[..., -2], values[..., -1]
+    # ten times closer in x: what goes as 1/x is ten times as large, a signal with a limit hardly changes
+    infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(peak))
+    limit, other = (_extrapolated(values[..., :n]) for n in (NODES, NODES - 1))
+    error = np.where(infinite, 0.0, np.abs(limit - other))
+    return np.where(infinite, np.copysign(np.inf, closer), limit), error
+
+
+def _extrapolated(values: Array) -> Array:
+    """Return the value at 0 of the polynomial through values at 1, 2, 3, … steps."""
+    n = values.shape[-1]
+    return (values * [(-1.0) ** (k + 1) * math.comb(n, k) for k in range(1, n + 1)]).sum(axis=-1)

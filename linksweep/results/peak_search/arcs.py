@@ -1,0 +1,196 @@
+"""Lay paths along arcs: the crank angles between toggles, where a design that moves over part of a turn can stand.
+
+An arc is followed by x from −π/2 to π/2 with θ2 = middle + half·sin x: towards a toggle quantities go as the square
+root of the angle that is left, and are smooth in x.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from linksweep.results.peak_search.approaches import approaches
+from linksweep.results.peak_search.between import EVERYWHERE, Array, Group
+from linksweep.results.peak_search.paths import (
+    ASIDE,
+    QUARTER,
+    Part,
+    Paths,
+    approach_samples,
+    both_sides,
+    breaks,
+    in_order,
+    jump_angles,
+    near_toggle_samples,
+    thinned,
+    windows_about,
+)
+from linksweep.scene.curves.quick import STEP
+
+PER_ARC = 192
+"""Even samples of an arc, in x."""
+NEAREST = 1e-5
+"""Distance in x from the end of an arc within which rounding outweighs what is left to gain."""
+NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
+"""Turns away from the nearest one in which an arc may still reach into a piece."""
+LONGEST_PIECE = 180.0
+"""Longest piece of a part that one path follows [degree]."""
+
+
+@singledispatch
+def arc_ends(group: Any) -> tuple[Array, ...]:
+    """Return the starts and the ends (design, arc) of each design's arcs [degree]; () for a machine without arcs."""
+    for findings, numbers in group.scene.mechanism.findings():
+        checks = findings(*map(group.number, numbers))
+        if "arc_start" in checks:
+            return checks["arc_start"].values, checks["arc_end"].values
+    return ()
+
+
+def arcs(group: Group) -> Paths:
+    """Return the one or two arcs on which each design can be assembled, but for arcs on which no sample is ok."""
+    return _along(group, arc_ends(group), arc_ends(group))
+
+
+def arcs_within(part: Part, group: Group) -> Paths:
+    """Return the arcs or turns of each design between two angles [degree], in pieces."""
+    toggles = arc_ends(group)
+    none = (np.full((len(group.designs), 1), np.nan),) * 2
+    return _along(group, _pieces(group, part, toggles), toggles or none, closely=True)
+
+
+def about_approaches_on_arcs(group: Group) -> Paths:
+    """Return a window about every closest approach on the arcs of each design."""
+    row, middle, half = _middles(arc_ends(group))
+    close = approaches(group.some(row), _angles(middle, half, _even()), joined=False)
+    return windows_about(close._replace(row=row[close.row]))
+
+
+def _middles(ends: tuple[Array, ...]) -> tuple[Array, Array, Array]:
+    """Return the design, the middle and the half length [degree] of each arc between starts and ends (design, arc)."""
+    first, last = ends
+    row, which = np.nonzero(np.isfinite(first))
+    return row, 0.5 * (first + last)[row, which], 0.5 * (last - first)[row, which]
+
+
+def _angles(middle: Array, half: Array, x: Array) -> Array:
+    """Return θ2 (path, place) [degree] at the same places x of all arcs."""
+    return middle[:, None] + half[:, None] * np.sin(x)
+
+
+def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], closely: bool = False) -> Paths:
+    """Return paths between starts and ends (design, path); `closely` samples closest approaches, too."""
+    row, middle, half = _middles(ends)
+    x, cuts = _samples_and_cuts(group.some(row), middle, half, closely)
+    before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
+    before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
+    steps = _steps(toggles[0][row], toggles[1][row], middle, half)
+    paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
+    return paths.some(_ok_somewhere(group, paths))
+
+
+def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Return starts and ends (design, piece) of a part, where a design can be assembled [degree]; NaN for no piece."""
+    edges = np.linspace(*part, 1 + math.ceil((part[1] - part[0]) / LONGEST_PIECE))[:, None]
+    (kind,) = group.constants("assembly")
+    whole = (kind[:, None] == EVERYWHERE) | (not toggles)
+    turn = [np.where(whole, ends, np.nan) for ends in (0.0, 360.0)]
+    arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
+    start, end = (np.concatenate(ends, axis=1)[..., None, None] for ends in zip(turn, arcs, strict=True))
+    away = 360.0 * (np.round((edges[:-1] - start) / 360.0) + NEIGHBOURS)
+    first, last = np.maximum(start + away, edges[:-1]), np.minimum(end + away, edges[1:])
+    return tuple(np.where(first < last, ends, np.nan).reshape(len(kind), -1) for ends in (first, last))
+
+
+def _ok_somewhere(group: Group, paths: Paths) -> Array:
+    """Return whether some sample of each path is ok; the first few samples show that for most paths."""
+    ok = np.zeros(len(paths.row), dtype=bool)
+    for some in (paths.x[:, 8::64], paths.x):
+        path = np.repeat(np.flatnonzero(~ok), some.shape[1])
+        (status,) = group.values(("status",), paths.row[path], paths.angles(path, some[~ok].ravel()))
+        ok[~ok] = (status.reshape(-1, some.shape[1]) == 0.0).any(axis=1)
+        if ok.all():
+            break
+    return ok
+
+
+# ---------------------------------------------------------------------------------------- samples and cuts
+
+
+def _samples_and_cuts(group: Group, middle: Array, half: Array, closely: bool) -> tuple[Array, Array]:
+    """Return samples and cuts in x of arcs, one arc for each row of the group.
+
+    Samples are even, and dense towards both ends, about near-toggles that the arc passes, beside breaks and, `closely`,
+    about closest approaches.
+    """
+    even = _even()
+    near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
+    shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
+    special = near_toggle_samples(group), both_sides(breaks(group)), both_sides(jump_angles(group))
+    graded, sides, jumps = (_filled(_on_arc(angles, middle, half)) for angles in special)
+    quick = _on_arc(_quick_and_even(group), middle, half)
+    close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half)
+    samples = [shared, graded, sides, quick, *([close] if closely else [])]
+    # no cuts near the ends: what has a mean is smooth there, and rounding spoils samples that lie nearer
+    shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
+    cuts = [shared, graded[:, ::2], jumps, close[:, ::7], thinned(quick)]
+    return in_order(np.concatenate(samples, axis=1)), in_order(np.concatenate(cuts, axis=1))
+
+
+def _quick_and_even(group: Group) -> Array:
+    """Return angles (design, angle) at which loads over the angle change quickly, and even ones for slower changes."""
+    changes = group.scene.at_one_angle is not group.scene
+    angles = np.append(group.quick, np.arange(0.0, group.scene.period, STEP)) if changes else group.quick
+    return np.broadcast_to(angles, (len(group.designs), len(angles)))
+
+
+def _even() -> Array:
+    return (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
+
+
+def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
+    """Return x of angles on arcs; NaN for angles beyond an arc, or as good as at its end."""
+    away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
+    with np.errstate(invalid="ignore", divide="ignore"):  # beyond, or an arc of one angle
+        x = np.arcsin(away / half[:, None])
+    return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
+
+
+def _filled(x: Array) -> Array:
+    """Return places on arcs with each NaN replaced by an arbitrary place of its own."""
+    arbitrary = (np.arange(x.shape[1]) + 0.3) * (np.pi / (x.shape[1] + 1)) - QUARTER
+    return np.where(np.isnan(x), arbitrary, x)
+
+
+def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
+    """Return steps (path, end) for extrapolation to the ends, small against the way in x to the next toggle beyond.
+
+    The step is 0 at an end that is no toggle: a signal has a value there.
+    """
+    own = np.stack([middle - half, middle + half], axis=1)
+    others = np.concatenate([first, last], axis=1)
+    away = np.abs(np.mod(own[:, :, None] - others[:, None, :] + 180.0, 360.0) - 180.0)
+    away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)  # the least is the end itself
+    steps = np.clip(0.01 * np.sqrt(2.0 * away[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
+    return np.where(away[:, :, 0] < ASIDE, steps, 0.0)
+
+
+# -------------------------------------------------------------------------------------------- integrals of a part
+
+
+def within(paths: Paths, part: Part, period: float) -> Paths:
+    """Return turns or arcs with their cuts clipped to lie between two angles [degree]; samples stay as they are."""
+    first, last = part
+    if paths.middle is None:
+        start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], period)
+        twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + period], axis=1)
+        return paths._replace(cuts=np.clip(twice, start, start + (last - first)))
+    nearest, reach = np.round((0.5 * (first + last) - paths.middle) / 360.0), 1 + int((last - first) // 720.0)
+    away = np.arange(-reach, reach + 1.0)  # turns away from the part's middle in which an arc may still lie in the part
+    copies = paths.some(np.tile(np.arange(len(paths.row)), len(away)))
+    middle = copies.middle + 360.0 * (np.tile(nearest, len(away)) + np.repeat(away, len(paths.row)))
+    ends = (np.arcsin(np.clip((end - middle) / copies.half, -1.0, 1.0))[:, None] for end in part)
+    return copies._replace(middle=middle, cuts=np.clip(copies.cuts, *ends))
