@@ -1,4 +1,4 @@
-"""Frozen dataclasses: how a constructor stores normalised values, and how a copy is made.
+"""Frozen dataclasses: how a constructor stores normalised values, how a copy is made, and a cache beside an object.
 
 Only these functions write to a frozen object, and only before it is returned to anyone.
 """
@@ -6,10 +6,14 @@ Only these functions write to a frozen object, and only before it is returned to
 from __future__ import annotations
 
 import operator
+import weakref
+from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import wraps
 from typing import Any, TypeVar
 
 Owner = TypeVar("Owner")
+Result = TypeVar("Result")
 
 
 def normalise(owner: Any, **values: Any) -> None:
@@ -41,6 +45,23 @@ def with_sound(owner: Owner, **values: Any) -> Owner:
 def field_values(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass by name."""
     return {item.name: getattr(owner, item.name) for item in fields(owner)}
+
+
+def cached_beside(function: Callable[..., Result]) -> Callable[..., Result]:
+    """Cache the results of a function of a frozen object and hashable arguments, for as long as the object lives."""
+    caches: dict[int, dict[tuple[Any, ...], Result]] = {}
+
+    @wraps(function)
+    def cached(owner: Any, *arguments: Any) -> Result:
+        if id(owner) not in caches:
+            caches[id(owner)] = {}
+            weakref.finalize(owner, caches.pop, id(owner), None)
+        cache = caches[id(owner)]
+        if arguments not in cache:
+            cache[arguments] = function(owner, *arguments)
+        return cache[arguments]
+
+    return cached
 
 
 def _same(old: Any, new: Any) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from linksweep.base.frozen import cached_beside
 from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
 from linksweep.scene.file.toml import write_scene
@@ -86,7 +87,7 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
 
 def provenance(scene: Scene, command: str, coordinates: Mapping[str, xr.Variable]) -> dict[str, str]:
     """Where a Dataset comes from, with the whole scene as TOML, so that it can be run again."""
-    return origin_attributes(scene, command) | {"scene": _text(scene, kept_beside(scene, coordinates))}
+    return origin_attributes(scene, command) | {"scene": _cached_text(scene, kept_beside(scene, coordinates))}
 
 
 def kept_beside(scene: Scene, coordinates: Iterable[Any]) -> tuple[str, ...]:
@@ -98,11 +99,7 @@ def kept_beside(scene: Scene, coordinates: Iterable[Any]) -> tuple[str, ...]:
     return tuple(path for path, array in scene.arrays.items() if path in names and index not in array.dims)
 
 
-def _text(scene: Scene, elsewhere: tuple[str, ...]) -> str:
-    texts = scene.__dict__.setdefault("texts", {})
-    if elsewhere not in texts:
-        texts[elsewhere] = write_scene(scene, elsewhere)
-    return texts[elsewhere]
+_cached_text = cached_beside(write_scene)
 
 
 def joined(parts: Iterable[Any], dim: str, labels: Iterable[str]) -> xr.DataArray:
