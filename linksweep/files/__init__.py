@@ -1,1 +1,1 @@
-"""Write and read files whole: NetCDF with its scene, tables, checksums, damaged files."""
+"""Write and read files: NetCDF with its scene, tables, atomic writes, checksums, files that may be damaged."""

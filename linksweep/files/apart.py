@@ -1,7 +1,7 @@
-"""NetCDF files without our seal, read in a process of their own: HDF5 may die of one that is damaged, or never end.
+"""Read NetCDF files without linksweep's seal in a separate process: HDF5 may crash or hang on a damaged one.
 
-``python -m linksweep.files.apart cycle.nc`` writes what is in the file to its standard output, as
-`linksweep.files.packed` makes it.
+``python -m linksweep.files.apart cycle.nc`` writes the file's variables to its standard output, in the form of
+`linksweep.files.packed`.
 """
 
 from __future__ import annotations
@@ -19,28 +19,29 @@ LONGEST = 60.0
 """Seconds that reading a file may take."""
 HDF5 = b"\x89HDF\r\n\x1a\n"
 END = {0: 40, 1: 44, 2: 28, 3: 28}
-"""Where an HDF5 file says how long it is, by the version of its format."""
+"""Position of the file's length within an HDF5 file, by the version of the superblock."""
 
 
 def read_apart(path: Path) -> xr.Dataset:
-    """All variables of a NetCDF file, as coordinates. Raises ValueError that names the file where it cannot be read."""
+    """Return all variables of a NetCDF file, as coordinates; ValueError that names the file where it cannot be read."""
     try:
         if not (reason := _cut_off(path)):
             command = [sys.executable, "-P", "-m", __name__, os.fspath(path)]
-            ran = subprocess.run(command, capture_output=True, timeout=LONGEST, check=False)
-            if not ran.returncode:
-                ds = unpacked(ran.stdout)
+            process = subprocess.run(command, capture_output=True, timeout=LONGEST, check=False)
+            if not process.returncode:
+                ds = unpacked(process.stdout)
                 return ds.set_coords([*ds.data_vars])
-            reason = "damaged: the NetCDF library dies of it" if ran.returncode < 0 else ran.stderr.decode().strip()
+            crashed = process.returncode < 0  # by a signal
+            reason = "damaged: the NetCDF library crashes on it" if crashed else process.stderr.decode().strip()
     except subprocess.TimeoutExpired:
-        reason = f"damaged: the NetCDF library has not come back after {LONGEST:g} s"
+        reason = f"damaged: the NetCDF library has not returned after {LONGEST:g} s"
     except OSError as error:
         reason = str(error.strerror)
     raise ValueError(f"{path}: cannot be read as NetCDF ({reason}); a scene file ends in .toml")
 
 
 def _cut_off(path: Path) -> str:
-    """What is missing of a file that is shorter than it says itself; nothing where it is not."""
+    """Return the problem of a file that is shorter than the length in its own header; empty where it is not."""
     with open(path, "rb") as file:
         head, size = file.read(64), file.seek(0, os.SEEK_END)
     if not head.startswith(HDF5) or len(head) < 64 or head[8] not in END:
@@ -55,7 +56,7 @@ def _main(path: str) -> None:
             whole = ds.load()
             texts = {name: values.astype(str) for name, values in whole.variables.items() if values.dtype.kind == "O"}
             sys.stdout.buffer.write(packed(whole.assign(texts)))
-    except Exception as error:  # of a damaged file, it may be anything
+    except Exception as error:  # a damaged file may raise anything
         sys.exit(" ".join(str(getattr(error, "strerror", None) or error).split()))
 
 

@@ -1,8 +1,8 @@
-"""Files written whole or not at all, and nothing replaced but regular files.
+"""Write files whole or not at all, and replace nothing but regular files.
 
-A new file is made in a folder of its own beside its target, flushed to the disk, then renamed; the name of that folder
-is short, whatever the target's. Its writer holds a lock on it, which the system lifts when the process ends, however
-it ends: who can lock such a folder knows that it was left behind, and removes it.
+A new file is written in a temporary folder beside its target, flushed to the disk, then renamed; the name of that
+folder is short, whatever the target's. The writer holds a lock on the folder, which the system releases when the
+process ends, however it ends: a process that can lock such a folder knows that it was left behind, and removes it.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from linksweep.base.validate import refuse
 from linksweep.scene.file.text_file import kind_of
 
 PREFIX, SUFFIX = ".linksweep-", ".part"
-"""How the names of folders begin and end in which files are being written."""
+"""First and last characters of the names of temporary folders."""
 
 
 @contextlib.contextmanager
 def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yield a temporary file to write to, which becomes `path` when all went well; else `path` is left as it was.
+    """Yield a temporary file to write to, which replaces `path` on success; otherwise `path` is left unchanged.
 
-    Raises OSError for a path that is no file, or lies in a folder that is missing or cannot be written.
+    Raises OSError where `path` is no file, or its folder is missing or cannot be written.
     """
     target = target_of(path)
-    sweep(target.parent)
+    remove_abandoned(target.parent)
     with _named(path), _folder_beside(target) as folder:
         temporary = folder / "new"
         temporary.touch()
         yield temporary
-        with open(temporary, "rb+") as file:  # Windows flushes only what may be written
+        with open(temporary, "rb+") as file:  # Windows flushes only files open for writing
             os.fsync(file.fileno())
         with contextlib.suppress(FileNotFoundError):
             shutil.copymode(target, temporary)
@@ -42,9 +42,9 @@ def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def ending_of(path: str | os.PathLike[str], endings: tuple[str, ...], advice: str = "") -> str:
-    """Return the ending of a file's name, in lower case, which says what is written.
+    """Return the ending of a file's name in lower case, which decides the format.
 
-    Raises ValueError, with some advice, for another than these.
+    Raises ValueError, with `advice`, for an ending that is not among `endings`.
     """
     ending = Path(path).suffix.lower()
     refuse([] if ending in endings else [f"{path}: its ending must be {' or '.join(endings)}{advice}"])
@@ -52,9 +52,9 @@ def ending_of(path: str | os.PathLike[str], endings: tuple[str, ...], advice: st
 
 
 def target_of(path: str | os.PathLike[str]) -> Path:
-    """Return the file that a path leads to, which is there or can be made: a link stays one, its target is replaced.
+    """Return the file that a path leads to, existing or possible: a link remains, its target is replaced.
 
-    Raises OSError where it is a folder, a device, a pipe, a socket, or in a folder that is not there.
+    Raises OSError for a folder, a device, a pipe, a socket, or a path in a folder that does not exist.
     """
     target = Path(os.path.realpath(path) if os.path.islink(path) else path)
     try:
@@ -70,17 +70,17 @@ def target_of(path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def sweep(folder: Path) -> None:
-    """Remove from a folder the files that killed processes were writing there."""
+def remove_abandoned(folder: Path) -> None:
+    """Remove from a folder the temporary files of processes that were killed."""
     with contextlib.suppress(OSError):
-        for left in folder.glob(f"{PREFIX}*{SUFFIX}"):
-            with contextlib.suppress(OSError), _locked(left, wait=False) as alone:
-                if alone:
-                    shutil.rmtree(left)
+        for abandoned in folder.glob(f"{PREFIX}*{SUFFIX}"):
+            with contextlib.suppress(OSError), _locked(abandoned, wait=False) as locked:
+                if locked:
+                    shutil.rmtree(abandoned)
 
 
 def sync_folder(folder: Path) -> None:
-    """Make a rename in a folder last; not every system lets a folder be opened."""
+    """Flush a rename in a folder to the disk; not every system lets a folder be opened."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -91,12 +91,12 @@ def sync_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def _folder_beside(target: Path) -> Iterator[Path]:
-    """Make a folder beside a file for as long as it is written, locked where the system has locks."""
+    """Make a temporary folder beside a file, locked where the system has locks, and remove it in the end."""
     while True:
         folder = Path(tempfile.mkdtemp(SUFFIX, PREFIX, target.parent))
         try:
             with _locked(folder, wait=True):
-                if folder.exists():  # else another process swept it before it was locked
+                if folder.exists():  # else another process removed it before it was locked
                     yield folder
                     return
         finally:
@@ -105,7 +105,7 @@ def _folder_beside(target: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def _locked(folder: Path, wait: bool) -> Iterator[bool]:
-    """Lock a folder; yield False where another process has it, or the system has no such locks."""
+    """Lock a folder; yield False where another process has the lock, or the system has no such locks."""
     try:
         import fcntl
     except ImportError:
@@ -124,7 +124,7 @@ def _locked(folder: Path, wait: bool) -> Iterator[bool]:
 
 @contextlib.contextmanager
 def _named(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Name the file, and not the temporary one, in what the system says."""
+    """Name the target, not the temporary file, in an error of the system."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Files: Datasets written whole or not at all, and scenes read back from scene files and from results."""
+"""Write Datasets and scenes whole or not at all; read scenes back from scene files and from results."""
 
 from __future__ import annotations
 
@@ -22,28 +22,32 @@ from linksweep.scene.scene import Scene
 from linksweep.scene.storable import label_problem, name_problem
 
 RESULTS, SCENES = (".nc", ".csv"), (".toml", ".nc")
-"""Endings of the files of Datasets and of scenes."""
+"""Endings of the files of Datasets, and of scenes."""
 NETCDF = RLock()
-"""The NetCDF library is not made for two threads at once: the process dies."""
+"""Lock around the NetCDF library: used by two threads at once, it crashes the process."""
 
 
 def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
-    """Write a Dataset or a scene whole or not at all: a temporary file beside it, flushed to disk, then renamed.
+    """Write a Dataset or a scene to a file, whole or not at all.
+
+    The file is written beside its target, flushed to the disk, then renamed.
 
     Parameters
     ----------
-    ds : Dataset of linksweep, or any that NetCDF can hold; or a Scene
-    path : the file; one that exists is replaced only once the new one is complete. Its ending says what is written: a
-        Dataset goes to "cycle.nc", NetCDF, or to "cycle.csv", a table as of `Dataset.linksweep.to_csv`, without its
-        scene; a scene to "scene.toml", a text to be edited, or to "scene.nc"
+    ds : Dataset or Scene
+        Dataset of linksweep, or any that NetCDF can hold; or a scene.
+    path : str or PathLike
+        File to write; an existing one is replaced only once the new one is complete. Its ending decides the format:
+        a Dataset goes to "cycle.nc" (NetCDF), or to "cycle.csv", a table as of `Dataset.linksweep.to_csv`, without
+        its scene; a scene goes to "scene.toml", a text to edit, or to "scene.nc".
 
     Raises
     ------
     ValueError
-        For another ending, and a function of theta2 that no samples stand for, as `Scene.to_toml`; for names and labels
-        that NetCDF cannot give back as they are.
+        For another ending; for a function of theta2 that no samples can represent, as `Scene.to_toml`; for names
+        and labels that NetCDF cannot store unchanged.
     OSError
-        When the folder is missing, cannot be written or is full, or `path` is no file; what was there before stays.
+        When the folder is missing, cannot be written or is full, or `path` is no file; an existing file stays.
 
     Examples
     --------
@@ -56,11 +60,21 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
     ...         assert ls.load_scene(os.path.join(folder, name)) == scene
     """
     if isinstance(ds, Scene):
-        if ending_of(path, SCENES) == ".toml":
-            return write_text(ds.to_toml(), path)
-        ds = _as_dataset(ds)
+        _save_scene(ds, path)
     elif ending_of(path, RESULTS) == ".csv":
-        return to_csv(ds, path)
+        to_csv(ds, path)
+    else:
+        _save_dataset(ds, path)
+
+
+def _save_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
+    if ending_of(path, SCENES) == ".toml":
+        write_text(scene.to_toml(), path)
+    else:
+        _save_dataset(_as_dataset(scene), path)
+
+
+def _save_dataset(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
@@ -74,7 +88,7 @@ def write_text(text: str, path: str | os.PathLike[str]) -> None:
 
 
 def _as_dataset(scene: Scene) -> xr.Dataset:
-    """Return a Dataset of a scene alone: its arrays over designs, and all else as text."""
+    """Return a Dataset of a scene alone: its arrays over designs, and everything else as text."""
     require_writable(scene)
     scene = in_memory(scene)
     coordinates = design_coordinates(scene)
@@ -82,31 +96,35 @@ def _as_dataset(scene: Scene) -> xr.Dataset:
 
 
 def _unstorable(ds: xr.Dataset) -> list[str]:
-    """Return the names and the coordinates of a Dataset that a file cannot hold."""
+    """Return the problems of a Dataset's names and coordinates that a file cannot hold."""
     names = {name: name_problem(name) for name in (*ds.dims, *ds.variables)}
-    found = [f"ds has {quote(name)}: {problem}; rename it" for name, problem in names.items() if problem]
+    problems = [f"ds has {quote(name)}: {problem}; rename it" for name, problem in names.items() if problem]
     labels = {name: label_problem(values.variable) for name, values in ds.coords.items()}
-    return found + [f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem]
+    return problems + [
+        f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem
+    ]
 
 
 def load_scene(path: str | os.PathLike[str]) -> Scene:
-    """The scene of a TOML file, or of a NetCDF file that linksweep wrote.
+    """Return the scene of a TOML file, or of a NetCDF file that linksweep wrote.
 
     Parameters
     ----------
-    path : "scene.toml" or "cycle.nc"
+    path : str or PathLike
+        File to read: "scene.toml" or "cycle.nc".
 
     Returns
     -------
-    Scene that gives equal arrays when swept again. Functions of theta2 come back as DataArrays whose spline is within
-    1e-9 of their largest value, and equal at every half degree; one that jumps, or changes too quickly for that, is not
-    in the file.
+    Scene
+        Scene that gives equal arrays when swept again. Functions of theta2 come back as DataArrays whose spline is
+        within 1e-9 of their largest value, and equal at every half degree; a function that jumps, or changes too
+        quickly for that, is not in the file.
 
     Raises
     ------
     ValueError
-        Naming the file and what is wrong: all errors of a scene file at once; a file that is no NetCDF or holds no
-        scene, or not the whole of it.
+        Naming the file and the problem: all errors of a scene file at once; a file that is no NetCDF, is cut off,
+        or holds no scene.
 
     Examples
     --------
@@ -130,22 +148,22 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
 
 
 def _loaded(path: Path) -> xr.Dataset:
-    """All of a NetCDF file; one without our seal is read where HDF5 can do no harm."""
+    """Return the whole of a NetCDF file; one without linksweep's seal is read in a separate process."""
     if not (mark := mark_of(path)):
-        from linksweep.files.apart import read_apart  # here: it also runs as a program, which imports this
+        from linksweep.files.apart import read_apart  # here: it also runs as a program, which imports this module
 
         return read_apart(path)
-    sealed(path, mark)  # which refuses a file that is damaged
+    sealed(path, mark)  # raises for a damaged file
     with NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
         return ds.load()
 
 
 def scene_of(ds: xr.Dataset, name: str = "Dataset", whole: bool = True) -> Scene:
-    """The scene that a Dataset of linksweep came from, or of the branch chosen from it.
+    """Return the scene that a Dataset of linksweep came from, with the branch that was selected, if any.
 
-    A function that jumps is refused; unless it need not be the `whole` scene: then a cycle's own samples stand for it.
+    A function that jumps is refused unless the scene need not be `whole`: then a cycle's own samples represent it.
 
-    Raises ValueError where the Dataset holds none.
+    Raises ValueError where the Dataset holds no scene.
     """
     text = ds.attrs.get("scene")
     if not isinstance(text, str):

@@ -1,4 +1,4 @@
-"""Datasets of numbers as bytes, for chunks of a study and for what a process of its own has read."""
+"""Datasets of numbers as bytes, for chunks of a study and for transfer between processes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import xarray as xr
 
 
 def packed(ds: xr.Dataset) -> bytes:
-    """A Dataset of numbers as bytes: numpy's npz, with dims and attributes as JSON."""
+    """Return a Dataset of numbers as bytes: numpy's npz, with dims and attributes as JSON."""
     about = {name: [values.dims, _plain(values.attrs)] for name, values in ds.variables.items()}
     text = json.dumps([_plain(ds.attrs), about])
     file = io.BytesIO()
@@ -21,25 +21,25 @@ def packed(ds: xr.Dataset) -> bytes:
 
 
 def unpacked(data: bytes) -> xr.Dataset:
-    """The Dataset of such bytes."""
+    """Return the Dataset stored in bytes by `packed`."""
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         attributes, about = json.loads(file["about"].tobytes())
         variables = {
-            name: xr.Variable(dims, file[f"arr_{k}"], _as_it_was(own))
+            name: xr.Variable(dims, file[f"arr_{k}"], _restored(own))
             for k, (name, (dims, own)) in enumerate(about.items())
         }
-    return xr.Dataset(variables, attrs=_as_it_was(attributes))
+    return xr.Dataset(variables, attrs=_restored(attributes))
 
 
 def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """Attributes for JSON; arrays, such as flag_values, with their type."""
+    """Return attributes for JSON; arrays, such as flag_values, with their type."""
     return {
         name: [value.dtype.str, value.tolist()] if isinstance(value, np.ndarray | np.generic) else value
         for name, value in attributes.items()
     }
 
 
-def _as_it_was(attributes: Mapping[str, Any]) -> dict[str, Any]:
+def _restored(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {
         name: np.array(value[1], dtype=value[0]) if isinstance(value, list) else value
         for name, value in attributes.items()

@@ -1,4 +1,4 @@
-"""Results as a table: one row a design, or a design and crank angle, for spreadsheets and pandas."""
+"""Results as a table: one row per design, or per design and crank angle, for spreadsheets and pandas."""
 
 from __future__ import annotations
 
@@ -15,21 +15,23 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FORMULAS = ("=", "+", "-", "@", "\t", "\r")
-"""How a text begins that a spreadsheet takes for a formula."""
+"""First characters of a text that a spreadsheet evaluates as a formula."""
 
 
 def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
-    """A Dataset as a table.
+    """Return a Dataset as a pandas table.
 
     Parameters
     ----------
-    ds : Dataset of linksweep
+    ds : Dataset
+        Dataset of linksweep.
 
     Returns
     -------
-    pandas.DataFrame with a row for each design, or for each design and crank angle. The columns are the dims (labels,
-    or positions from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]".
-    Status stands in words.
+    pandas.DataFrame
+        Table with a row per design, or per design and crank angle. The columns are the dims (labels, or positions
+        from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]". Status
+        is in words.
 
     Examples
     --------
@@ -38,7 +40,7 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     >>> list(table.columns)
     ['F32_peak [N]', 'F32_peak_at [degree]', 'status']
     """
-    import pandas as pd  # here: it comes with xarray, but takes its time
+    import pandas as pd  # here: its import is slow
 
     sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in indices())}  # angles innermost
     known = ds.assign_coords({dim: np.arange(n) for dim, n in sizes.items() if dim not in ds.coords})
@@ -49,15 +51,22 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
 def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a Dataset as a CSV file, whole or not at all, with the columns of `to_pandas`.
 
-    Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would run as a formula
-    has an apostrophe before it.
+    Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would evaluate as a
+    formula is preceded by an apostrophe.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Dataset of linksweep.
+    path : str or PathLike
+        File to write, "study.csv".
 
     Raises
     ------
     ValueError
         When the name of the file does not end in .csv.
     OSError
-        When the folder is missing, cannot be written or is full; what was there before stays.
+        When the folder is missing, cannot be written or is full; an existing file stays.
     """
     ending_of(path, (".csv",))
     table = to_pandas(ds)
@@ -66,11 +75,11 @@ def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 
 def _no_formula(cell: Any) -> Any:
-    """Return a cell as it is, or with an apostrophe before a text that a spreadsheet would run."""
+    """Return a cell unchanged, or with an apostrophe before a text that a spreadsheet would evaluate."""
     if not isinstance(cell, str):
         return cell
     mark = "'" if cell.startswith(FORMULAS) and not _is_number(cell) else ""
-    return mark + cell.replace("\r", "\n")  # which csv puts in quotes
+    return mark + cell.replace("\r", "\n")  # csv puts line feeds in quotes
 
 
 def _is_number(text: str) -> bool:
@@ -87,7 +96,7 @@ def _header(values: xr.DataArray) -> str:
 
 
 def _column(variable: xr.Variable, sizes: dict[Any, int]) -> Any:
-    """One value a row; those of flags in words."""
+    """Return one value per row; flags in words."""
     values = variable.set_dims(sizes).values.reshape(-1)
     if "flag_meanings" not in variable.attrs:
         return values

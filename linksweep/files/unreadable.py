@@ -1,4 +1,4 @@
-"""Print the variables of a damaged NetCDF file that do not fit their checksums: run by itself, as HDF5 may not survive.
+"""Print the variables of a damaged NetCDF file whose checksums do not match: run by itself, as HDF5 may crash.
 
 ``python unreadable.py study.nc``
 """
@@ -11,15 +11,15 @@ import netCDF4
 
 
 def unreadable(path: str) -> list[str]:
-    """Names of the variables that cannot be read."""
-    found = []
+    """Return the names of the variables that cannot be read."""
+    names = []
     with netCDF4.Dataset(path) as file:
         for name, variable in file.variables.items():
             try:
                 variable[...]
             except (OSError, RuntimeError):
-                found.append(name)
-    return found
+                names.append(name)
+    return names
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""Compute studies in chunks that go on where they stopped: jobs, cluster, assembly, opening."""
+"""Compute studies of many designs in chunks that resume after a stop: jobs, cluster, assembly, opening."""

@@ -1,7 +1,7 @@
-"""The file of a study, put together from its chunks, of which one at a time is in memory.
+"""Assemble the file of a study from its chunks, with one at a time in memory.
 
-Numbers are stored in tiles with a checksum each (fletcher32). A variable has the dims that any of the chunks gives
-it; one that does not depend on the dims that were cut is written once.
+Numbers are stored in tiles with a checksum each (fletcher32). A variable has the union of its dims in all chunks; one
+that does not depend on the dims split into chunks is written once.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from linksweep.scene.scene import Scene
 Chunks = Callable[[], Iterator[tuple[Block, xr.Dataset]]]
 
 TILE = 1 << 16  # numbers under one checksum: half a megabyte
-ROOM = 1 << 20  # bytes that a file takes besides its numbers
+ROOM = 1 << 20  # bytes of a file besides its numbers
 
 
 @dataclass
 class Layout:
-    """The whole of a study: sizes of its dims, the dims of each variable, and what each looks like in a chunk."""
+    """The layout of a whole study: sizes of its dims, the dims of each variable, and an empty variable `like` each."""
 
     sizes: dict[str, int]
     dims: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -45,15 +45,12 @@ class Layout:
 
 
 def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks, command: str) -> None:
-    """Write the file of a study; chunks() goes through all of them, block and Dataset, as often as it is called.
+    """Write the file of a study; chunks() iterates over all of them, block and Dataset, each time it is called.
 
-    Raises
-    ------
-    OSError
-        Where the disk is full or fails.
+    Raises OSError where the disk is full or fails.
     """
     coordinates = design_coordinates(scene)
-    layout = laid_out(chunks(), sizes)
+    layout = layout_of(chunks(), sizes)
     layout.attributes = provenance(scene, command, coordinates)
     layout.sizes |= {str(dim): n for values in coordinates.values() for dim, n in values.sizes.items()}
     needed = ROOM + sum(like.dtype.itemsize * prod(layout.shape(name)) for name, like in layout.like.items())
@@ -61,14 +58,14 @@ def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks,
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     try:
         _write(path, layout, coordinates, chunks)
-    except RuntimeError as error:  # all that the NetCDF library says of a disk that fails
+    except RuntimeError as error:  # the NetCDF library raises no other for a disk that fails
         full = shutil.disk_usage(path.parent).free < needed - path.stat().st_size
         code = errno.ENOSPC if full else errno.EIO
         raise OSError(code, f"{os.strerror(code)} ({error})") from None
 
 
-def laid_out(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int]) -> Layout:
-    """What the whole looks like, from all of its chunks."""
+def layout_of(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int]) -> Layout:
+    """Return the layout of the whole study from all of its chunks."""
     layout = Layout({})
     seen: dict[tuple, bytes] = {}
     for block, ds in chunks:
@@ -77,9 +74,7 @@ def laid_out(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int
             dims = merged(layout.dims.get(str(name), ()), tuple(map(str, variable.dims)))
             place = (name, *(block[dim].start for dim in block if dim in variable.dims))
             digest = hashlib.sha256(np.ascontiguousarray(variable.values).tobytes()).digest()
-            if (
-                seen.setdefault(place, digest) != digest
-            ):  # it differs from chunk to chunk, so it depends on what was cut
+            if seen.setdefault(place, digest) != digest:  # it differs between chunks, so it depends on their dims
                 dims = merged(dims, tuple(block))
             layout.dims[str(name)] = dims
             layout.like.setdefault(str(name), variable[(slice(0, 0),) * variable.ndim] if variable.ndim else variable)
@@ -88,7 +83,7 @@ def laid_out(chunks: Iterable[tuple[Block, xr.Dataset]], sizes: Mapping[str, int
 
 
 def merged(one: tuple[str, ...], other: tuple[str, ...]) -> tuple[str, ...]:
-    """All dims of both, each before those that it comes before in either."""
+    """Return all dims of both, in an order that keeps the order of each."""
     dims = list(one)
     for k, dim in enumerate(other):
         if dim not in dims:
@@ -98,7 +93,7 @@ def merged(one: tuple[str, ...], other: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _write(path: Path, layout: Layout, coordinates: Mapping[str, xr.Variable], chunks: Chunks) -> None:
-    import netCDF4  # here: only those who write studies need it
+    import netCDF4  # here: only writing studies needs it
 
     with NETCDF:
         file = netCDF4.Dataset(path, "w")
@@ -131,7 +126,7 @@ def _define(
     shape: Iterable[int],
     more: Mapping[str, str] | None = None,
 ) -> Any:
-    """A variable of the file, empty, with the attributes that one like it has in any file of xarray's."""
+    """Return a new, empty variable of the file, with the attributes that xarray writes for one like it."""
     encoded = encode_cf_variable(like, name=name)
     attributes = dict(encoded.attrs) | dict(more or {})
     for dim, n in zip(dims, shape, strict=True):
@@ -151,7 +146,7 @@ def _define(
 
 
 def tile(shape: Iterable[int]) -> tuple[int, ...]:
-    """Shape of the tiles of an array, row by row.
+    """Return the shape of the tiles of an array, row by row.
 
     Examples
     --------
@@ -166,7 +161,7 @@ def tile(shape: Iterable[int]) -> tuple[int, ...]:
 
 
 def _fill(file: Any, layout: Layout, name: str, variable: xr.Variable, block: Block) -> None:
-    """Put a chunk's numbers in their place, unless another chunk has the same."""
+    """Write a chunk's numbers to their place, unless another chunk has written the same ones."""
     dims = layout.dims[name]
     if any(part.start for dim, part in block.items() if dim not in dims):
         return

@@ -1,4 +1,4 @@
-"""Studies read back: nothing before it is asked for, and nothing that does not fit its checksum."""
+"""Open a finished study lazily; a variable whose checksum fails raises."""
 
 from __future__ import annotations
 
@@ -19,23 +19,26 @@ from linksweep.files.seal import sealed
 
 
 def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Open a finished study; each variable is read when it is first used.
+    """Open a finished study; each variable is read on first use.
 
-    The file is not kept open. It has been read through once and its checksum found to fit; whatever is damaged
-    later is noticed variable by variable.
+    The file is not kept open. Its checksum is verified once, on opening; damage that happens later is reported for each
+    variable.
 
     Parameters
     ----------
-    path : a file that `linksweep.study` finished
+    path : str or PathLike
+        File that `linksweep.study` finished.
 
     Returns
     -------
-    Dataset over the design dims, as `linksweep.peaks` gives it.
+    Dataset
+        Dataset over the design dims, equal to that of `linksweep.peaks`.
 
     Raises
     ------
     ValueError
-        Naming the file, and the variable where it is known: for one that is missing, damaged, cut off, or no study.
+        Naming the file, and the variable where it is known: for a file that is missing, damaged, cut off, or no
+        study.
 
     Examples
     --------
@@ -57,14 +60,14 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    import netCDF4  # here: only those who read studies need it
+    import netCDF4  # here: only reading studies needs it
 
     with NETCDF, netCDF4.Dataset(path) as file:
         yield file
 
 
 class _Store(AbstractDataStore):
-    """A NetCDF file as xarray takes it, opened anew for each reading."""
+    """A NetCDF file as an xarray data store, opened anew for each reading."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -83,7 +86,7 @@ class _Store(AbstractDataStore):
 
 
 class _Checked(BackendArray):
-    """A variable of a file: where its numbers do not fit their checksum, the error says which."""
+    """A variable of a file, read lazily; where its checksum fails, the error names it."""
 
     def __init__(self, path: Path, name: str, stored: Any) -> None:
         self.path, self.name, self.shape = path, name, stored.shape
@@ -98,7 +101,6 @@ class _Checked(BackendArray):
                 file.set_auto_mask(False)
                 return np.asarray(file[self.name][key], dtype=self.dtype)
         except (OSError, RuntimeError) as error:
-            reason = (
-                f"{self.path}: {self.name} cannot be read: its checksum does not fit, or the file is not there any more"
-            )
-            raise ValueError(f"{reason} ({error}); study again, or read other variables") from error
+            reason = f"its checksum does not match, or the file is not there any more ({error})"
+            advice = "study again, or read other variables"
+            raise ValueError(f"{self.path}: {self.name} cannot be read: {reason}; {advice}") from error

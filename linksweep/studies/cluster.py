@@ -1,7 +1,7 @@
-"""Chunks of a study computed on a cluster of dask.distributed, whatever becomes of its workers.
+"""Compute chunks of a study on a cluster of dask.distributed, even if workers are lost.
 
 Each chunk is sent with its own designs and nothing else. So the scheduler can give it to another worker when one is
-lost, and no more is under way than keeps every worker busy.
+lost, and no more chunks are under way than keep every worker busy.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from linksweep.scene.designs.selection import selected
 from linksweep.studies.job import Job
 
 AHEAD = 2
-"""Chunks under way for each thread of the cluster: one is computed while the next is on its way."""
+"""Chunks under way per thread of the cluster: one is computed while the next is on its way."""
 
 
-def client_of(given: Any) -> Any:
-    """The client given, or the one that is active in this process; None where there is none.
+def client_of(client: Any) -> Any:
+    """Return the client passed in, or the one that is active in this process; None where there is none.
 
-    Raises ValueError for what is no client.
+    Raises ValueError for an object that is no client.
     """
-    if given is not None:
-        refuse([] if hasattr(given, "submit") and hasattr(given, "nthreads") else [_no_client(given)])
-        return given
-    if "distributed" not in sys.modules:  # nobody has made one
+    if client is not None:
+        refuse([] if hasattr(client, "submit") and hasattr(client, "nthreads") else [_no_client(client)])
+        return client
+    if "distributed" not in sys.modules:  # then no client exists
         return None
     from distributed import default_client
 
@@ -40,37 +40,37 @@ def client_of(given: Any) -> Any:
         return None
 
 
-def _no_client(given: Any) -> str:
-    return f"client = {quote(given)}: must be a client of dask.distributed; make one with distributed.Client(...)"
+def _no_client(value: Any) -> str:
+    return f"client = {quote(value)}: must be a client of dask.distributed; make one with distributed.Client(...)"
 
 
 def on_cluster(
     client: Any, job: Job, numbers: Iterable[int], threads: int | None
 ) -> Generator[tuple[int, xr.Dataset], None, None]:
-    """Number and peaks of these chunks, as they come."""
+    """Yield number and peaks of these chunks, as they are finished."""
     from distributed import as_completed
 
-    left, flying = iter(numbers), {}
+    remaining, under_way = iter(numbers), {}
     done = as_completed()
 
     def send() -> None:
-        for number in left:
+        for number in remaining:
             part = selected(job.scene, job.blocks[number])
             future = client.submit(peaks, part, job.of, threads=threads or 1, pure=False, **job.options)
-            flying[future] = number
+            under_way[future] = number
             done.add(future)
-            if len(flying) >= AHEAD * sum(client.nthreads().values()):
+            if len(under_way) >= AHEAD * sum(client.nthreads().values()):
                 break
 
     try:
         send()
         for future in done:
-            number, ds = flying.pop(future), future.result()
+            number, ds = under_way.pop(future), future.result()
             refuse(_other_version(ds))
             send()
             yield number, ds
     finally:
-        client.cancel(list(flying))
+        client.cancel(list(under_way))
 
 
 def _other_version(ds: xr.Dataset) -> list[str]:

@@ -1,4 +1,4 @@
-"""A study in chunks: what is asked of a scene, how its designs are cut, and the peaks of one chunk."""
+"""A study as a job: the request, its designs split into chunks, and the peaks of one chunk."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 STEP = 0.05
-"""Of the angles [degree] at whose values a function of theta2 is known again."""
+"""Step of the angles [degree] at which a function of theta2 is sampled for the scene's digest."""
 
 
 def chunk_of_peaks(
     scene: Scene, of: Iterable[str] | None, block: Block, threads: int | None = None, **options: Any
 ) -> xr.Dataset:
-    """Peaks of some designs of a scene, as `linksweep.peaks` gives them; nothing else goes in or out.
+    """Return the peaks of some designs of a scene, as `linksweep.peaks` does; a pure function of its arguments.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def chunk_of_peaks(
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """The peaks asked of a scene: `of` and the other words of `linksweep.peaks`, in chunks of so many designs."""
+    """The peaks requested of a scene (`of` and other options of `linksweep.peaks`), in chunks of `chunk` designs."""
 
     scene: Scene
     of: list[str] | None
@@ -59,41 +59,41 @@ class Job:
 
     @property
     def words(self) -> str:
-        """The request, as it stands in a call."""
-        given = ({} if self.of is None else {"of": self.of}) | dict(self.options)
-        return ", ".join(["scene", *(f"{word}={value!r}" for word, value in given.items())])
+        """The request as arguments of a call."""
+        options = ({} if self.of is None else {"of": self.of}) | dict(self.options)
+        return ", ".join(["scene", *(f"{word}={value!r}" for word, value in options.items())])
 
     @cached_property
     def result(self) -> dict[str, Any]:
-        """What makes two jobs give the same numbers: digest of the scene, and the request."""
+        """Identity of the result, equal for jobs that give equal numbers: digest of the scene, and the request."""
         options = {word: np.asarray(all_to_float64(value, "angle")).tolist() for word, value in self.options.items()}
         return {"scene": scene_digest(self.scene), "request": {"of": self.of, **options}}
 
     def designs(self, block: Block) -> int:
-        """How many designs a block has."""
+        """Return the number of designs in a block."""
         return prod(block[dim].stop - block[dim].start if dim in block else n for dim, n in self.sizes.items())
 
     def compute(self, block: Block, threads: int | None) -> xr.Dataset:
         return chunk_of_peaks(self.scene, self.of, block, threads, **self.options)
 
     def chunks(self, numbers: Iterable[int], threads: int | None) -> Generator[tuple[int, xr.Dataset], None, None]:
-        """Number and peaks of these chunks, one after the other."""
+        """Yield number and peaks of these chunks, one after the other."""
         for number in numbers:
             yield number, self.compute(self.blocks[number], threads)
 
     def try_out(self) -> None:
-        """Compute one design, so that what is wrong with the request is said before anything is written."""
+        """Compute one design, so that problems of the request are raised before anything is written."""
         self.compute({dim: slice(0, 1) for dim in self.sizes}, 1)
 
 
 def scene_digest(scene: Scene) -> str:
-    """SHA-256 of all that makes a scene: its text, its arrays and their labels; functions by their values.
+    """Return the SHA-256 of a whole scene: its text, its arrays and their labels; functions by sampled values.
 
-    Functions of a position by those that the first design has all the way round.
+    Functions of a position are sampled where the first design takes them over a whole cycle.
     """
     digest = hashlib.sha256(write_scene(scene, elsewhere=scene.arrays).encode())
     angles = np.arange(0.0, scene.period, STEP)
-    for function in scene.functions.values():  # also of one that the text cannot hold
+    for function in scene.functions.values():  # also a function that the text cannot hold
         digest.update(values_at(function, angles).tobytes())
     if any(is_function(curve) for load in scene.loads for curve in load.over_positions):
         first = selected(scene, {dim: slice(0, 1) for dim in design_sizes(scene)})

@@ -1,8 +1,8 @@
-"""The folder of an unfinished study: a manifest, and each finished chunk as a whole file of its own.
+"""The folder of an unfinished study: a manifest, and a file for each finished chunk.
 
-A chunk is numpy's npz, made in memory and named by its number and the SHA-256 of its bytes. It is written under
-another name, flushed to the disk, then renamed: after kill -9 or a power cut it is there whole or not at all, and one
-whose bytes are not those that its name says is thrown away and computed again.
+A chunk is numpy's npz, made in memory and named by its number and the SHA-256 of its bytes. It is written under another
+name, flushed to the disk, then renamed: after kill -9 or a power cut it is there whole or not at all. A file whose
+bytes do not match its name is deleted and computed again.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from linksweep.files.atomic import SUFFIX, whole
 from linksweep.files.packed import packed, unpacked
 
 MANIFEST = "manifest.json"
-PART = SUFFIX  # how the names end of what is being written
+PART = SUFFIX  # ending of files that are being written
 ASSEMBLED = "assembled" + PART
 CHUNK = re.compile(r"(\d+)-([0-9a-f]{64})\.npz")
 
 
 class Partial:
-    """Finished chunks of a study in a folder; `kept` has their files by number."""
+    """The folder of an unfinished study; `kept` has the files of finished chunks by number."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -43,7 +43,7 @@ class Partial:
 
     @property
     def assembled(self) -> Path:
-        """Where the finished study is put together."""
+        """Path at which the finished study is assembled."""
         return self.folder / ASSEMBLED
 
     def keep(self, number: int, ds: xr.Dataset) -> None:
@@ -54,11 +54,11 @@ class Partial:
         self.kept[number] = path
 
     def holds(self, number: int) -> bool:
-        """Whether a chunk was kept and is whole."""
+        """Return whether a chunk is stored and undamaged."""
         return self._bytes(number) is not None
 
     def load(self, number: int) -> xr.Dataset | None:
-        """A chunk that was kept; None where there is none, or none that is whole."""
+        """Return a stored chunk; None where there is none, or it is damaged."""
         data = self._bytes(number)
         return None if data is None else unpacked(data)
 
@@ -80,12 +80,12 @@ class Partial:
         """Remove the folder; its manifest last, so that what is left after a kill still says what it is."""
         for path in [*self.kept.values(), self.assembled, self.folder / MANIFEST]:
             path.unlink(missing_ok=True)
-        with contextlib.suppress(OSError):  # somebody else's files stay
+        with contextlib.suppress(OSError):  # files of others stay
             self.folder.rmdir()
 
 
 def _remove(path: Path) -> None:
-    """Remove a file, or a folder with all that is in it."""
+    """Remove a file, or a folder with all its content."""
     if path.is_dir():
         shutil.rmtree(path)
     else:
@@ -94,50 +94,46 @@ def _remove(path: Path) -> None:
 
 @contextlib.contextmanager
 def partial(folder: Path, manifest: Mapping[str, Any]) -> Iterator[Partial]:
-    """The folder of a study, made or found again, for this process alone.
+    """Create or reopen the folder of a study, locked for this process alone.
 
-    Raises
-    ------
-    ValueError
-        Where it is of another study, or another process is at work on it.
+    Raises ValueError where the folder belongs to another study, or another process works on it.
     """
-    begun = folder / MANIFEST
+    manifest_file = folder / MANIFEST
     folder.mkdir(exist_ok=True)
     with _alone(folder):
-        if begun.exists():
-            refuse(_other(begun, manifest))
+        if manifest_file.exists():
+            refuse(_other(manifest_file, manifest))
         elif any(not path.name.endswith(PART) for path in folder.iterdir()):
             raise ValueError(f"{folder}: is no folder of a study: it has no {MANIFEST}; move it away")
         else:
-            with whole(begun) as temporary:
+            with whole(manifest_file) as temporary:
                 temporary.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
         yield Partial(folder)
 
 
-def _other(begun: Path, manifest: Mapping[str, Any]) -> list[str]:
-    """Why this is the folder of another study."""
+def _other(manifest_file: Path, manifest: Mapping[str, Any]) -> list[str]:
+    """Return why a folder belongs to another study."""
     try:
-        there = json.loads(begun.read_bytes())
-        different = [word for word in manifest if there[word] != manifest[word]]
+        old = json.loads(manifest_file.read_bytes())
+        different = [word for word in manifest if old[word] != manifest[word]]
     except (ValueError, LookupError, TypeError):
-        return [
-            f"{begun}: is damaged: it does not say of which study this folder is; delete the folder and study again"
-        ]
+        problem = "is damaged: it does not say of which study this folder is; delete the folder and study again"
+        return [f"{manifest_file}: {problem}"]
+    advice = "go on with that, move the folder away, or choose another name"
     return [
-        f"{begun.parent}: was begun with another {word}{differing(there[word], manifest[word])}; go on with that, "
-        f"move the folder away, or choose another name"
+        f"{manifest_file.parent}: was begun with another {word}{differing(old[word], manifest[word])}; {advice}"
         for word in different[:1]
     ]
 
 
-def differing(there: Any, wanted: Any) -> str:
-    """What differs, unless it is a digest."""
-    return "" if len(str(wanted)) == 64 else f" ({quote(there)}, not {quote(wanted)})"
+def differing(old: Any, new: Any) -> str:
+    """Return both values that differ, in brackets; nothing for digests."""
+    return "" if len(str(new)) == 64 else f" ({quote(old)}, not {quote(new)})"
 
 
 @contextlib.contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """A lock on the folder, which the system lifts when the process ends, however it ends; not every system has one."""
+    """Lock the folder where the system has locks; the system releases it when the process ends, however it ends."""
     try:
         import fcntl
 

@@ -1,12 +1,12 @@
-"""study(scene, path): peaks of many designs, chunk by chunk to a file, and on from there when it was stopped.
+"""study(scene, path): compute peaks of many designs, chunk by chunk, into a file, resuming after a stop.
 
-A file that HDF5 was writing to when the process was killed is lost. So nothing is ever added to a file. Each chunk
-becomes a small file of its own in the folder ``study.nc.partial`` (`linksweep.studies.partial`: named by its checksum,
-flushed, renamed). When all are there, they are put together in that folder (`linksweep.studies.assemble`) to a file
-which is sealed with a checksum of the whole (`linksweep.files.seal`), flushed, and renamed to ``study.nc``; then the
-folder goes. Killed anywhere on this way, the same call finds the finished chunks, or the finished file, and does only
-what is missing. As a chunk is a pure function of scene and designs, and the file one of the chunks in their order,
-it is the same file, byte for byte. The price is room for the results twice while they are put together.
+A file that HDF5 is writing when its process is killed is lost. So no file is ever appended to. Each chunk becomes a
+small file in the folder ``study.nc.partial`` (`linksweep.studies.partial`: named by its checksum, flushed, renamed).
+Once all are there, they are assembled in that folder (`linksweep.studies.assemble`) into a file, which is sealed with a
+checksum of the whole (`linksweep.files.seal`), flushed, and renamed to ``study.nc``; then the folder is removed. After
+a kill at any point, the same call finds the finished chunks, or the finished file, and does only the missing steps. A
+chunk is a pure function of scene and designs, and the file one of the chunks in order, so the file is always equal,
+byte for byte. The price: while it is assembled, the results are on the disk twice.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ from linksweep.studies.job import Job
 from linksweep.studies.partial import Partial, differing, partial
 
 CHUNK = 50_000
-"""Designs computed at a time: some tenths of a second of work, which is all that a kill can cost."""
+"""Designs per chunk: some tenths of a second of work, and no more is lost by a kill."""
 
 SLOW_CHUNK = 1000
-"""Designs at a time where loads or speeds change with the angle: exact peaks take a quarter of a millisecond each."""
+"""Designs per chunk where loads or speeds change with the angle: exact peaks take a quarter of a millisecond each."""
 
 LONGEST_NAME = 255
-"""Bytes that the name of a file may have."""
+"""Most bytes in the name of a file."""
 
 ADVICE = (
-    ': a study file is NetCDF; of a finished one ls.open_study("study.nc").linksweep.to_csv("study.csv") is a table'
+    ': a study file is NetCDF; ls.open_study("study.nc").linksweep.to_csv("study.csv") writes a finished one as a table'
 )
 
 SHOWN_AFTER = 1.0
@@ -62,37 +62,45 @@ def study(
     client: Any = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Peaks of all designs of a scene, streamed to a file; stopped or killed, the same call goes on where it was.
+    """Compute the peaks of all designs of a scene into a file; after a stop or kill, the same call resumes.
 
-    What is in the file is what ``linksweep.peaks(scene, of, ...)`` gives, to the bit, whatever the chunk and however
-    often it was stopped; no more than a chunk of it is in memory at any time. A finished file of the same scene and
-    request is opened, and nothing computed. Of a scene without design dims it is a study of one design.
+    The file holds the result of ``linksweep.peaks(scene, of, ...)``, to the bit, for any chunk size and however often
+    the study was stopped; no more than a chunk is in memory at any time. A finished file of an equal scene and request
+    is opened, and nothing computed. A scene without design dims is a study of one design.
 
     Parameters
     ----------
     scene : Scene
-    path : the NetCDF file, "study.nc"; until it is finished there is a folder of its chunks beside it,
-        ``study.nc.partial``
-    of : names of quantities, as `linksweep.peaks` takes them; default: all pins and the torque
-    chunk : designs computed at a time; default: 50 000, or 1000 where loads or speeds change with the angle
-    threads : at most so many (default: all cores; on a cluster, one a chunk); the numbers do not depend on it
-    client : of dask.distributed; its cluster then computes the chunks, and this process writes them. Default: the one
-        that is active, if any
-    options : other words of `linksweep.peaks`
+        Scene with any number of designs.
+    path : str or PathLike
+        NetCDF file to write, "study.nc"; until it is finished there is a folder of its chunks beside it,
+        ``study.nc.partial``.
+    of : iterable of str, default None
+        Names of quantities, as in `linksweep.peaks`; None for all pin forces and the drive's torque.
+    chunk : int, default None
+        Number of designs computed at a time; None for 50 000, or 1000 where loads or speeds change with the angle.
+    threads : int, default None
+        Largest number of threads; None for all cores (on a cluster, one per chunk). Results do not depend on it.
+    client : distributed.Client, default None
+        Client of dask.distributed, whose cluster computes the chunks while this process writes them; None for the
+        active one, if any.
+    **options
+        Other options of `linksweep.peaks`.
 
     Returns
     -------
-    Dataset over the design dims, as `linksweep.open_study` opens it: each variable is read when it is first used.
+    Dataset
+        Dataset over the design dims, as `linksweep.open_study` opens it: each variable is read on first use.
 
     Raises
     ------
     ValueError
-        For what `linksweep.peaks` refuses; for another ending than .nc; for a file or folder that is there and is not
-        of this study.
+        For requests that `linksweep.peaks` refuses; for another ending than .nc; for an existing file or folder
+        that does not belong to this study.
     OSError
-        When the folder is missing, cannot be written or is full, or `path` is no file; the finished chunks stay.
+        When the folder is missing, cannot be written or is full, or `path` is no file; finished chunks stay.
     KeyboardInterrupt
-        When it was stopped; says how much is done.
+        When it was stopped; its message states how much is done.
 
     Examples
     --------
@@ -102,8 +110,8 @@ def study(
     >>> import xarray as xr
     >>> scene = replace(ls.example("press"), omega2=xr.DataArray([10.0, 20.0, 30.0], dims="speed"))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     found = ls.study(scene, os.path.join(folder, "study.nc"), of=["T12"]).load()
-    >>> found.T12_peak.equals(ls.peaks(scene, of=["T12"]).T12_peak)
+    ...     peaks = ls.study(scene, os.path.join(folder, "study.nc"), of=["T12"]).load()
+    >>> peaks.T12_peak.equals(ls.peaks(scene, of=["T12"]).T12_peak)
     True
     """
     require_scene(scene)
@@ -117,7 +125,7 @@ def study(
     if not target.exists():
         job.try_out()
         folder = _folder(target)
-        with _told(folder), partial(folder, _manifest(job)) as kept:
+        with _advising(folder), partial(folder, _manifest(job)) as kept:
             if not target.exists():  # another process may have finished it
                 _run(job, kept, target, threads, client)
             kept.remove()
@@ -125,18 +133,17 @@ def study(
 
 
 def _manifest(job: Job) -> dict[str, Any]:
-    """What a folder of chunks is of."""
+    """Return the manifest of a folder of chunks."""
     return {**job.result, "version": version("linksweep"), "chunk": job.chunk, "chunks": len(job.blocks)}
 
 
 def _finished(target: Path, job: Job) -> xr.Dataset:
-    """The finished file, if it is of this job."""
-    there = sealed(target)
-    wanted = job.result
-    different = [word for word in wanted if there.get(word) != wanted[word]]
+    """Return the finished file as a Dataset, if it belongs to this job."""
+    old, new = sealed(target), job.result
+    different = [word for word in new if old.get(word) != new[word]]
     refuse(
         [
-            f"{target}: is a study of another {word}{differing(there.get(word), wanted[word])}; "
+            f"{target}: is a study of another {word}{differing(old.get(word), new[word])}; "
             f"move it away, or choose another name"
             for word in different[:1]
         ]
@@ -149,27 +156,27 @@ def _finished(target: Path, job: Job) -> xr.Dataset:
 
 
 def _folder(target: Path) -> Path:
-    """Return the folder of its chunks, named after the study; by a digest where that name would be too long."""
+    """Return the folder of a study's chunks, named after the study; by a digest where that name would be too long."""
     name = os.fsencode(target.name)
     short = target.name if len(name) + len(".partial") <= LONGEST_NAME else hashlib.sha256(name).hexdigest()
     return target.with_name(short + ".partial")
 
 
 def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any) -> None:
-    """Compute what is missing, put it together, and give it its name."""
+    """Compute missing chunks, assemble the file, and rename it."""
 
     def compute(numbers: Iterable[int]) -> Generator[int, None, None]:
-        found = job.chunks(numbers, threads) if client is None else on_cluster(client, job, numbers, threads)
-        with contextlib.closing(found):
-            for number, ds in found:
-                kept.keep(number, ds.drop_vars(ds.coords).assign_attrs(scene=""))  # the file holds that of the whole
+        results = job.chunks(numbers, threads) if client is None else on_cluster(client, job, numbers, threads)
+        with contextlib.closing(results):
+            for number, ds in results:
+                kept.keep(number, ds.drop_vars(ds.coords).assign_attrs(scene=""))  # the file has the whole scene
                 yield number
 
     def chunks() -> Iterator[tuple[Block, xr.Dataset]]:
         for number, block in enumerate(job.blocks):
-            while (found := kept.load(number)) is None:
+            while (ds := kept.load(number)) is None:  # damaged since it was checked
                 list(compute([number]))
-            yield block, found
+            yield block, ds
 
     try:
         with _progress(prod(job.sizes.values())) as advance:
@@ -183,15 +190,13 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
         os.replace(kept.assembled, target)
         sync_folder(target.parent)
     except KeyboardInterrupt:
-        said = (
-            f"stopped; {len(kept.kept)} of {len(job.blocks)} chunks are done: to go on from there, run the same again"
-        )
-        raise KeyboardInterrupt(said) from None
+        done = f"{len(kept.kept)} of {len(job.blocks)} chunks are done"
+        raise KeyboardInterrupt(f"stopped; {done}: to go on from there, run the same again") from None
 
 
 @contextlib.contextmanager
-def _told(folder: Path) -> Iterator[None]:
-    """What the system says is wrong, with the folder and what to do."""
+def _advising(folder: Path) -> Iterator[None]:
+    """Add the folder and advice to an error of the system."""
     try:
         yield
     except OSError as error:
@@ -201,12 +206,12 @@ def _told(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _progress(designs: int) -> Iterator[Callable[[int], Any]]:
-    """Show a progress bar in a notebook, and on a terminal; elsewhere nothing."""
+    """Show a progress bar in a notebook and on a terminal; elsewhere nothing."""
     if sys.stderr is None:
         yield lambda count: None
         return
     from tqdm.auto import tqdm  # here: only studies need it
 
     words = {"unit": " designs", "unit_scale": True, "delay": SHOWN_AFTER, "file": sys.stderr}
-    with tqdm(total=designs, disable=None, **words) as bar:  # None: unless somebody is watching
+    with tqdm(total=designs, disable=None, **words) as bar:  # None: only on a terminal
         yield bar.update

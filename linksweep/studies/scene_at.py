@@ -1,4 +1,4 @@
-"""scene_at(study, design=17): one design of a study as a scene of its own."""
+"""scene_at(study, design=17): select one design of a study as a scene."""
 
 from __future__ import annotations
 
@@ -16,19 +16,22 @@ from linksweep.scene.scene import Scene
 
 
 def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, **labels: Any) -> Scene:
-    """One design of a study as a scene of plain numbers.
+    """Select one design of a study as a scene of plain numbers.
 
     Parameters
     ----------
-    study : Dataset of linksweep over designs (peaks, a cycle, a Pareto front), or a scene over designs
-    where : labels by dimension, for names that are no Python words
-    **labels : the same as keywords, ``design=17``, ``branch="open"``, ``crank_length=0.08``. A dim without labels takes
-        the position, from 0. Numbers match to twelve digits; the nearest is not taken in their place. Dims that are
-        not named stay
+    study : Dataset or Scene
+        Dataset of linksweep over designs (peaks, a cycle, a Pareto front), or a scene over designs.
+    where : mapping, default None
+        Labels by dim, for names that are no Python words.
+    **labels
+        Labels as keywords: ``design=17``, ``branch="open"``, ``crank_length=0.08``. For a dim without labels, the
+        position from 0. Numbers must match to twelve digits; the nearest is not taken instead. Other dims stay.
 
     Returns
     -------
-    Scene whose sweep and peaks equal those of the design in the study, bit for bit.
+    Scene
+        Scene whose sweep and peaks equal those of the design in the study, bit for bit.
 
     Raises
     ------
@@ -43,27 +46,27 @@ def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, 
     >>> bool(ls.peaks(best).F32_peak == study.F32_peak.min())
     True
     """
-    wanted = {**(where or {}), **labels}
+    request = {**(where or {}), **labels}
     if isinstance(study, Scene):
-        return chosen(study, wanted)
+        return chosen(study, request)
     if not isinstance(study, xr.Dataset):
         raise ValueError(f"study = {quote(study)}: must be a Dataset of linksweep, or a Scene")
     known = _labels(study)
-    one = study.isel(places({dim: label for dim, label in wanted.items() if dim in known}, known))
+    one = study.isel(places({dim: label for dim, label in request.items() if dim in known}, known))
     scene = scene_of(one)
-    left = {dim: label for dim, label in wanted.items() if dim not in known}
-    return chosen(scene, left | _chosen_already(scene, one, wanted))
+    remaining = {dim: label for dim, label in request.items() if dim not in known}
+    return chosen(scene, remaining | _chosen_already(scene, one, request))
 
 
-def _chosen_already(scene: Scene, one: xr.Dataset, wanted: Mapping[str, Any]) -> dict[str, Any]:
-    """Return positions along dims without labels that the Dataset no longer has: loads over theta2 still have them."""
+def _chosen_already(scene: Scene, one: xr.Dataset, request: Mapping[str, Any]) -> dict[str, Any]:
+    """Return labels along dims without labels that the Dataset has lost; loads over theta2 still have these dims."""
     gone = [dim for dim in design_labels(scene) if dim not in one.dims]
     advice = "name it here, or give the dimension labels before you select"
-    refuse([f"{dim}: the Dataset does not say which one it is of; {advice}" for dim in gone if dim not in wanted])
-    return {dim: wanted[dim] for dim in gone}
+    refuse([f"{dim}: the Dataset does not say which one it is of; {advice}" for dim in gone if dim not in request])
+    return {dim: request[dim] for dim in gone}
 
 
 def _labels(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """The labels of a Dataset's design dims; positions where a dim has none."""
+    """Return the labels of a Dataset's design dims; positions where a dim has none."""
     sizes = {str(dim): n for dim, n in ds.sizes.items() if dim not in indices()}
     return {dim: ds[dim].values if dim in ds.coords else np.arange(n) for dim, n in sizes.items()}

@@ -58,7 +58,7 @@ def test_a_bit_flipped_in_a_saved_file_is_noticed_wherever_it_is(saved):
     rng = random.Random(1)
     for byte in [*rng.sample(range(len(content) - 17), FLIPS), *range(len(content) - 80, len(content) - 17)]:
         path.write_bytes(flipped(content, byte, rng.randrange(8)))
-        assert refusal(path) == ": is damaged: its checksum does not fit; make it again", byte
+        assert refusal(path) == ": is damaged: its checksum does not match; make it again", byte
 
 
 def test_a_file_without_all_of_its_seal_is_still_whole(saved):
@@ -85,7 +85,7 @@ def test_blocks_lost_or_of_another_file_are_noticed(saved):
         lost = content[at : at + size]
         for instead in (bytes(len(lost)), rng.randbytes(len(lost)), b""):
             path.write_bytes(content[:at] + instead + content[at + size :])
-            assert instead == lost or refusal(path) == ": is damaged: its checksum does not fit; make it again"
+            assert instead == lost or refusal(path) == ": is damaged: its checksum does not match; make it again"
 
 
 def test_a_study_and_a_saved_file_are_told_apart(saved, tmp_path):
@@ -132,8 +132,8 @@ def test_bits_flipped_in_the_structure_of_a_plain_file_are_survived(plain):
 @pytest.mark.parametrize(
     ("program", "said"),
     [
-        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "damaged: the NetCDF library dies of it"),
-        ("while True: pass", "damaged: the NetCDF library has not come back after 0.5 s"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "damaged: the NetCDF library crashes on it"),
+        ("while True: pass", "damaged: the NetCDF library has not returned after 0.5 s"),
         ("import sys; sys.exit('NetCDF: HDF error')", "NetCDF: HDF error"),
     ],
 )

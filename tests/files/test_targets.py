@@ -91,7 +91,7 @@ ENGINE = ls.example("engine")
         (lambda path: ls.save(ls.check(ENGINE), path), ".nc or .csv"),
         (lambda path: ls.save(ENGINE, path), ".toml or .nc"),
         (lambda path: ls.check(ENGINE).linksweep.to_csv(path), ".csv"),
-        (lambda path: ls.study(ENGINE, path), ".nc: a study file is NetCDF; of a finished one ls.open_study"),
+        (lambda path: ls.study(ENGINE, path), ".nc: a study file is NetCDF; ls.open_study"),
         (lambda path: ls.plot.animate(ENGINE, 2).save(path), ".gif or .html"),
         (lambda path: ls.report(ENGINE, path), ".html or .htm: a report is a page"),
     ],

@@ -92,8 +92,8 @@ def test_what_differs_from_chunk_to_chunk_depends_on_what_was_cut():
             ds = xr.Dataset({"a": ("n", [1.0, 2.0]), "b": value}, attrs={"scene": ""})
             yield {"n": slice(start, start + 2)}, ds
 
-    assert assemble.laid_out(parts(1.0), {"n": 4}).dims == {"a": ("n",), "b": ()}
-    assert assemble.laid_out(parts(7.0), {"n": 4}).dims == {"a": ("n",), "b": ("n",)}
+    assert assemble.layout_of(parts(1.0), {"n": 4}).dims == {"a": ("n",), "b": ()}
+    assert assemble.layout_of(parts(7.0), {"n": 4}).dims == {"a": ("n",), "b": ("n",)}
     assert assemble.merged(("a", "c"), ("a", "b", "c")) == ("a", "b", "c")
     assert assemble.merged(("b",), ("a", "b", "d")) == ("a", "b", "d")
 

@@ -145,7 +145,7 @@ def test_a_damaged_file_names_the_variable(tmp_path):
     flipped(path, where_is(path, worst.T12_min) + 77, 5)
     for call in (ls.open_study, ls.load_scene, lambda path: ls.study(many(), path, ["F32", "T12"])):
         assert refused(call, path).startswith(
-            f"{path}: is damaged: its checksum does not fit, T12_min cannot be read; move it away and study again"
+            f"{path}: is damaged: its checksum does not match, T12_min cannot be read; move it away and study again"
         )
 
 
@@ -156,7 +156,7 @@ def test_damage_while_it_is_open_is_noticed_by_the_variable(tmp_path):
     flipped(path, where_is(path, expected.T12_peak) + 9)
     assert found.F32_peak.identical(expected.F32_peak)
     said = refused(lambda: found.T12_peak[3:5].values)
-    assert said.startswith(f"{path}: T12_peak cannot be read: its checksum does not fit")
+    assert said.startswith(f"{path}: T12_peak cannot be read: its checksum does not match")
     path.unlink()
     assert refused(lambda: found.T12_max.values).startswith(f"{path}: T12_max cannot be read: ")
 

@@ -157,14 +157,14 @@ def test_files_of_others_in_the_folder_stay(stopped):
 
 def test_a_chunk_damaged_while_the_file_is_put_together_is_computed_again(stopped, monkeypatch):
     path, whole = stopped
-    laid_out = assemble.laid_out
+    layout_of = assemble.layout_of
 
     def damaging(chunks, sizes):
-        layout = laid_out(chunks, sizes)
+        layout = layout_of(chunks, sizes)
         flipped(next(Path(f"{path}.partial").glob("000004*.npz")), 200)
         return layout
 
-    monkeypatch.setattr(assemble, "laid_out", damaging)
+    monkeypatch.setattr(assemble, "layout_of", damaging)
     ls.study(many(), path, ["F32"], chunk=6)
     assert path.read_bytes() == whole
 
