@@ -1,4 +1,4 @@
-"""best_counterweights(scene, minimize={...}): the counterweights that serve a mix of aims best, by least squares.
+"""Counterweights that serve a weighted mix of aims best, by bounded least squares.
 
 Each link may carry masses at a radius, in DIRECTIONS directions round its first pin. Forces are linear in these masses
 (see `linksweep.analysis.balance.regressor`), so that the sum of squares of relative sizes
@@ -35,19 +35,21 @@ from linksweep.scene.scene import Scene
 Array = np.ndarray
 DIRECTIONS = 24
 POWERS = (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
-"""Of the norms on the way to a peak; of 720 samples the last is within a part in a hundred of the largest."""
+"""Powers of the norms on the way to a peak; the last is within a hundredth of the largest of 720 samples."""
 STEPS = 10
 TRIED = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02)
-"""Parts of the way to the solution of the weighted squares that are looked at in each step."""
+"""Fractions of the way to the solution of the weighted squares that each step tries."""
 LIGHTER, HEAVIER = 1e-7, 1e4
-"""Weights, relative to all others, of what should be light, and of what must be at its limit."""
+"""Relative weights of rows that keep masses light, and of rows that hold a link at its limit of mass."""
 WEIGHT = Rule("dimensionless", above=0.0)
 MOST = Rule("mass", above=0.0)
 
 
 class Aim(NamedTuple):
-    """A size to be made small: its samples (component, angle) are `base + change @ added`, `added` being m, mx, my and
-    J that the counterweights add to each link; each is a `share` of the cycle's time."""
+    """A size to be made small: its samples (component, angle) are `base + change @ added`.
+
+    `added` are m, mx, my and J that the counterweights add to each link; each sample is a `share` of the cycle's time.
+    """
 
     word: str
     weight: float
@@ -59,7 +61,7 @@ class Aim(NamedTuple):
         return self.base + self.change @ added
 
     def size(self, added: Array) -> float:
-        """Largest magnitude, or root mean square."""
+        """Return the largest magnitude, or the root mean square."""
         squares = (self.samples(added) ** 2).sum(axis=0)
         return float(np.sqrt(squares.max() if self.word == "peak" else (squares * self.share).sum()))
 
@@ -72,28 +74,36 @@ def best_counterweights(
     theta2: int = 720,
     threads: int | None = None,
 ) -> list[Counterweight]:
-    """Counterweights that make a weighted mix of forces, torques and shaking small.
+    """Compute counterweights that make a weighted mix of forces, torques and shaking small.
 
     Parameters
     ----------
-    scene : Scene of one design, without friction
-    minimize : weights of what is to be small, {"F32_peak": 1.0, "T12_ripple": 0.5, "Fs_rms": 1.0, "Ms_peak": 0.2}: of
-        a quantity its `_peak` (largest magnitude), `_rms` over time, or `_ripple` (root mean square about its mean)
-    radius : where the counterweights sit [m]: a number for all links on ground pins, or one for each link that may have
-        one, {"crank": 0.05}
-    most : largest mass [kg], a number or one for each of these links; by default as large as it takes
-    theta2 : count of crank angles over the cycle
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene of one design, without friction.
+    minimize : mapping of str to float
+        Weights of the sizes that are to be small [1], {"F32_peak": 1.0, "T12_ripple": 0.5, "Fs_rms": 1.0, "Ms_peak":
+        0.2}: of a quantity its `_peak` (largest magnitude), `_rms` over time, or `_ripple` (root mean square about its
+        mean).
+    radius : float or mapping
+        Distance of the counterweights from their pins [m]: one number for all links on ground pins, or one for each
+        link that may have one, {"crank": 0.05}.
+    most : float or mapping, default None
+        Largest mass [kg], of all of these links or of each; None for no limit.
+    theta2 : int, default 720
+        Count of crank angles over the cycle.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    list of Counterweight. Where one consists of masses in several directions it is given as one body: mass, centre of
-    gravity (at most `radius` from the pin) and moment of inertia.
+    list of Counterweight
+        One for each link. Masses in several directions are merged into one body: mass, centre of gravity (at most
+        `radius` from the pin) and moment of inertia.
 
     Raises
     ------
     ValueError
-        For designs, friction, unknown names, and weights, radii and masses out of bounds.
+        If the scene has several designs or friction, a name is unknown, or a weight, radius or mass is out of bounds.
 
     Notes
     -----
@@ -110,23 +120,23 @@ def best_counterweights(
     True
     """
     require(scene, "bodies")
-    sizes = design_sizes(scene)
-    refuse([f"scene has designs over {', '.join(sizes)}: give one, as ls.scene_at(scene, ...)"] * bool(sizes))
-    wanted = _wanted(scene, minimize)
+    if designs := design_sizes(scene):
+        refuse([f"scene has designs over {', '.join(designs)}: give one, as ls.scene_at(scene, ...)"])
+    sizes = _weights(scene, minimize)
     carriers = scene.mechanism.parts()
     grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]
     radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
     refuse([p for link in radii for p in name_problems("radius", link, carriers)])
     bounds = _bounds(most, list(radii))
     spokes = {link: _spokes(float(r)) for link, r in radii.items()}
-    aims = _aims(scene, wanted, list(spokes), theta2, threads)
+    aims = _aims(scene, sizes, list(spokes), theta2, threads)
     masses = _best(aims, list(spokes.values()), np.array([bounds[link] for link in spokes]))
     parts = masses.reshape(len(spokes), DIRECTIONS)
     return [_as_one(link, part, spokes[link]) for link, part in zip(spokes, parts, strict=True)]
 
 
-def _wanted(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
-    """Weights by quantity and kind of size."""
+def _weights(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
+    """Return the weights by quantity and kind of size."""
     form = 'must be weights by name, as {"F32_peak": 1.0, "T12_ripple": 0.5}'
     refuse([f"minimize = {quote(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
     sizes = sizes_named("minimize", scene, minimize)
@@ -141,26 +151,26 @@ def _bounds(most: Any, links: list[str]) -> dict[str, float]:
 
 
 def _spokes(radius: float) -> Array:
-    """m, mx, my and J of a mass of 1 kg in each direction."""
+    """Return m, mx, my and J of a mass of 1 kg in each direction."""
     angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
     ones = np.ones(DIRECTIONS)
     return np.stack([ones, radius * np.cos(angles), radius * np.sin(angles), radius * radius * ones])
 
 
 def _aims(
-    scene: Scene, wanted: Mapping[tuple[str, str], float], links: list[str], theta2: int, threads: int | None
+    scene: Scene, sizes: Mapping[tuple[str, str], float], links: list[str], theta2: int, threads: int | None
 ) -> list[Aim]:
-    components = {name: components_of(scene.table.quantity[name]) for name, _ in wanted}
+    components = {name: components_of(scene.table.quantity[name]) for name, _ in sizes}
     names = [name for pair in components.values() for name in pair]
-    found, cycle = regressor(scene, names, theta2, threads), sweep(scene, theta2, names, threads=threads)
+    coefficients, cycle = regressor(scene, names, theta2, threads), sweep(scene, theta2, names, threads=threads)
     labels = [f"{link}.{word}" for link in links for word in OF_LINK]
-    there = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
-    share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[there]
+    ok = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
+    share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[ok]
     share = share / share.sum()
     aims = []
-    for (name, word), weight in wanted.items():
-        base = np.stack([_over_angles(cycle[part], cycle)[there] for part in components[name]])
-        rows = [_over_angles(found[part].sel(parameter=labels), cycle)[there] for part in components[name]]
+    for (name, word), weight in sizes.items():
+        base = np.stack([_over_angles(cycle[part], cycle)[ok] for part in components[name]])
+        rows = [_over_angles(coefficients[part].sel(parameter=labels), cycle)[ok] for part in components[name]]
         change = np.stack(rows)
         if word == "ripple":
             base = base - (base * share).sum(axis=1, keepdims=True)
@@ -170,7 +180,7 @@ def _aims(
 
 
 def components_of(quantity: Quantity) -> tuple[str, ...]:
-    """A magnitude's components; anything else is its own."""
+    """Return the components of a magnitude, or the name of any other quantity."""
     return (f"{quantity.name}x", f"{quantity.name}y") if quantity.squared else (quantity.name,)
 
 
@@ -179,7 +189,7 @@ def _over_angles(array: xr.DataArray, cycle: xr.Dataset) -> Array:
 
 
 def _best(aims: list[Aim], spokes: list[Array], limits: Array) -> Array:
-    """The masses with the least sum of squares of all that was tried; none at all is among it."""
+    """Return the tried masses with the least sum of squares; the first try is none at all."""
     from scipy.linalg import block_diag
 
     adds = block_diag(*spokes)
@@ -201,7 +211,7 @@ def _best(aims: list[Aim], spokes: list[Array], limits: Array) -> Array:
 
 
 def _norm(aim: Aim, added: Array, power: float) -> float:
-    """The size; of a peak for a power above 0 the mean of that power."""
+    """Return the size of an aim; of a peak, for a power above 0, the mean of that power."""
     if aim.word != "peak" or power == 0.0:
         return aim.size(added)
     magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
@@ -210,7 +220,7 @@ def _norm(aim: Aim, added: Array, power: float) -> float:
 
 
 def _weighted(aim: Aim, added: Array, scale: float, power: float) -> Array:
-    """Rows (change | −base) whose sum of squares has the gradient of the norm's square."""
+    """Return rows (change | −base) whose sum of squares has the gradient of the norm's square."""
     magnitude = np.sqrt((aim.samples(added) ** 2).sum(axis=0))
     weights = scale * np.sqrt(aim.share)
     norm = _norm(aim, added, power)
@@ -221,14 +231,14 @@ def _weighted(aim: Aim, added: Array, scale: float, power: float) -> Array:
 
 
 def _bounded(rows: Array, adds: Array, limits: Array) -> Array:
-    """Masses ≥ 0 of least squares, those of a link together not above its limit; of equally good ones the lightest."""
+    """Return masses ≥ 0 of least squares, of each link together within its limit; of equally good ones the lightest."""
     triangle = np.linalg.qr(rows).R  # the same sum of squares in a few rows
     of_masses = np.column_stack([triangle[:, :-1] @ adds, triangle[:, -1]])
     size, count = np.linalg.norm(of_masses[:, :-1]), adds.shape[1]
     light = np.append(np.full(count, LIGHTER * size), 0.0)[None]
     masses = _not_negative(np.concatenate([of_masses, light]))
     over = _totals(masses) > limits
-    if over.any():  # the function is convex: at the best masses within the limits, these are reached
+    if over.any():  # convex: the best masses within the limits reach those that the free ones exceed
         full = np.repeat(np.eye(len(over))[over], DIRECTIONS, axis=1) * (HEAVIER * size)
         at = HEAVIER * size * limits[over]
         masses = _not_negative(np.concatenate([of_masses, light, np.column_stack([full, at])]))
@@ -247,7 +257,7 @@ def _totals(masses: Array) -> Array:
 
 
 def _as_one(link: str, masses: Array, spokes: Array) -> Counterweight:
-    """Masses in several directions as one body."""
+    """Return masses in several directions as one body."""
     mass, x, y, about_pin = spokes @ masses
     distance = float(np.hypot(x, y) / mass) if mass > 0.0 else 0.0
     inertia = max(0.0, float(about_pin - mass * distance * distance))

@@ -24,23 +24,30 @@ SIZES = {
 
 
 def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: int | None = None) -> xr.Dataset:
-    """Sizes of quantities of two scenes side by side, as before and after balancing.
+    """Compare sizes of quantities of two scenes, as before and after balancing.
 
     Parameters
     ----------
-    before, after : Scene
-    of : names of sizes, "F32_peak", "T12_ripple", "Fs_rms", or a mapping of which they are the keys
-    theta2 : count of crank angles over the cycle
-    threads : at most so many (default: all cores)
+    before : Scene
+        Scene before the change.
+    after : Scene
+        Scene after the change.
+    of : str, list of str or mapping
+        Names of sizes, "F32_peak", "T12_ripple", "Fs_rms", or a mapping with such names as keys.
+    theta2 : int, default 720
+        Count of crank angles over the cycle.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over (…, balance), `balance` being before and after. Sizes are those of the samples.
+    Dataset
+        Sizes of the samples over (…, balance), `balance` being before and after.
 
     Raises
     ------
     ValueError
-        For unknown names.
+        If a name is unknown.
 
     Examples
     --------
@@ -53,30 +60,31 @@ def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: in
     """
     require_scene(before)
     require_scene(after)
-    wanted = sizes_named("of", before, [of] if isinstance(of, str) else of)
-    outputs = [*(name for name, _ in wanted), before.mechanism.pace]
-    sides = [_sizes(scene, sweep(scene, theta2, outputs, threads=threads), wanted) for scene in (before, after)]
-    found = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}
+    sizes = sizes_named("of", before, [of] if isinstance(of, str) else of)
+    outputs = [*(name for name, _ in sizes), before.mechanism.pace]
+    sides = [_sizes(scene, sweep(scene, theta2, outputs, threads=threads), sizes) for scene in (before, after)]
+    table = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}
     quantity = before.table.quantity
-    for name, word in wanted:
-        said = {"units": quantity[name].units, "long_name": f"{SIZES[word]} of the {quantity[name].long_name}"}
-        found[f"{name}_{word}"] = found[f"{name}_{word}"].transpose(..., "balance").assign_attrs(said)
-    return xr.Dataset(found, attrs=origin_attributes(before, "linksweep.compare(before, after, ...)"))
+    for name, word in sizes:
+        attributes = {"units": quantity[name].units, "long_name": f"{SIZES[word]} of the {quantity[name].long_name}"}
+        table[f"{name}_{word}"] = table[f"{name}_{word}"].transpose(..., "balance").assign_attrs(attributes)
+    return xr.Dataset(table, attrs=origin_attributes(before, "linksweep.compare(before, after, ...)"))
 
 
-def _sizes(scene: Scene, cycle: xr.Dataset, wanted: list[tuple[str, str]]) -> dict[str, xr.DataArray]:
-    found, index = {}, scene.mechanism.index
+def _sizes(scene: Scene, cycle: xr.Dataset, sizes: list[tuple[str, str]]) -> dict[str, xr.DataArray]:
+    """Return the sizes of one cycle by name."""
+    index, values = scene.mechanism.index, {}
     mean = partial(mean_over_time, cycle=cycle, index=index, pace=scene.mechanism.pace)
-    for name, word in wanted:
+    for name, word in sizes:
         signal = cycle[name].broadcast_like(cycle[index])
         signal = signal - mean(signal) if word == "ripple" else signal
         size = abs(signal).max(index) if word == "peak" else np.sqrt(mean(signal * signal))
-        found[f"{name}_{word}"] = xr.DataArray(size)
-    return found
+        values[f"{name}_{word}"] = xr.DataArray(size)
+    return values
 
 
 def sizes_named(path: str, scene: Scene, names: Iterable[Any]) -> list[tuple[str, str]]:
-    """Quantity and kind of each size by name: F32 and peak of F32_peak. ValueError for unknown names."""
+    """Return quantity and kind of each size by name, F32 and peak of F32_peak; raise ValueError for unknown names."""
     names = list(names)
     known = [f"{name}_{size}" for name in scene.table.quantity for size in SIZES]
     refuse([problem for name in names for problem in quantity_problems(path, name, known, scene)])

@@ -1,4 +1,4 @@
-"""Counterweights: which cancel the shaking force, how to put them on, and which serve a mix of aims best.
+"""Counterweights: which ones balance a machine in closed form, and a scene whose links carry them.
 
 Equations and sources: `linksweep.mechanisms.balance`.
 """
@@ -37,20 +37,24 @@ RADIUS = Rule("length", above=0.0)
 class Counterweight(ByContent):
     """A mass fixed to a link.
 
+    Numbers may be DataArrays of design dims.
+
     Parameters
     ----------
-    link : the link that carries it, by name
-    mass : [kg]
-    at : where, in the link's own polar coordinates: (distance from its first pin [m], angle from its line of pins
-        [degree])
-    inertia : about its own centre of gravity [kg m²]
-
-    Numbers may be DataArrays of design dims.
+    link : str
+        Link that carries the mass.
+    mass : float or DataArray
+        Mass [kg].
+    at : pair of floats or DataArrays, default (0.0, 0.0)
+        Place of the mass in the link's own polar coordinates: distance from its first pin [m], angle from its line of
+        pins [degree].
+    inertia : float or DataArray, default 0.0
+        Moment of inertia about the mass's own centre of gravity [kg m²].
 
     Raises
     ------
     ValueError
-        One line for each parameter that is not allowed.
+        If a parameter is out of bounds; one line for each.
 
     Examples
     --------
@@ -76,21 +80,24 @@ class Counterweight(ByContent):
 
 
 def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -> Scene:
-    """A scene whose links carry counterweights.
+    """Return a scene whose links carry counterweights.
 
     Parameters
     ----------
     scene : Scene
-    counterweights : any number of Counterweight
+        Scene without them.
+    counterweights : list of Counterweight
+        Counterweights, any number on each link.
 
     Returns
     -------
-    Scene with each such link a Link of the mass, centre of gravity and inertia of both together.
+    Scene
+        Scene in which each such link is a Link of the mass, centre of gravity and inertia of both together.
 
     Raises
     ------
     ValueError
-        For a link that cannot carry one, and for loads that would move with its centre of gravity (origin="cg").
+        If a link cannot carry one, or a load would move with the link's centre of gravity (origin="cg").
 
     Examples
     --------
@@ -116,7 +123,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
 
 
 def _carrying(link: Any, weights: list[Counterweight]) -> Link:
-    """The link with its weights: masses, first moments and moments of inertia about its pin add up."""
+    """Return a link with its weights: masses, first moments and moments of inertia about its pin add up."""
     placed = (MassDistribution(weight.at[0], weight.at[1], weight.mass, weight.inertia) for weight in weights)
     parts = [part.moments() for part in (distribution(link), *placed)]
     mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
@@ -127,37 +134,42 @@ def _carrying(link: Any, weights: list[Counterweight]) -> Link:
 
 
 def _plain(number: Any) -> Number:
-    """A float, or a DataArray where there are dims, without what it remembers of its making."""
+    """Return a float, or a DataArray without attributes where there are dims."""
     number = xr.DataArray(number)
     return number.drop_attrs() if number.dims else float(number)
 
 
 def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) -> list[Counterweight]:
-    """The counterweights that cancel the shaking force of a four-bar, or balance a slider-crank.
+    """Compute the counterweights that cancel a machine's shaking force, or a fraction of its first order.
 
     Parameters
     ----------
-    scene : Scene of a mechanism of links
-    radius : where they sit [m]: a number, or one for each link, {"crank": 0.05, "rocker": 0.06}
-    fraction : of a slider-crank, of the first order of the slider's inertia (with its share of the rod) that the
-        crank's counterweight takes; by default half of it. 0 balances what turns, 1 moves the first order wholly across
-        the guide
+    scene : Scene
+        Scene of a machine whose condition of balance is known in closed form.
+    radius : float, DataArray or mapping
+        Distance of the counterweights from their pins [m]: one number, or one for each link, {"crank": 0.05, "rocker":
+        0.06}.
+    fraction : float or DataArray, default None
+        Fraction of the first order of what reciprocates that the crank's counterweight takes [1], of a machine that
+        counterweights balance in part, as a slider-crank; None is half of it. 0 balances what turns, 1 moves the first
+        order wholly across the guide.
 
     Returns
     -------
-    A Counterweight of the crank and, of mechanisms with a rocker, one of the rocker. With them on a four-bar and an
-    inverted slider-crank shake no more, at any speed; a slider-crank shakes along the guide with 1 − fraction, across
-    it with fraction of the first order, and with all of the higher ones.
+    list of Counterweight
+        One on the crank and, of machines with a rocker, one on the rocker. With them a four-bar and an inverted
+        slider-crank shake no more, at any speed; a slider-crank shakes along the guide with 1 − fraction, across it
+        with fraction of the first order, and with all of the higher orders.
 
     Raises
     ------
     ValueError
-        For a car in a loop, a fraction given of what balances wholly, and a radius that is none.
+        If the machine has no such condition, a fraction stands beside complete balance, or a radius is out of bounds.
 
     Notes
     -----
-    Conditions and source: `linksweep.analysis.balance.counterweights` (Berkof and Lowen). The shaking moment remains,
-    and commonly grows, as do pin forces and torque; `linksweep.best_counterweights` finds compromises.
+    Conditions and source: `linksweep.mechanisms.balance` (Berkof and Lowen). The shaking moment remains, and commonly
+    grows, as do pin forces and torque; `linksweep.best_counterweights` finds compromises.
 
     Examples
     --------
@@ -178,11 +190,11 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
     return [_weight(link, moment, radii[link]) for link, moment in lacking.items()]
 
 
-def by_link(word: str, given: Any, links: list[str], rule: Rule = RADIUS) -> dict[str, Number]:
-    """A number for each link: one for all, or by name."""
-    if not isinstance(given, Mapping):
-        return dict.fromkeys(links, checked_number(word, given, rule))
-    by_link = dict(given)
+def by_link(word: str, values: Any, links: list[str], rule: Rule = RADIUS) -> dict[str, Number]:
+    """Return a number for each link: one for all, or by name."""
+    if not isinstance(values, Mapping):
+        return dict.fromkeys(links, checked_number(word, values, rule))
+    by_link = dict(values)
     refuse([p for link in by_link for p in choice_problems(word, link, links)])
     refuse([f"{word}.{link}: missing; give it {rule.number}" for link in links if link not in by_link])
     return {link: checked_number(f"{word}.{link}", number, rule) for link, number in by_link.items()}

@@ -1,4 +1,4 @@
-"""orders(ds, "Fsx"): how much of a signal turns once, twice, … as fast as the crank.
+"""Fourier orders of a signal over the crank angle: its parts that turn once, twice, … as fast as the crank.
 
     F(θ2) = Σ (c_k cos kθ2 + s_k sin kθ2) = Σ A_k cos(kθ2 − φ_k)
 
@@ -24,37 +24,41 @@ TURN = 360.0
 
 
 def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
-    """Fourier orders of signals over a whole cycle: of shaking forces, of torques, of accelerations.
+    """Compute the Fourier orders of signals over a whole cycle: of shaking forces, torques, accelerations.
 
     Parameters
     ----------
-    ds : Dataset over a whole cycle in equal steps, as from ``sweep(scene, theta2=720)``
-    of : names of its variables
-    n : the highest order; in a cycle of two turns (four-stroke) there are half orders too, in one of three thirds
+    ds : Dataset
+        Cycle in equal steps, as from ``sweep(scene, theta2=720)``.
+    of : str or iterable of str
+        Names of its variables.
+    n : int, default 12
+        Highest order; a cycle of two turns (four-stroke) has half orders too, one of three turns has thirds.
 
     Returns
     -------
-    Dataset with the dim `order` (0, 1, 2, … n; 0 is the mean over theta2) in place of theta2. For each signal
-    `Fsx_amplitude` and, in its unit, the coefficients `Fsx_cos`, `Fsx_sin`; and `Fsx_phase` [degree], the angle k·θ2 at
-    which the order is largest. Where a sample is not ok, that design's orders are NaN.
+    Dataset
+        Dim `order` (0, 1, 2, … n; 0 is the mean over theta2) in place of theta2. For each signal `Fsx_amplitude` and,
+        in its unit, the coefficients `Fsx_cos`, `Fsx_sin`; and `Fsx_phase` [degree], the angle k·θ2 at which the order
+        is largest. A design with a sample that is not ok has NaN.
 
     Raises
     ------
     ValueError
-        For unknown names, angles that are not a whole cycle in equal steps, and more orders than
-        half the samples of a turn can tell.
+        If a name is unknown, the angles are no whole cycle in equal steps, or n is more than half the samples of a
+        turn.
 
     Notes
     -----
-    Sums over samples, exact to rounding for all orders below the sampling's limit where the signal is smooth; of
-    a signal with jumps, amplitudes err by about its jump divided by the number of samples.
+    Sums over samples: of a smooth signal exact to rounding for all orders below the sampling's limit; of a signal with
+    jumps, amplitudes err by about the jump divided by the number of samples.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> shaking = ls.sweep(ls.example("engine"), outputs=["Fsx", "Fsy"])
-    >>> found = ls.orders(shaking, "Fsy", n=4)
-    >>> found.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
+    >>> parts = ls.orders(shaking, "Fsy", n=4)
+    >>> parts.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
     [4460.0, 820.0]
     """
     refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
@@ -73,24 +77,24 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
     weight = xr.DataArray(np.where(order == 0.0, 1.0, 2.0) / len(angles), dims="order")
     variables: dict[str, xr.DataArray] = {}
     for name in names:
-        signal = ds[name].broadcast_like(ds[index])  # what does not change is all mean
+        signal = ds[name].broadcast_like(ds[index])  # a constant has a mean alone
         variables |= _named(name, ds[name], *(weight * xr.dot(signal, wave, dim=index) for wave in waves))
-    said_order = {"units": "1", "long_name": f"cycles in one turn of {index}"}
-    return xr.Dataset(variables).assign_coords(order=("order", order, said_order))
+    attributes = {"units": "1", "long_name": f"cycles in one turn of {index}"}
+    return xr.Dataset(variables).assign_coords(order=("order", order, attributes))
 
 
 def _named(name: str, signal: xr.DataArray, cos: xr.DataArray, sin: xr.DataArray) -> dict[str, xr.DataArray]:
-    units, said_of = signal.attrs.get("units", ""), signal.attrs.get("long_name", name)
+    units, name_of = signal.attrs.get("units", ""), signal.attrs.get("long_name", name)
     amplitude, phase = np.hypot(cos, sin), np.degrees(np.arctan2(sin, cos))
-    found: dict[str, tuple[Any, str, str]] = {
+    parts: dict[str, tuple[Any, str, str]] = {
         f"{name}_amplitude": (amplitude, units, "amplitude of each order"),
         f"{name}_phase": (phase, "degree", "order times crank angle at which each order is largest"),
         f"{name}_cos": (cos, units, "coefficient of the cosine of each order"),
         f"{name}_sin": (sin, units, "coefficient of the sine of each order"),
     }
     return {
-        key: values.transpose(..., "order").assign_attrs(units=unit, long_name=f"{words} of: {said_of}")
-        for key, (values, unit, words) in found.items()
+        key: values.transpose(..., "order").assign_attrs(units=unit, long_name=f"{words} of: {name_of}")
+        for key, (values, unit, words) in parts.items()
     }
 
 

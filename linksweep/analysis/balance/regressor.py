@@ -1,9 +1,9 @@
-"""regressor(scene, [...]): how each force depends on the mass distribution of the links, on which it depends linearly.
+"""Regressor: coefficients of the links' mass distributions in forces and torques, which depend on them linearly.
 
 With h = m·(xG, yG) the first moment of a link about its first pin, in its own axes, and J its moment of inertia about
 that pin, every force and torque at given angles and speeds is
 
-    F(θ2) = Σ (∂F/∂m · m + ∂F/∂mx · mx + ∂F/∂my · my + ∂F/∂J · J) + what the loads make alone
+    F(θ2) = Σ (∂F/∂m · m + ∂F/∂mx · mx + ∂F/∂my · my + ∂F/∂J · J) + the part that the loads alone make
 
 since `linksweep.physics.inertia` is linear in them. The coefficients come from sweeps of links with one of them alone.
 
@@ -36,26 +36,31 @@ OF_LINK = tuple(UNITS)
 
 
 def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
-    """Coefficients of the links' mass distributions in forces and torques.
+    """Compute the coefficients of the links' mass distributions in forces and torques.
 
     Parameters
     ----------
-    scene : Scene without friction
-    outputs : names of components of forces, of torques and powers ("F32x", "T12", "Fsx", "Ms")
-    theta2 : count of crank angles, or angles [degree]
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene without friction.
+    outputs : iterable of str
+        Names of components of forces, of torques and powers ("F32x", "T12", "Fsx", "Ms").
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree].
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset with, for each output, the coefficients over (…, theta2, parameter), and `F32x_of_loads` (…, theta2), what
-    is there without any mass; `value` (…, parameter), what the parameters are in the scene. Parameters of a link are
-    "crank.m" [kg], "crank.mx" and "crank.my" [kg m], mass times the centre of gravity's coordinates from the first pin
-    in the link's axes, and "crank.J" [kg m²], moment of inertia about that pin; a slider does not turn and has no J.
+    Dataset
+        For each quantity its coefficients over (…, theta2, parameter), and `F32x_of_loads` (…, theta2), its part
+        without any mass; `value` (…, parameter), the parameters of the scene. Parameters of a link are "crank.m" [kg],
+        "crank.mx" and "crank.my" [kg m], mass times the centre of gravity's coordinates from the first pin in the
+        link's axes, and "crank.J" [kg m²], moment of inertia about that pin; a slider does not turn and has no J.
 
     Raises
     ------
     ValueError
-        For names of what is not linear in the masses, friction, and a car in a loop.
+        If a quantity is not linear in the masses, the scene has friction, or the machine has no links.
 
     Notes
     -----
@@ -65,32 +70,32 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
     --------
     >>> import linksweep as ls
     >>> scene = ls.example("press")
-    >>> found = ls.regressor(scene, ["T12"], theta2=36)
-    >>> torque = (found.T12 * found.value).sum("parameter") + found.T12_of_loads
+    >>> of_masses = ls.regressor(scene, ["T12"], theta2=36)
+    >>> torque = (of_masses.T12 * of_masses.value).sum("parameter") + of_masses.T12_of_loads
     >>> bool(abs(torque - ls.sweep(scene, theta2=36, outputs=["T12"]).T12).max() < 1e-12)
     True
     """
     names = _checked(scene, outputs)
     mechanism, quantity = scene.mechanism, scene.table.quantity
     grid = crank_grid(theta2, scene.period, mechanism.index)
-    angles = grid.angles  # those of the loads' whole cycle
+    angles = grid.angles  # of the loads' whole cycle
     values = _values(mechanism)
     probes = _with_masses(mechanism, list(values))
     alone = sweep(replace(scene, mechanism=probes, loads=()), angles, names, threads=threads)
     massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, names, threads=threads)
     known = np.stack([np.broadcast_to(row, len(values)) for row in _values(probes).values()], axis=-1)
     inverse = xr.DataArray(np.linalg.inv(known), {"parameter": list(values)}, ("parameter", PROBE))
-    found = {"value": joined(values.values(), "parameter", values).transpose(..., "parameter")}
+    table = {"value": joined(values.values(), "parameter", values).transpose(..., "parameter")}
     for name in names:
         spread = alone[name].expand_dims({PROBE: len(values)}) if PROBE not in alone[name].dims else alone[name]
-        said = f"coefficient of each parameter in: {quantity[name].long_name}"
+        long_name = f"coefficient of each parameter in: {quantity[name].long_name}"
         column = xr.dot(spread, inverse, dim=PROBE).transpose(..., "parameter")
-        found |= {name: column.assign_attrs(units=quantity[name].units, long_name=said)}
-        found |= {f"{name}_of_loads": massless[name]}
-    found["value"].attrs = {"long_name": "what each parameter is in the scene, in the unit that `unit` says"}
-    found["value"] = found["value"].assign_coords(unit=("parameter", [UNITS[label.split(".")[-1]] for label in values]))
+        table |= {name: column.assign_attrs(units=quantity[name].units, long_name=long_name)}
+        table |= {f"{name}_of_loads": massless[name]}
+    table["value"].attrs = {"long_name": "value of each parameter in the scene, in its `unit`"}
+    table["value"] = table["value"].assign_coords(unit=("parameter", [UNITS[label.split(".")[-1]] for label in values]))
     attributes = provenance(scene, f"linksweep.regressor(scene, {names})", {})
-    return xr.Dataset({**found, "status": massless["status"]}, attrs=attributes)
+    return xr.Dataset({**table, "status": massless["status"]}, attrs=attributes)
 
 
 def _checked(scene: Scene, outputs: Iterable[str]) -> list[str]:

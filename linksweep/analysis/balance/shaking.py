@@ -1,4 +1,4 @@
-"""The shaking moment about any point, from what a sweep gives about A."""
+"""The shaking moment about any point, from that about A in a sweep."""
 
 from __future__ import annotations
 
@@ -13,21 +13,24 @@ POINT = (Rule("length"), Rule("length"))
 
 
 def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.DataArray:
-    """Moment [N m] of the moving links' inertia on the ground about a point of the ground.
+    """Compute the moment of the moving links' inertia on the ground about a point of the ground.
 
     Parameters
     ----------
-    ds : Dataset with Fsx, Fsy and Ms, as from ``sweep(scene, outputs=["Fsx", "Fsy", "Ms"])``
-    about : (x, y) of the point from A, in ground axes [m]; each may be a DataArray
+    ds : Dataset
+        Cycle with Fsx, Fsy and Ms, as from ``sweep(scene, outputs=["Fsx", "Fsy", "Ms"])``.
+    about : pair of floats or DataArrays, default (0.0, 0.0)
+        Coordinates (x, y) of the point from A, in ground axes [m].
 
     Returns
     -------
-    DataArray `Ms` [N m] over the dims of these, counter-clockwise: Ms about A less r × Fs.
+    DataArray
+        Moment `Ms` [N m], counter-clockwise: Ms about A less r × Fs.
 
     Raises
     ------
     ValueError
-        For a Dataset without them, and a point that is none.
+        If the Dataset lacks one of them, or the point is no pair of lengths.
 
     Examples
     --------
@@ -43,6 +46,8 @@ def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.Da
     refuse([f"ds has no {name}: {advice}" for name in missing])
     about = checked_pair("about", about, POINT, "(x, y) in m from A")
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
-    where = "the point given" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"
+    where = (
+        "a point of each design" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"
+    )
     long_name = f"shaking moment of the moving links' inertia on the ground about {where}, counter-clockwise"
     return moment.rename("Ms").assign_attrs(units="N m", long_name=long_name)

@@ -133,6 +133,7 @@ class Load(ChangingLoad):
 
     @property
     def on_centre_of(self) -> str:
+        """The link with whose centre of gravity its place moves; "" for none."""
         return self.link if self.origin == "cg" else ""
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
