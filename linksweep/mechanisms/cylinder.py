@@ -1,4 +1,4 @@
-"""The cylinder of a machine with a piston: how far the piston is open at a crank angle, and where it turns round."""
+"""The cylinder of a machine with a piston: its opening at a crank angle, and its dead centres."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Cylinder:
 
     @property
     def turns_fully(self) -> Number:
-        """Whether the crank turns fully, with the bits of `assembly` in its closure."""
+        """True for each design whose crank turns fully, to the bit as its closure decides it."""
         return abs(self.offset) - self.rod + self.crank < 0.0
 
     def dead_centres(self) -> tuple[Number, Number]:

@@ -27,11 +27,18 @@ class Stroke:
 
     Parameters
     ----------
-    quantity, slope : names of the quantity, and of its derivative to the crank's angle
-    kind : of the position: "length" [m] or "angle" [degree]
-    words : for the two ways; on the first one the quantity grows where `forward` is 1, and shrinks where it is -1
-    crank_angles : where the quantity has a value [degree], on this or the other branch; NaN for none
-    turning : where it turns round [degree]; NaN for none
+    quantity, slope : str
+        Names of the quantity, and of its derivative to the crank's angle.
+    kind : str
+        Kind of the position: "length" [m] or "angle" [degree].
+    words : pair of str
+        Words for the two ways; on the first the quantity grows where `forward` is 1, and shrinks where it is -1.
+    crank_angles : function
+        Crank angles [degree] at which the quantity has a value, on this or the other branch; NaN for none.
+    turning : tuple of float or DataArray
+        Crank angles [degree] at which it turns round; NaN for none.
+    forward, start, sense : float or DataArray
+        Direction of the first way, and the two constants of the position.
     """
 
     quantity: str
@@ -51,7 +58,7 @@ class Stroke:
 
 
 def slider_strokes(a: Number, b: Number, e: Number, guide: Number, sign: float, turning: Angles) -> dict[str, Stroke]:
-    """Strokes of a slider: where it is, and how far it still has to its outer dead centre, towards which it closes."""
+    """Return the strokes of a slider: its position, and its distance from the outer dead centre."""
 
     def crank_angles(x: Number) -> Angles:
         reach = np.hypot(x, e)
@@ -66,7 +73,7 @@ def slider_strokes(a: Number, b: Number, e: Number, guide: Number, sign: float, 
 
 
 def block_stroke(a: Number, d: Number, e: Number, frame: Number, sign: float) -> Stroke:
-    """Stroke of a block along its rocker, or of a cylinder: its slide."""
+    """Return the stroke of a block along its rocker, or of a cylinder: its slide."""
 
     def crank_angles(slide: Number) -> Angles:
         return _two(0.0 * slide, (a * a + d * d - e * e - slide * slide) / (2.0 * a * d), frame)
@@ -76,7 +83,7 @@ def block_stroke(a: Number, d: Number, e: Number, frame: Number, sign: float) ->
 
 
 def rocker_stroke(a: Number, b: Number, c: Number, d: Number, frame: Number, sign: float) -> Stroke:
-    """Stroke of a four-bar's rocker: its angle."""
+    """Return the stroke of a four-bar's rocker: its angle."""
 
     def crank_angles(theta4: Number) -> Angles:
         angle = np.radians(theta4 - frame)
@@ -92,6 +99,6 @@ def rocker_stroke(a: Number, b: Number, c: Number, d: Number, frame: Number, sig
 
 
 def _two(direction: Number, cosine: Number, frame: Number) -> Angles:
-    """Angles [degree] on either side of a direction [rad] in a frame, by the cosine between."""
+    """Return the angles [degree] on either side of a direction [rad] in a frame, by the cosine between them."""
     middle, away = frame + np.degrees(direction), np.degrees(np.arccos(cosine))
     return middle - away, middle + away

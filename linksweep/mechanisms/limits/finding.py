@@ -1,4 +1,4 @@
-"""What a mechanism's check finds, as arrays over its designs."""
+"""Findings of a mechanism's closed-form checks, as arrays over its designs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Findings = Callable[..., dict[str, Finding]]
 """A function of arrays of numbers, broadcast against each other, that returns findings by name."""
 
 Checks = tuple[tuple[Findings, tuple[Any, ...]], ...]
-"""Functions that find something in closed form, and the numbers that each takes."""
+"""Closed-form checks, and the numbers that each takes."""
 
 
 def turning_round(stretched: np.ndarray, folded: np.ndarray) -> dict[str, Finding]:

@@ -1,4 +1,4 @@
-"""Where a four-bar closes: Grashof class, assembly limits and toggle angles in closed form, for arrays of designs.
+"""Limits of the four-bar: Grashof class, assembly limits and toggle angles in closed form, for arrays of designs.
 
 With φ the angle from the line A→D to the crank, the four-bar closes while (see `linksweep.physics.closures.four_bar`)
 
@@ -30,34 +30,34 @@ GRASHOF = (
     "triple_rocker",
     "change_point",
 )
-"""By the shortest link: crank, ground, coupler, rocker; then no link turns fully; then the borderline between."""
+"""Classes by the shortest link (crank, ground, coupler, rocker); then no link that turns fully; then the borderline."""
 
 DEAD_CENTRES = {
     "rocker": ("open_stretched", "open_folded", "crossed_stretched", "crossed_folded"),
     "coupler": ("open_alike", "open_opposite", "crossed_alike", "crossed_opposite"),
 }
-"""By branch: how the coupler lies to the crank; whether crank and rocker point the same way."""
+"""Labels by branch: coupler along or against the crank; crank and rocker pointing the same way or opposite."""
 
 TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
 
 
 def classes(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
-    """What the lengths alone decide."""
-    found = limits(a, b, c, d)
+    """Compute the Grashof class, the assembly and the least transmission angle."""
+    limits = limits_of(a, b, c, d)
     return {
-        "grashof": Finding(found.grashof, "Grashof class", words=GRASHOF),
-        "assembly": Finding(found.assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
+        "grashof": Finding(limits.grashof, "Grashof class", words=GRASHOF),
+        "assembly": Finding(limits.assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
         "transmission_angle_min": Finding(
-            found.transmission_angle_min, "smallest acute angle between coupler and rocker"
+            limits.transmission_angle_min, "smallest acute angle between coupler and rocker"
         ),
     }
 
 
 def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
-    """Crank angles, which turn with the frame."""
-    found = limits(a, b, c, d)
-    start, end = arcs(found, ground_angle)
-    toggles = np.stack([found.folded, found.stretched, -found.stretched, -found.folded], axis=-1)
+    """Compute the crank angles of arcs and toggles."""
+    limits = limits_of(a, b, c, d)
+    start, end = arcs(limits, ground_angle)
+    toggles = np.stack([limits.folded, limits.stretched, -limits.stretched, -limits.folded], axis=-1)
     toggles = np.mod(toggles + ground_angle[..., None], 360.0)
     return {
         "arc_start": Finding(start, "crank angle at which an assembled arc starts", along=("arc", ())),
@@ -69,7 +69,7 @@ def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_an
 def swings(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
     """Compute how far the rocker of a crank that turns fully swings, from stretched to folded."""
     swing = _angle(c, a + b, d) - _angle(c, np.abs(a - b), d)
-    swing = np.where(limits(a, b, c, d).assembly == 0, swing, np.nan)
+    swing = np.where(limits_of(a, b, c, d).assembly == 0, swing, np.nan)
     return {"swing": Finding(swing, "angle through which the rocker swings")}
 
 
@@ -77,32 +77,34 @@ def reversals(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray, side: np.ndarray
 ) -> dict[str, Finding]:
     """Compute where the rocker of a crank that turns fully turns round; `side` is 1 for open, -1 for crossed."""
-    stretched, folded = (np.where(limits(a, b, c, d).assembly == 0, angle, np.nan) for angle in _in_line(a, b, c, d))
+    stretched, folded = (np.where(limits_of(a, b, c, d).assembly == 0, angle, np.nan) for angle in _in_line(a, b, c, d))
     return turning_round(ground_angle + side * stretched, ground_angle + side * folded)
 
 
 def rocker_dead_centres(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
 ) -> dict[str, Finding]:
-    """Crank angles at which the rocker turns round, and cannot drive."""
+    """Compute the crank angles at which the rocker turns round, and cannot drive."""
     return _dead_centres(_in_line(a, b, c, d), ground_angle, "rocker", "crank and coupler in one line")
 
 
 def coupler_dead_centres(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
 ) -> dict[str, Finding]:
-    """Crank angles at which the coupler does not turn, and cannot drive."""
+    """Compute the crank angles at which the coupler does not turn, and cannot drive."""
     return _dead_centres(
         (_angle(a - c, b, d), -_angle(a + c, b, d)), ground_angle, "coupler", "crank and rocker parallel"
     )
 
 
 def _dead_centres(
-    found: tuple[np.ndarray, np.ndarray], ground_angle: np.ndarray, driven: str, said: str
+    angles_open: tuple[np.ndarray, np.ndarray], ground_angle: np.ndarray, driven: str, long_name: str
 ) -> dict[str, Finding]:
-    """From those of the open branch, of which those of the crossed one are the mirror image."""
-    angle = np.mod(np.stack([*found, *(-one for one in found)], axis=-1) + ground_angle[..., None], 360.0)
-    return {"dead_centre_angle": Finding(angle, said, along=("dead_centre", DEAD_CENTRES[driven]))}
+    """Return the dead centres of both branches; those of the crossed one mirror those of the open one."""
+    angle = np.mod(
+        np.stack([*angles_open, *(-angle for angle in angles_open)], axis=-1) + ground_angle[..., None], 360.0
+    )
+    return {"dead_centre_angle": Finding(angle, long_name, along=("dead_centre", DEAD_CENTRES[driven]))}
 
 
 def _in_line(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +113,7 @@ def _in_line(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> tupl
 
 
 def _angle(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Angle φ in [0, 180] between the sides g and d of a triangle, h opposite; NaN where there is none.
+    """Return the angle φ in [0, 180] between the sides g and d of a triangle, h opposite; NaN where there is none.
 
     The module's equation of dead centres; a side g < 0 points the other way.
     """
@@ -122,7 +124,7 @@ def _angle(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
 
 
 class Limits(NamedTuple):
-    """Arrays over the designs; angles in degrees from the line A→D to the crank. NaN where there is no such limit."""
+    """Limits as arrays over the designs; angles in degrees from the line A→D to the crank, NaN where there is none."""
 
     grashof: np.ndarray
     assembly: np.ndarray
@@ -132,8 +134,8 @@ class Limits(NamedTuple):
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
-    """Limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
+def limits_of(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
+    """Compute the limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
     low, largest_low, high, largest_high = extremes(a, b, c, d)
     never = (largest_low < 0.0) | (largest_high < 0.0)
     folded = _where_zero(low, largest_low, never)
@@ -143,14 +145,14 @@ def limits(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits
 
 
 def _where_zero(x: np.ndarray, y: np.ndarray, never: np.ndarray) -> np.ndarray:
-    """Angle φ in [0, 180] where x cos²(φ/2) + y sin²(φ/2) is 0; NaN where x and y have the same sign."""
+    """Return the angle φ in [0, 180] where x cos²(φ/2) + y sin²(φ/2) is 0; NaN where x and y have the same sign."""
     crossing = (np.minimum(x, y) <= 0.0) & (np.maximum(x, y) >= 0.0) & ~never
     half = np.arctan2(np.sqrt(np.abs(x)), np.sqrt(np.abs(y)))
     return np.where(crossing, 2.0 * np.degrees(half), np.nan)
 
 
 def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Shortest + longest against the sum of the other two; equal if so but for the rounding of the lengths."""
+    """Compare shortest + longest with the sum of the others; a difference below the rounding of the lengths is none."""
     links = np.stack(np.broadcast_arrays(a, d, b, c))
     shortest, p, q, longest = np.sort(links, axis=0)
     margin = (p + q) - (shortest + longest)
@@ -159,7 +161,7 @@ def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.n
 
 
 def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
-    """The acute angle between coupler and rocker is least where the diagonal f is shortest or longest."""
+    """Return the least acute angle between coupler and rocker: where the diagonal f is shortest or longest."""
     shortest = np.maximum(np.abs(d - a), np.abs(b - c))
     longest = np.minimum(d + a, b + c)
 
@@ -172,22 +174,24 @@ def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
     return np.where(never, np.nan, np.minimum(acute(shortest), acute(longest)))
 
 
-def arcs(found: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
+def arcs(limits: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
 
     NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame
     line, with one limit a single arc through the side where there is none.
     """
-    folded, stretched = np.isfinite(found.folded), np.isfinite(found.stretched)
-    whole = found.assembly == 0
+    folded, stretched = np.isfinite(limits.folded), np.isfinite(limits.stretched)
+    whole = limits.assembly == 0
     both = folded & stretched & ~whole
     cases = [whole, both, folded, stretched]
     nothing = np.full(whole.shape, np.nan)
     first = (
-        np.select(cases, [np.zeros(whole.shape), found.folded, found.folded, -found.stretched], np.nan),
-        np.select(cases, [np.full(whole.shape, 360.0), found.stretched, 360.0 - found.folded, found.stretched], np.nan),
+        np.select(cases, [np.zeros(whole.shape), limits.folded, limits.folded, -limits.stretched], np.nan),
+        np.select(
+            cases, [np.full(whole.shape, 360.0), limits.stretched, 360.0 - limits.folded, limits.stretched], np.nan
+        ),
     )
-    second = np.where(both, -found.stretched, nothing), np.where(both, -found.folded, nothing)
+    second = np.where(both, -limits.stretched, nothing), np.where(both, -limits.folded, nothing)
     start, end = (np.stack(pair, axis=-1) for pair in zip(first, second, strict=True))
     turned = np.mod(start + np.where(whole, 0.0, ground_angle)[..., None], 360.0)
     return turned, turned + (end - start)

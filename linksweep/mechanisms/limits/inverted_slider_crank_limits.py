@@ -1,4 +1,4 @@
-"""Where an inverted slider-crank closes, and how its rocker moves, in closed form, for arrays of designs.
+"""Limits of the inverted slider-crank: assembly, motion of the rocker, dead centres, wedging, for arrays of designs.
 
 The block's distance from D, between |d − a| and d + a, must exceed the offset e of the rocker's line (see
 `linksweep.physics.closures.inverted_slider_crank`). It equals |e| where tan²(φ/2) = (e² − (d−a)²)/((d+a)² − e²).
@@ -19,23 +19,23 @@ from linksweep.base.degrees import arcsine
 from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
 
 MOTIONS = ("swings", "turns_fully", "limited")
-"""What the rocker does: as the crank turns, or as it goes back and forth between its limits."""
+"""Motion of the rocker: as the crank turns, or as it goes back and forth between its limits."""
 
 REVERSALS = ("open_greatest", "open_least", "crossed_greatest", "crossed_least")
-"""By branch, where theta4 is greatest and least."""
+"""Labels by branch: at the greatest and the least theta4."""
 
 DEAD_CENTRES = ("nearest", "farthest")
-"""By the distance of B from D."""
+"""Labels by the distance of B from D."""
 
 TOGGLES = ("toggle", "toggle_mirrored")
 JAMS = ("jam", "jam_mirrored")
-"""Between which, about the angle where B is nearest to D, friction wedges."""
+"""Labels of the limits of wedging about the angle where B is nearest to D."""
 JAMS_BY_CRANK = tuple(f"{reversal}_{side}" for reversal in REVERSALS for side in ("before", "after"))
-"""Between which, about each angle where the rocker turns round, friction wedges."""
+"""Labels of the limits of wedging about each angle where the rocker turns round."""
 
 
 def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
-    """What the lengths alone decide."""
+    """Compute the assembly, the kind of motion and the least transmission angle."""
     e = np.abs(e)
     whole = e < np.abs(d - a)
     assembly = np.where(whole, 0, np.where(e < d + a, 1, 2)).astype(np.int8)
@@ -52,7 +52,7 @@ def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
 
 
 def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
-    """Crank angles, which turn with the frame line."""
+    """Compute the crank angles of arcs and toggles."""
     toggle = _toggle(a, d, e)
     whole = np.abs(e) < np.abs(d - a)
     start = np.where(whole, 0.0, np.mod(toggle + ground_angle, 360.0))
@@ -84,12 +84,12 @@ def reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndar
     """Compute the crank angles at which a rocker that swings turns round."""
     swings = (a + np.abs(e) < d)[..., None]
     angle = np.where(swings, np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0), np.nan)
-    said = "crank angle at which the rocker turns round"
-    return {"reversal_angle": Finding(angle, said, along=("reversal", REVERSALS))}
+    long_name = "crank angle at which the rocker turns round"
+    return {"reversal_angle": Finding(angle, long_name, along=("reversal", REVERSALS))}
 
 
 def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
-    """Where a cylinder along the rocker's line cannot drive, and how far out it is there."""
+    """Compute where a cylinder along the rocker's line cannot drive, and how far it is extended there."""
     along = ("dead_centre", DEAD_CENTRES)
     way = np.stack([np.abs(d - a), d + a], axis=-1)
     with np.errstate(invalid="ignore", over="ignore"):  # out of reach
@@ -104,7 +104,7 @@ def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.n
 
 
 def rocker_dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
-    """Where the rocker turns round, and cannot drive."""
+    """Compute the crank angles at which the rocker turns round, and cannot drive."""
     angle = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
     return {"dead_centre_angle": Finding(angle, "crank square to the rocker's line", along=("dead_centre", REVERSALS))}
 
@@ -112,7 +112,7 @@ def rocker_dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angl
 def wedging(
     a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
 ) -> dict[str, Finding]:
-    """Crank driven: where μ·|e/s| ≥ 1, B no farther than |e|·√(1 + μ²) from D; the least friction that does."""
+    """Compute where friction wedges if the crank drives, |DB| ≤ |e|·√(1 + μ²), and the least that does."""
     reach = np.abs(e) * np.hypot(1.0, friction)
     half = np.where(reach < a + d, _toggle(a, d, reach), 180.0)
     nearest = np.maximum(np.abs(d - a), np.abs(e))
@@ -125,7 +125,7 @@ def wedging(
 def wedging_by_crank(
     a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
 ) -> dict[str, Finding]:
-    """Rocker driven: where μ·|tan ψ| ≥ 1, ψ the crank's angle to the line; with any μ where the rocker turns round."""
+    """Compute where friction wedges if the rocker drives, μ·|tan ψ| ≥ 1 with ψ from crank to line, and the least."""
     lean = np.degrees(np.arctan(friction))[..., None]
     beside = _reversals(a / np.hypot(1.0, friction), d, e)
     angle = np.stack([beside - lean, beside + lean], axis=-1).reshape(*friction.shape, len(JAMS_BY_CRANK))
@@ -137,6 +137,7 @@ def wedging_by_crank(
 def _jams(
     angle: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray, least: np.ndarray, sides: tuple[str, ...]
 ) -> dict[str, Finding]:
+    """Return the angles and the friction of a wedged block as findings."""
     turned = np.where(friction[..., None] > 0.0, np.mod(angle + ground_angle[..., None], 360.0), np.nan)
     return {
         "jam_angle": Finding(turned, "crank angle at which friction begins to wedge the block", along=("side", sides)),
@@ -145,19 +146,19 @@ def _jams(
 
 
 def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """By how much the crank's two parts of a turn differ from 180°; NaN where it does not turn fully."""
+    """Return the difference of the crank's two parts of a turn from 180°; NaN where it does not turn fully."""
     short, long = np.minimum(a, d), np.maximum(a, d)
     return np.where(whole, arcsine(short + e, long) + arcsine(short - e, long), np.nan)
 
 
 def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """φ in [0, 180] with |DB| = |e|; NaN where there is none."""
+    """Return φ in [0, 180] with |DB| = |e|; NaN where there is none."""
     with np.errstate(invalid="ignore"):
         near, far = (e - (d - a)) * (e + (d - a)), ((d + a) - e) * ((d + a) + e)
         return 2.0 * np.degrees(np.arctan2(np.sqrt(near), np.sqrt(far)))
 
 
 def _reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """φ with the crank square to the rocker's line, on a trailing axis; NaN where it never is."""
+    """Return φ with the crank square to the rocker's line, on a trailing axis; NaN where it never is."""
     ahead, behind = arcsine(a - e, d), arcsine(a + e, d)
     return np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)

@@ -1,4 +1,4 @@
-"""Where a car leaves a loop or stalls in it, for arrays of designs.
+"""Limits of the loop track: leaving the track and stalling in closed form, for arrays of designs.
 
 With q = F/m, force F_N and squared speed v² have the form, over the angle φ from the bottom [rad],
 
@@ -8,7 +8,7 @@ With q = F/m, force F_N and squared speed v² have the form, over the angle φ f
     v²      by energy: A = v0² + 2R gy, B = 2R q, C = 2R      at constant speed: A = v0², B = 0, C = 0
 
 so extremes are known in closed form, and the least entry speed with them: the car goes round while no minimum is
-negative. Between extremes f is monotone: a zero there is found by bisection, to rounding.
+negative. Between extremes f is monotone: bisection finds a zero there, to rounding.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LAP = ("whole", "leaves_track", "stalls")
 
 
 class Curve(NamedTuple):
-    """f of the module's equation, for every design."""
+    """Function f of the module's equation, for every design."""
 
     A: np.ndarray
     B: np.ndarray
@@ -38,17 +38,18 @@ class Curve(NamedTuple):
         return self.A + self.B * angle + self.C * (self.gx * np.sin(angle) - self.gy * np.cos(angle))
 
     def knots(self) -> np.ndarray:
-        """Bottom, extremes, and the end of the lap in order, on a leading axis."""
+        """Return bottom, extremes and end of the lap in order, on a leading axis."""
         extremes = np.sort(np.nan_to_num(_extremes(self)), axis=0)
         return np.concatenate([0.0 * extremes[:1], extremes, TURN + 0.0 * extremes[:1]])
 
     def noise(self) -> np.ndarray:
+        """Return a bound on the rounding error of f."""
         pull = np.hypot(self.gx, self.gy)
         return ROUNDING * (np.abs(self.A) + TURN * np.abs(self.B) + np.abs(self.C) * pull)
 
 
 def curves(radius, mass, speed, thrust, gx, gy, work_counts) -> tuple[Curve, Curve]:
-    """R·F_N/m and v²."""
+    """Return the curves of R·F_N/m and v²."""
     A, B = speed * speed + work_counts * 2.0 * radius * gy, work_counts * 2.0 * radius * (thrust / mass)
     return (
         Curve(A, B, radius * (1.0 + 2.0 * work_counts), gx, gy),
@@ -57,7 +58,7 @@ def curves(radius, mass, speed, thrust, gx, gy, work_counts) -> tuple[Curve, Cur
 
 
 def _extremes(curve: Curve) -> np.ndarray:
-    """Both angles in a lap at which f is extreme [rad], on a leading axis; NaN where it is monotone."""
+    """Return both angles in a lap at which f is extreme [rad], on a leading axis; NaN where it is monotone."""
     pull, direction = np.hypot(curve.gx, curve.gy), np.arctan2(curve.gy, curve.gx)
     with np.errstate(invalid="ignore", divide="ignore"):
         side = np.arccos(-curve.B / (curve.C * pull))
@@ -65,7 +66,7 @@ def _extremes(curve: Curve) -> np.ndarray:
 
 
 def first_zero(curve: Curve) -> np.ndarray:
-    """Where in the lap f first falls below zero [rad]; infinite where it does not."""
+    """Return the angle in the lap at which f first falls below zero [rad]; infinite where it does not."""
     knots = curve.knots()
     below = curve(knots) < -curve.noise()
     first = np.argmax(below, axis=0)
@@ -80,14 +81,14 @@ def first_zero(curve: Curve) -> np.ndarray:
 
 @np.errstate(all="ignore")
 def events(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, np.ndarray]:
-    """Where a car that work and energy drive first leaves the track, and where it first stalls [rad]."""
+    """Compute where a car that follows work and energy first leaves the track, and where it first stalls [rad]."""
     force, squared_speed = curves(radius, mass, speed, thrust, gx, gy, work_counts)
     leaves, stalls = first_zero(force), first_zero(squared_speed)
     return {"leaves_at": leaves, "stalls_at": stalls}
 
 
 def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, Finding]:
-    """What becomes of the car in one lap from the bottom, and the entry speed that it needs to go round."""
+    """Compute the outcome of one lap from the bottom, and the entry speed that the car needs to go round."""
     leaves, stalls = events(radius, mass, speed, thrust, gx, gy, work_counts).values()
     leaves, stalls = np.where(leaves < stalls, leaves, np.inf), np.where(stalls <= leaves, stalls, np.inf)
     outcome = np.select([np.isfinite(leaves), np.isfinite(stalls)], [1, 2], 0).astype(np.int8)

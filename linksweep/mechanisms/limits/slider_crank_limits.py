@@ -1,6 +1,6 @@
-"""Where a slider-crank closes, and where its slider wedges, in closed form, for arrays of designs.
+"""Limits of the slider-crank: assembly, dead centres and wedging in closed form, for arrays of designs.
 
-With φ the angle from the guide to the crank, the rod's share across the guide is h = e − a·sin φ. It closes while
+With φ the angle from the guide to the crank, the rod's component across the guide is h = e − a·sin φ. It closes while
 |h| ≤ b, and friction wedges the slider where μ·|tan ψ| ≥ 1, with sin ψ = h/b the rod's slope: where |h| ≥ b/√(1 +
 μ²). Both bound sin φ between (e − H)/a and (e + H)/a, with H = b or H = b/√(1 + μ²).
 """
@@ -13,17 +13,17 @@ from linksweep.base.degrees import arcsine
 from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding, turning_round
 
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
-"""Where the crank's height over the guide is largest, before and past the normal; and where it is least."""
+"""Labels of angles: at the largest height of the crank over the guide, before and past the normal; at the least."""
 
 DEAD_CENTRES = ("upper", "lower")
-"""Of a driven rod: by the crank's height over the guide."""
+"""Labels of a driven rod's dead centres, by the crank's height over the guide."""
 
 TURNS = ("stretched", "stretched_behind", "folded", "folded_behind")
-"""Of the slider."""
+"""Labels of the slider's dead centres."""
 
 
 def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
-    """What the lengths alone decide."""
+    """Compute the assembly and the least transmission angle."""
     reach = np.abs(e) - b
     assembly = np.where(reach + a < 0.0, 0, np.where(reach - a < 0.0, 1, 2)).astype(np.int8)
     highest = np.minimum(a + np.abs(e), b)
@@ -37,7 +37,7 @@ def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
 
 
 def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
-    """Crank angles, which turn with the guide."""
+    """Compute the crank angles of arcs and toggles."""
     limits = _crossings(a, b, e)
     start, end = _arcs(a, b, e, slide_angle)
     return {
@@ -67,15 +67,17 @@ def reversals(
 
 
 def rod_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
-    """Where the rod does not turn, and cannot drive."""
+    """Compute the crank angles at which the rod does not turn, and cannot drive."""
     angle = np.mod(np.stack([slide_angle + 90.0, slide_angle - 90.0], axis=-1), 360.0)
     closes = np.abs(np.stack([e - a, e + a], axis=-1)) < b[..., None]
-    said = "crank square to the guide"
-    return {"dead_centre_angle": Finding(np.where(closes, angle, np.nan), said, along=("dead_centre", DEAD_CENTRES))}
+    long_name = "crank square to the guide"
+    return {
+        "dead_centre_angle": Finding(np.where(closes, angle, np.nan), long_name, along=("dead_centre", DEAD_CENTRES))
+    }
 
 
 def slider_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
-    """Where the slider turns round: rod and crank in one line, at sin φ = e/(a ± b), on either branch."""
+    """Compute the slider's dead centres on either branch: rod and crank in one line, sin φ = e/(a ± b)."""
     stretched, folded = arcsine(e, a + b), arcsine(e * np.sign(a - b), np.abs(a - b))
     angle = np.stack([stretched, 180.0 - stretched, folded, 180.0 - folded], axis=-1)
     angle = np.mod(angle + slide_angle[..., None], 360.0)
@@ -85,7 +87,7 @@ def slider_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle
 def wedging(
     a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray
 ) -> dict[str, Finding]:
-    """Crank driven: angles about 90° and 270° from the guide between which friction wedges; the least that does."""
+    """Compute where friction wedges if the crank drives, about 90° and 270° from the guide, and the least that does."""
     highest = np.minimum(a + np.abs(e), b)
     with np.errstate(divide="ignore", over="ignore"):
         least = np.where(np.abs(e) < a + b, np.sqrt((b - highest) * (b + highest)) / highest, np.nan)
@@ -93,7 +95,7 @@ def wedging(
 
 
 def wedging_by_crank(slide_angle: np.ndarray, friction: np.ndarray) -> dict[str, Finding]:
-    """Rod driven: friction wedges where the crank's own slope to the guide is too steep, with any μ at 90°."""
+    """Compute where friction wedges if the rod drives: where the crank is too steep; with any μ at 90°."""
     steep = np.degrees(np.arctan2(1.0, friction))
     begin = np.stack([steep, 180.0 - steep, 180.0 + steep, 360.0 - steep], axis=-1)
     return _jams(begin, slide_angle, friction, np.zeros(friction.shape))
@@ -101,21 +103,22 @@ def wedging_by_crank(slide_angle: np.ndarray, friction: np.ndarray) -> dict[str,
 
 def _jams(begin: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray, least: np.ndarray) -> dict[str, Finding]:
     turned = np.where(friction[..., None] > 0.0, np.mod(begin + slide_angle[..., None], 360.0), np.nan)
-    said = "friction wedges the slider between upper and upper_beyond, and between lower_beyond and lower"
+    """Return the angles and the friction of a wedged slider as findings."""
+    long_name = "friction wedges the slider between upper and upper_beyond, and between lower_beyond and lower"
     return {
-        "jam_angle": Finding(turned, said, along=("side", SIDES)),
+        "jam_angle": Finding(turned, long_name, along=("side", SIDES)),
         "friction_to_jam": Finding(least, "least coefficient of friction that wedges the slider", "1"),
     }
 
 
 def _crossings(a: np.ndarray, height: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """φ with e − a sin φ = −height (upper) and = height (lower), two of each on a trailing axis; NaN where none."""
+    """Return φ with e − a sin φ = −height (upper) and = height (lower), two of each on a trailing axis; NaN: none."""
     upper, lower = arcsine(e + height, a), arcsine(e - height, a)
     return np.stack([upper, 180.0 - upper, 180.0 - lower, 360.0 + lower], axis=-1)
 
 
 def _arcs(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Start and end of the one or two arcs that can be assembled, on a trailing axis; NaN where there is none."""
+    """Return start and end of the one or two arcs that can be assembled, on a trailing axis; NaN for none."""
     upper, upper_beyond, lower_beyond, lower = np.moveaxis(_crossings(a, b, e), -1, 0)
     above, below = np.isfinite(upper), np.isfinite(lower)
     never = np.abs(e) >= a + b

@@ -1,8 +1,7 @@
-"""Rows of one moving link, the same for every mechanism: inertia, weight, centre of gravity, power.
+"""Rows of one moving link of any mechanism: inertia, weight, centre of gravity, power.
 
-A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. What
-the mechanism adds is how the first pin moves: the names of its position (from A), velocity and acceleration (0.0 where
-it stands).
+A link k has a role (crank, …), a vector rk from its first pin along its line of pins, and rates omegak, alphak. The
+mechanism adds the names of the first pin's position (from A), velocity and acceleration (0.0 for a fixed pin).
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ Source = str | float
 class Body:
     """A moving link of a mechanism: its number and role, and the motion of its first pin.
 
-    `steady` marks the link whose rates are given, on a pin that stands: its inertia is then one turning vector.
+    `steady` marks the link on a fixed pin whose rates are inputs: its inertia is then one turning vector.
     `ratio` is its angular velocity per rate of the crank, `pin_ratio` the velocity of its first pin; their slopes are
     the derivatives of these to the crank's angle.
     """
@@ -39,12 +38,12 @@ class Body:
 
     @property
     def on_ground(self) -> bool:
-        """Whether its first pin stands."""
+        """True for a link whose first pin is fixed to the ground."""
         return self.pin_velocity == (0.0, 0.0)
 
     @property
     def turns(self) -> bool:
-        """Whether it turns, so that its moment of inertia counts."""
+        """True for a link that turns, so that its moment of inertia counts."""
         return self.ratio != 0.0
 
     @property
@@ -53,10 +52,11 @@ class Body:
         return f"{self.role}_length", f"r{self.number}x", f"r{self.number}y"
 
     def rows(self) -> list[Row | Total]:
+        """Return all rows of the link."""
         return [*self._inertia(), *self._centre(), *self._shaking(), *self._reduced()]
 
     def powers(self) -> tuple[str, str]:
-        """Names of the powers of its inertia and weight."""
+        """Return the names of the powers of its inertia and weight."""
         return f"inertia_power{self.number}", f"gravity_power{self.number}"
 
     def _inertia(self) -> list[Row | Total]:
@@ -139,7 +139,7 @@ class Body:
 
 
 def crank_pin_slope_rows() -> list[Row | Total]:
-    """How the crank's pin B moves per rate of the crank, and the derivative of that: the motion at ω2 = 1, α2 = 0."""
+    """Return rows of the velocity of pin B per rate of the crank, and of its slope: the motion at ω2 = 1, α2 = 0."""
     return [
         Row(planar.point_velocity, ("uBx", "uBy"), (0.0, 0.0, 1.0, "r2x", "r2y")),
         Row(crank_driven.crank_pin_acceleration, ("uBx_slope", "uBy_slope"), (1.0, 0.0, "r2x", "r2y")),
@@ -147,7 +147,7 @@ def crank_pin_slope_rows() -> list[Row | Total]:
 
 
 def on_crank_pin(number: int, role: str, ratio: Source, slope: Source) -> Body:
-    """A link whose first pin is the crank's pin B."""
+    """Return a link whose first pin is the crank's pin B."""
     return Body(
         number,
         role,
@@ -163,8 +163,8 @@ def on_crank_pin(number: int, role: str, ratio: Source, slope: Source) -> Body:
 
 @dataclass(frozen=True)
 class Equation:
-    """A row of the textbook's square system: what stands before each unknown (a number, or ± a quantity); its right
-    side."""
+    """A row of the textbook's square system: the coefficient of each unknown (a number, or ± a quantity), and the name
+    of the right side."""
 
     label: str
     coefficients: dict[str, float | tuple[float, str]]
@@ -177,7 +177,7 @@ class Equation:
 
 
 def newton_euler_equations(k: int, pins: dict[str, tuple[float, str]], torque: str | None) -> list[Equation]:
-    """ΣFx, ΣFy and ΣM about the centre of gravity of link k.
+    """Return ΣFx, ΣFy and ΣM about the centre of gravity of link k.
 
     `pins` gives for each pin force its sign on this link and the arm R from the centre of gravity to the pin
     (document 2).
@@ -205,7 +205,7 @@ def arm_rows(k: int, first: str, second: str | None = None) -> list[Row | Total]
 
 
 def pin_force_rows(i: int, j: int) -> list[Row | Total]:
-    """Magnitude of the force of link i on link j, and the reaction of j on i, from its components."""
+    """Return rows of the magnitude of the force of link i on link j, and of the reaction, from its components."""
     force, back = f"F{i}{j}", f"F{j}{i}"
     return [
         Row(planar.square, (f"{force}_squared",), (f"{force}x", f"{force}y")),
@@ -218,18 +218,20 @@ def pin_force_rows(i: int, j: int) -> list[Row | Total]:
 
 
 def pin_force_quantities(i: int, j: int, pin: str, links: Mapping[int, str]) -> list[Quantity]:
-    found = []
+    """Return the force of link i on link j, and its reaction, as quantities."""
+    quantities = []
     for a, b in ((i, j), (j, i)):
-        said = f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
-        found += [
-            Quantity(f"F{a}{b}x", "N", f"force {said}, component along x (positive to the right)"),
-            Quantity(f"F{a}{b}y", "N", f"force {said}, component along y (positive upwards)"),
-            Quantity(f"F{a}{b}", "N", f"magnitude of the force {said}", squared=f"F{a}{b}_squared"),
+        place = f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
+        quantities += [
+            Quantity(f"F{a}{b}x", "N", f"force {place}, component along x (positive to the right)"),
+            Quantity(f"F{a}{b}y", "N", f"force {place}, component along y (positive upwards)"),
+            Quantity(f"F{a}{b}", "N", f"magnitude of the force {place}", squared=f"F{a}{b}_squared"),
         ]
-    return found
+    return quantities
 
 
 def motion_quantities(body: Body) -> list[Quantity]:
+    """Return the rates of a link, and the acceleration of its centre of gravity, as quantities."""
     k, role = body.number, body.role
     turning = [
         Quantity(f"omega{k}", "rad s-1", f"angular velocity of the {role}, positive counter-clockwise"),
@@ -242,18 +244,19 @@ def motion_quantities(body: Body) -> list[Quantity]:
 
 
 def position_quantities(*pins: str) -> list[Quantity]:
-    said = {"x": "along x", "y": "along y"}
+    """Return the coordinates of pins as quantities."""
     return [
-        Quantity(f"{pin}{axis}", "m", f"position of pin {pin} from A {said[axis]}") for pin in pins for axis in "xy"
+        Quantity(f"{pin}{axis}", "m", f"position of pin {pin} from A along {axis}") for pin in pins for axis in "xy"
     ]
 
 
 def drive_torque(name: str, link: str) -> Quantity:
+    """Return the torque of the drive on a link as a quantity."""
     return Quantity(name, "N m", f"torque of the drive on link {name[2]} ({link}), positive counter-clockwise")
 
 
 def drive_quantities(unknown: Quantity, powers: str = "drive, loads, gravity and inertia") -> list[Quantity]:
-    """The drive's unknown torque or force, its power, and what checks them."""
+    """Return the unknown torque or force of the drive, its power, and the quantities that check them."""
     return [
         unknown,
         Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),

@@ -1,4 +1,4 @@
-"""Rows of the inverted slider-crank: which function of the physics gives which of its quantities."""
+"""Rows of the inverted slider-crank: the physics function that computes each of its quantities."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ BODIES = (
 
 
 class Drive(NamedTuple):
-    """A way to drive: its unknown; the rate of what it drives, and that per rate of the crank; the leverage that
-    vanishes where this stands still, and the two lengths whose product it is at most."""
+    """A way to drive: its unknown; the rate of the driven part, and that per rate of the crank; the leverage, which
+    vanishes where the part stands still, with the two lengths whose product is its largest value."""
 
     unknown: Quantity
     rate: str
@@ -72,7 +72,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
 
 
 def _arms() -> list[Row | Total]:
-    """From the centres of gravity of block and rocker to their pins, and to the forces of the slide at B."""
+    """Return rows of the arms from the centres of gravity of block and rocker to their pins and to the slide at B."""
     line = ("r3x", "r3y")
     return [
         *arm_rows(3, "R23"),
@@ -131,7 +131,7 @@ def _rates() -> list[Row | Total]:
 
 
 def _transmission() -> list[Row | Total]:
-    """Give the rocker's share of the crank's velocity and torque, and how the ratios change with the crank's angle."""
+    """Return rows of the ratios of the rocker's velocity and torque to the crank's, and of their slopes."""
     line = ("ratio4", "slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
     return [
         *crank_pin_slope_rows(),
@@ -142,7 +142,7 @@ def _transmission() -> list[Row | Total]:
 
 
 def _forces(drive: str) -> list[Row | Total]:
-    """The contact's forces from the moment equations free of the drive's torque; the rest follows by addition.
+    """Return rows of the contact forces, by the moment equations without the drive, and of the others, by addition.
 
     Torque or force of the drive come from virtual work, in which block and rocker turn together.
     """
@@ -166,13 +166,13 @@ def _forces(drive: str) -> list[Row | Total]:
 
 
 def _driven_ratio(drive: str) -> list[Row]:
-    """The driven part's rate per rate of the crank, where there is one that can vanish."""
+    """Return the row of the driven part's rate per rate of the crank, if that can vanish."""
     _, _, ratio, leverage = DRIVES[drive]
     return [Row(crank_driven.away_from_dead_centre, ("driven_ratio",), (ratio, *leverage))] if leverage else []
 
 
 def _contact(drive: str) -> list[Row]:
-    """Normal force and friction of the slide: beside a cylinder's force friction changes no other force."""
+    """Return rows of the slide's normal force and friction; with a cylinder, friction changes no other force."""
     forces = ("F43n", "friction_force", "wedging")
     if drive == "cylinder":
         return [
@@ -188,7 +188,7 @@ def _contact(drive: str) -> list[Row]:
 
 
 def _drive(drive: str, unknown: str, ratio: Source) -> list[Row]:
-    """The drive's unknown, and all that acts along the line: friction, or with a cylinder what balances without it."""
+    """Return rows of the drive's unknown and of the force along the line: friction, or the balance with a cylinder."""
     if drive == "cylinder":
         return [
             Row(crank_driven.balancing_drive, ("line_force",), ("work_of_loads", ratio)),
@@ -201,7 +201,7 @@ def _drive(drive: str, unknown: str, ratio: Source) -> list[Row]:
 
 
 def _status(drive: str) -> list[Row | Total]:
-    """Step by step: does it close, can the drive move it, does friction wedge it, which a cylinder overcomes."""
+    """Return rows of the status: closure, then leverage of the drive, then jamming, which a cylinder overcomes."""
     leverage = DRIVES[drive].leverage
     closed = Row(dyad_rpr.rpr_status, ("closure",))
     if drive == "cylinder":

@@ -1,5 +1,4 @@
-"""Rows and quantities of a whole machine of links, the same for every mechanism: each link, joint and load, and their
-sums."""
+"""Rows and quantities of any machine of links: of each link, joint and load, and their sums."""
 
 from __future__ import annotations
 
@@ -26,7 +25,7 @@ def machine_rows(bodies: Bodies, joints: Pins, loads: Loads, **closure: str | fl
 
 
 def power_rows(unknown: str, rate: str, bodies: Bodies, loads: Loads, *losses: str) -> list[Row | Total]:
-    """Power of the drive's unknown at the rate of what it drives, and what all powers leave when they are added."""
+    """Return rows of the power of the drive, its unknown times its rate, and of the residual of all powers."""
     terms = [term for body in bodies for term in body.powers()] + action_powers(loads)
     return [
         Row(planar.product, ("power",), (unknown, rate)),
@@ -36,17 +35,17 @@ def power_rows(unknown: str, rate: str, bodies: Bodies, loads: Loads, *losses: s
 
 
 def machine_quantities(bodies: Bodies, joints: Pins, links: Mapping[int, str], loads: Loads) -> list[Quantity]:
-    """What may be asked of all that; `links` are the roles by number, with the ground."""
-    found = _quantities_of_sums()
+    """Return the quantities of all links, joints and loads; `links` are the roles by number, with the ground."""
+    quantities = _quantities_of_sums()
     for body in bodies:
-        found += motion_quantities(body)
+        quantities += motion_quantities(body)
     for joint, (i, j) in joints.items():
-        found += pin_force_quantities(i, j, joint, links)
-    return found + pin_quantities(joints, links) + action_quantities(loads)
+        quantities += pin_force_quantities(i, j, joint, links)
+    return quantities + pin_quantities(joints, links) + action_quantities(loads)
 
 
 def _sums(bodies: Bodies, loads: Loads) -> list[Row | Total]:
-    """Of all moving links together: shaking, reduced inertia, powers, and what the drive gives."""
+    """Return rows of all moving links together: shaking, reduced inertia, powers, and power that the drive feeds."""
     sums = {"Fsx": "S{}x", "Fsy": "S{}y", "Ms": "S{}m", "inertia_power": "inertia_power{}"}
     sums |= {"gravity_power": "gravity_power{}", "reduced_inertia": "reduced_inertia{}"}
     sums |= {"reduced_inertia_slope": "reduced_inertia_slope{}"}
@@ -63,11 +62,12 @@ def _sums(bodies: Bodies, loads: Loads) -> list[Row | Total]:
 
 
 def _quantities_of_sums() -> list[Quantity]:
-    said = "force of the moving links' inertia on the ground (weights and loads not in it)"
+    """Return the sums over all moving links as quantities."""
+    force = "force of the moving links' inertia on the ground (weights and loads not in it)"
     return [
-        Quantity("Fsx", "N", f"shaking force: {said}, component along x"),
-        Quantity("Fsy", "N", f"shaking force: {said}, component along y"),
-        Quantity("Fs", "N", f"magnitude of the shaking force: {said}", squared="Fs_squared"),
+        Quantity("Fsx", "N", f"shaking force: {force}, component along x"),
+        Quantity("Fsy", "N", f"shaking force: {force}, component along y"),
+        Quantity("Fs", "N", f"magnitude of the shaking force: {force}", squared="Fs_squared"),
         Quantity("Ms", "N m", "shaking moment of the moving links' inertia on the ground about A, counter-clockwise"),
         rounding_error.QUANTITY,
         Quantity("reduced_inertia", "kg m2", "inertia of all moving links reduced to the crank"),

@@ -1,8 +1,7 @@
-"""Rows of a pin between two links: where each link has it, how fast it turns in its bearing, and its force in the axes
-of either link.
+"""Rows of a pin between two links: its place on each link, its rotation in the bearing, its force in link axes.
 
-The force Fij is that of link i on link j. Which of the two has the journal (the pin that turns) and which the bearing
-(the bush, the big end) is the mechanism's to say: its `journals` name the journal's link of each pin.
+Fij is the force of link i on link j. The mechanism's `journals` name the link that carries the journal (the pin that
+turns) of each pin; the other link has the bearing (the bush, the big end).
 """
 
 from __future__ import annotations
@@ -18,36 +17,40 @@ Journals = Mapping[str, int]
 
 
 def rotating(pins: Pins) -> dict[str, tuple[int, int]]:
-    """The pins proper, which have a letter for a name: other joints do not turn."""
+    """Return the joints that turn: those named by a letter."""
     return {pin: links for pin, links in pins.items() if len(pin) == 1}
 
 
 def pin_rows(pins: Pins, bodies: Iterable[Body]) -> list[Row]:
+    """Return rows of the rotation in each pin, and of its force in the axes of both links."""
     by_number = {body.number: body for body in bodies}
     rates: dict[int, str | float] = {1: 0.0} | {k: f"omega{k}" for k in by_number}
     rows = []
     for pin, (i, j) in rotating(pins).items():
         rows.append(Row(bearing.relative_rotation, (f"omega_{pin}",), (rates[j], rates[i])))
         for k in {i, j} - {1}:
-            force, seen = (f"F{i}{j}x", f"F{i}{j}y"), (f"F{i}{j}x_link{k}", f"F{i}{j}y_link{k}")
-            rows.append(Row(bearing.in_link_axes, seen, (*force, *by_number[k].axes)))
+            force, turned = (f"F{i}{j}x", f"F{i}{j}y"), (f"F{i}{j}x_link{k}", f"F{i}{j}y_link{k}")
+            rows.append(Row(bearing.in_link_axes, turned, (*force, *by_number[k].axes)))
     return rows
 
 
 def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
-    found = []
+    """Return the rotation in each pin, its force in link axes, and its arms as quantities."""
+    quantities = []
     for pin, (i, j) in rotating(pins).items():
-        said = f"of link {j} ({links[j]}) relative to link {i} ({links[i]}) at pin {pin}"
-        found.append(Quantity(f"omega_{pin}", "rad s-1", f"angular velocity {said}, positive counter-clockwise"))
+        relative = f"of link {j} ({links[j]}) relative to link {i} ({links[i]}) at pin {pin}"
+        quantities.append(
+            Quantity(f"omega_{pin}", "rad s-1", f"angular velocity {relative}, positive counter-clockwise")
+        )
         force = f"force of link {i} ({links[i]}) on link {j} ({links[j]}) at pin {pin}"
         for k in sorted({i, j} - {1}):
             axes = f"of link {k} ({links[k]})"
-            found += [
+            quantities += [
                 Quantity(f"F{i}{j}x_link{k}", "N", f"{force}, component along the x axis {axes}"),
                 Quantity(f"F{i}{j}y_link{k}", "N", f"{force}, component along the y axis {axes}"),
             ]
-            found += _arm_quantities(pin, k, ({i, j} - {k}).pop(), links)
-    return found
+            quantities += _arm_quantities(pin, k, ({i, j} - {k}).pop(), links)
+    return quantities
 
 
 def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -> list[Quantity]:
@@ -55,6 +58,8 @@ def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -
 
     Its rows are `linksweep.mechanisms.rows.bodies.arm_rows`.
     """
-    said = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
+    vector = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
     axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}
-    return [Quantity(f"R{other}{link}{axis}", "m", f"{said} ({links[other]}), component {axes[axis]}") for axis in "xy"]
+    return [
+        Quantity(f"R{other}{link}{axis}", "m", f"{vector} ({links[other]}), component {axes[axis]}") for axis in "xy"
+    ]

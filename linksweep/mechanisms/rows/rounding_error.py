@@ -9,7 +9,7 @@ from linksweep.engine.trace import rounding
 from linksweep.engine.trace.graph import Node
 
 EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
-"""Numbers that reach the physics as the user gave them; so do lengths. Others, such as cosines, have been rounded."""
+"""Inputs that reach the physics unrounded, as do lengths; others, such as cosines, have been rounded."""
 
 
 def row(joints: Mapping[str, tuple[int, int]], closure: Mapping[str, str | float]) -> Row:
@@ -23,7 +23,7 @@ def row(joints: Mapping[str, tuple[int, int]], closure: Mapping[str, str | float
     n = len(certain)
 
     def error_bound(*nodes: Node) -> Node:
-        """Bound on the rounding error of the pin forces' components, relative to the largest of them."""
+        """Return a bound on the rounding error of the pin forces' components, relative to the largest of them."""
         in_units = dict(zip(nodes[:n], nodes[n : 2 * n], strict=True))
         return rounding.relative_bound(nodes[2 * n :], _is_exact, in_units)
 

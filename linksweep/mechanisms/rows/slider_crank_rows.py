@@ -1,4 +1,4 @@
-"""Rows of the slider-crank: which function of the physics gives which of its quantities."""
+"""Rows of the slider-crank: the physics function that computes each of its quantities."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DRIVES = {"crank": "T12", "coupler": "T13"}
 DRIVEN = {"crank": "omega2", "coupler": "omega3"}
 PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
 JOURNALS = {"A": 2, "B": 2, "C": 4}
-"""As in engines: crankshaft and crankpin are the crank's, the gudgeon pin the piston's; the rod has both its bushes."""
+"""As in engines: the crank carries crankshaft and crankpin, the piston the gudgeon pin; the rod has both its bushes."""
 BODIES = (
     Body(2, "crank", steady=True, ratio=1.0),
     on_crank_pin(3, "rod", "ratio3", "slope3"),
@@ -92,7 +92,7 @@ def _rates() -> list[Row | Total]:
 
 
 def _transmission() -> list[Row | Total]:
-    """Ratios of the slider's velocity and force to the crank's, and how they change with the crank's angle."""
+    """Return rows of the ratios of the slider's velocity and force to the crank's, and of their slopes."""
     rod, guide = ("ratio3", "rod_along", "rod_across", "inverse_rod_along"), ("guide_cos", "guide_sin")
     return [
         *crank_pin_slope_rows(),
@@ -105,7 +105,7 @@ def _transmission() -> list[Row | Total]:
 
 
 def _forces(drive: str) -> list[Row | Total]:
-    """The guide's force from the lever whose moment equation is free of the drive; the rest follows by addition."""
+    """Return rows of the guide's force, by the moment equation without the drive, and of the others, by addition."""
     lever = {
         "crank": ("inverse_rod_along", "rod_across", "moment_r3"),
         "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
@@ -138,7 +138,7 @@ def _forces(drive: str) -> list[Row | Total]:
 
 
 def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
-    """Step by step: does it close, can the drive move it, does friction wedge it, have its loads their whole turns."""
+    """Return rows of the status: closure, then leverage of the drive, then jamming, then full turns for its loads."""
     closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
     leverage: list[Row | Total] = [Row(planar.identity, ("leverage_status",), ("closure",))]
     if drive == "coupler":
