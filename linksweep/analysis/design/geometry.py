@@ -1,4 +1,4 @@
-"""Geometry of a mechanism's motion: stroke, swing, time ratio, transmission angles, and the curve that a point draws.
+"""Geometry of a machine's motion: stroke or swing, time ratio, transmission angles, and the curve that a point draws.
 
 A four-bar's rocker turns round where crank (a) and coupler (b) lie in one line, and pin C is f = b + a or f = b − a
 from A; ψ is the rocker's angle at D, from the line D→A, φ that of the line A→C from A→D:
@@ -45,38 +45,43 @@ CURVE = {
 
 
 def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
-    """How far it moves, how evenly, and how well it transmits.
+    """Compute stroke or swing, time ratio and extreme transmission angles of a machine.
 
     Parameters
     ----------
-    scene : Scene of a mechanism of links
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene of a machine whose stroke or swing is known in closed form.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over the design dims:
+    Dataset
+        Results over the design dims:
 
-    - `swing` [degree] of a rocker, or `stroke` [m] of a slider; NaN where it does not swing, or the crank does not turn
-      fully
-    - `time_ratio`: the slower way's crank angle over the faster one's; `reversal_angle` (…, limit) [degree], the crank
-      angles at which it turns round, stretched and folded; of an inverted slider-crank along `reversal`
-    - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`
+        - `swing` [degree] of a rocker, or `stroke` [m] of a slider; NaN where it does not swing, or the crank does not
+          turn
+          fully
+        - `time_ratio` [1]: the slower way's crank angle over the faster one's - `reversal_angle` (…, limit) [degree]:
+          crank angles at which the output turns round, stretched and folded; of an
+          inverted slider-crank along `reversal`
+        - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`.
 
     Raises
     ------
     ValueError
-        For a car in a loop.
+        If the machine has no such closed form, as a car in a loop.
 
     Notes
     -----
-    Closed forms, and the exact peaks of the transmission angle; neither looks at loads or speeds. Equations and source:
-    `linksweep.analysis.design.geometry`.
+    Closed forms, and the exact peaks of the transmission angle; neither depends on loads or speeds. Equations and
+    source: `linksweep.analysis.design.geometry`.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.geometry(ls.example("engine"))
-    >>> round(float(found.stroke), 12), round(float(found.time_ratio), 12)
+    >>> motion = ls.geometry(ls.example("engine"))
+    >>> round(float(motion.stroke), 12), round(float(motion.time_ratio), 12)
     (0.086, 1.0)
     """
     require(scene, "bodies", "stroke_findings")
@@ -94,26 +99,32 @@ def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
 def coupler_curve(
     scene: Scene, at: tuple[Any, Any], theta2: Any = 720, link: str | None = None, threads: int | None = None
 ) -> xr.Dataset:
-    """The curve that a point of a link draws, with velocity and acceleration.
+    """Compute the curve that a point of a link draws, with velocity and acceleration.
 
     Parameters
     ----------
-    scene : Scene of a mechanism of links
-    at : the point in the link's own polar coordinates: (distance from its first pin [m], angle from its line of pins
-        [degree]); each may be a DataArray of design dims
-    theta2 : count of crank angles, or angles [degree], as `linksweep.sweep` takes them
-    link : by name; by default the coupler or rod, of an inverted slider-crank the rocker
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene of a machine of links.
+    at : pair of floats or DataArrays
+        Point in the link's own polar coordinates: distance from its first pin [m], angle from its line of pins
+        [degree].
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree], as in `linksweep.sweep`.
+    link : str, default None
+        Role of the link; None for the coupler or rod, of an inverted slider-crank the rocker.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over (…, theta2): position `Px`, `Py` from A [m], velocity `vPx`, `vPy` [m/s], acceleration `aPx`, `aPy`
-    [m/s²], and `status`; NaN where that is not ok.
+    Dataset
+        Over (…, theta2): position `Px`, `Py` from A [m], velocity `vPx`, `vPy` [m/s], acceleration `aPx`, `aPy` [m/s²],
+        and `status`; NaN where the status is not ok.
 
     Raises
     ------
     ValueError
-        For an unknown link, and a point that is none.
+        If the machine has no such link, or the point is no pair of a length and an angle.
 
     Examples
     --------
@@ -137,14 +148,14 @@ def coupler_curve(
     length = scene.mechanism.parameters()[f"{role}_length"]
     cos, sin = cos_sin(at[1])
     arm = planar.to_ground_axes(at[0] * cos, at[0] * sin, length, *line)
-    found = {
+    vectors = {
         "P": planar.vector_sum(*position, *arm),
         "vP": planar.point_velocity(*velocity, omega, *arm),
         "aP": planar.point_acceleration(*acceleration, omega, alpha, *arm),
     }
     variables = {
-        f"{name}{axis}": xr.DataArray(part).where(cycle["status"] == 0).assign_attrs(_said(name, role, axis))
-        for name, pair in found.items()
+        f"{name}{axis}": xr.DataArray(part).where(cycle["status"] == 0).assign_attrs(_attributes(name, role, axis))
+        for name, pair in vectors.items()
         for axis, part in zip("xy", pair, strict=True)
     }
     command = f"linksweep.coupler_curve(scene, at=..., link={role!r})"
@@ -152,18 +163,18 @@ def coupler_curve(
 
 
 def _floating(scene: Scene) -> str:
-    """Return the first link between moving pins that is a part of its own; else the last part."""
+    """Return the first link, among the parts of the machine, that no ground pin holds; else the last of all links."""
     parts = [body for body in scene.mechanism.bodies if body.role in scene.mechanism.parts()]
     return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
 
 
-def _said(name: str, role: str, axis: str) -> dict[str, str]:
+def _attributes(name: str, role: str, axis: str) -> dict[str, str]:
     units, text = CURVE[name]
     return {"units": units, "long_name": f"{text} of the {role}, component along {axis}"}
 
 
 def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, Any], threads: int | None) -> tuple[Any, Any]:
-    """Two quantities of the table by name, also such as no result shows; a number is itself."""
+    """Return two quantities of the table by name, internal ones too; a number is returned as it is."""
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     names = tuple(source for source in sources if isinstance(source, str))

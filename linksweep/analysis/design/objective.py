@@ -1,4 +1,4 @@
-"""objective(scene, {...}, minimize=...): a function of numbers, as optimizers want it."""
+"""A scene's peaks as a function of some of its parameters, in the form that optimizers take."""
 
 from __future__ import annotations
 
@@ -17,16 +17,39 @@ from linksweep.scene.scene import Scene
 from linksweep.scene.units import quantity
 
 CANDIDATES = "candidate"
-"""Dimension of the designs of one call. It always has the same name, so that one kernel serves all calls."""
+"""Dimension of the designs of one call; always of the same name, so that one kernel serves all calls."""
 WORDS = ("peak", "max", "min", "peak_at", "max_at", "min_at")
-"""What names of peaks have behind the name of the quantity."""
+"""Endings of the names of peaks, behind the name of the quantity."""
 
 Measure = Callable[[xr.Dataset], Any]
 
 
 @dataclass(frozen=True, eq=False)
 class Objective:
-    """A scene's objective as a function of its free parameters: see `objective`."""
+    """A scene's objective as a function of its free parameters, as `objective` returns it.
+
+    Parameters
+    ----------
+    base : Scene
+        Scene of which the parameters vary.
+    ranges : mapping of str to pair of float
+        Least and largest value of each parameter by its path, in the parameter's unit [SI].
+    measure : callable
+        Function of the Dataset of peaks whose value is minimized.
+    constraint : callable or None
+        Function of the Dataset of peaks; False for a design that is not allowed.
+    of : list of str or None
+        Names of the quantities whose peaks are computed.
+    options : mapping
+        Further arguments of `peaks`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> lightest = ls.objective(ls.example("press"), {"coupler.length": ("20 cm", "24 cm")}, minimize="F32_peak")
+    >>> lightest.bounds
+    [(0.2, 0.24)]
+    """
 
     base: Scene
     ranges: Mapping[str, tuple[float, float]]
@@ -46,24 +69,46 @@ class Objective:
         return list(self.ranges)
 
     def scene(self, x: Any) -> Scene:
-        """The scene with these parameters; for x of shape (parameters, designs) over the dim `candidate`."""
+        """Return the scene with these parameters.
+
+        Parameters
+        ----------
+        x : array_like
+            Values of the parameters [SI], of shape (parameters,) or (parameters, designs).
+
+        Returns
+        -------
+        Scene
+            Scene of one design, or of designs over the dim `candidate`.
+        """
         x = self._numbers(x)
         rows = map(float, x) if x.ndim == 1 else (xr.DataArray(row, dims=CANDIDATES) for row in x)
         return replaced(self.base, dict(zip(self.ranges, rows, strict=True)))
 
     def peaks(self, x: Any) -> xr.Dataset:
-        """What the objective looks at."""
+        """Compute the peaks on which the objective depends.
+
+        Parameters
+        ----------
+        x : array_like
+            Values of the parameters [SI], of shape (parameters,) or (parameters, designs).
+
+        Returns
+        -------
+        Dataset
+            Peaks, as from `linksweep.peaks`.
+        """
         return peaks(self.scene(x), self.of, **self.options)
 
     def __call__(self, x: Any) -> Any:
-        """The objective at x: one number, or one for each column of x."""
+        """Return the objective at x: one number, or one for each column of x."""
         x = self._numbers(x)
         columns = x.reshape(len(x), -1)
-        found = self.peaks(columns)
-        sound = _alone(found["status"] == 0)
+        worst_cases = self.peaks(columns)
+        sound = _alone(worst_cases["status"] == 0)
         if self.constraint is not None:
-            sound = sound & _alone(self.constraint(found))
-        value = _alone(self.measure(found))
+            sound = sound & _alone(self.constraint(worst_cases))
+        value = _alone(self.measure(worst_cases))
         value = value.where(sound & np.isfinite(value), np.inf)
         worst = value.max([dim for dim in value.dims if dim != CANDIDATES]).values
         return float(worst.reshape(-1)[0]) if x.ndim == 1 else np.array(np.broadcast_to(worst, columns.shape[1:]))
@@ -71,13 +116,13 @@ class Objective:
     def _numbers(self, x: Any) -> np.ndarray:
         x = np.asarray(x, dtype=float)
         if x.ndim not in (1, 2) or len(x) != len(self.ranges):
-            wanted = f"({len(self.ranges)},) or ({len(self.ranges)}, designs)"
-            raise ValueError(f"x has the shape {x.shape}: must be {wanted}, one row for each of {self.names}")
+            shapes = f"({len(self.ranges)},) or ({len(self.ranges)}, designs)"
+            raise ValueError(f"x has the shape {x.shape}: must be {shapes}, one row for each of {self.names}")
         return x
 
 
 def _alone(value: Any) -> xr.DataArray:
-    """Without the parameters that stand beside it: to compare them takes longer than to use it."""
+    """Return an array without its scalar coordinates, whose comparison takes longer than its use."""
     return xr.DataArray(value).reset_coords(drop=True)
 
 
@@ -90,39 +135,50 @@ def objective(
     of: Iterable[str] | None = None,
     **options: Any,
 ) -> Objective:
-    """A scene as a function to be minimized, ready for ``scipy.optimize.differential_evolution(vectorized=True)``.
+    """Make a function of a scene's parameters for ``scipy.optimize.differential_evolution(vectorized=True)``.
 
     Parameters
     ----------
-    scene : what does not vary. Where it has dims of its own (load cases, both branches), the worst over them counts
-    parameters : (low, high) of each free parameter by its path; numbers in the parameter's unit, or text with a unit
-    minimize, maximize : one of the two: a name in what `peaks` gives ("F32_peak", "T12_rms", "transmission_angle_min"),
-        or a function of that Dataset, such as ``lambda peaks: peaks.F32_peak + 0.1 * peaks.T12_peak``
-    constraint : function of the Dataset of peaks; False where a design is not allowed
-    of : quantities that these functions look at, as `peaks` takes them. Default: what `minimize` names; where there
-        are functions, all pins and the torque besides
-    **options : for `peaks`, such as theta2
+    scene : Scene
+        Scene whose other numbers stay. Where it has dims of its own (load cases, both branches), the worst over them
+        counts.
+    parameters : mapping of str to pair
+        Least and largest value of each free parameter by its path: numbers in the parameter's unit [SI], or text with a
+        unit.
+    minimize : str or callable, default None
+        Name of a result of `peaks` ("F32_peak", "T12_rms", "transmission_angle_min"), or a function of that Dataset,
+        such as ``lambda peaks: peaks.F32_peak + 0.1 * peaks.T12_peak``.
+    maximize : str or callable, default None
+        Name or function that is to be maximized; give one of the two.
+    constraint : callable, default None
+        Function of the Dataset of peaks; False where a design is not allowed.
+    of : iterable of str, default None
+        Quantities on which these functions depend, as in `peaks`. None for the one that `minimize` names; where there
+        are functions, all pins and the torque besides.
+    **options
+        Further arguments of `peaks`, such as theta2.
 
     Returns
     -------
-    Objective, with `bounds`. Called with x of shape (parameters,) it gives a number, with (parameters, designs) one
-    for each design; with `maximize` the negative. Designs whose status is not ok, or that are not allowed, give +inf.
-    `.scene(x)` is the scene with these parameters, `.peaks(x)` its peaks.
+    Objective
+        Function with `bounds`. With x of shape (parameters,) it returns a number, with (parameters, designs) one for
+        each design; with `maximize` the negative. Designs whose status is not ok, or that are not allowed, have +inf.
+        `.scene(x)` is the scene with these parameters, `.peaks(x)` its peaks.
 
     Raises
     ------
     ValueError
-        For unknown parameters and names, and ranges that are none or that the scene refuses.
+        If a parameter or name is unknown, or a range is none or is refused by the scene.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> from scipy.optimize import differential_evolution
     >>> lightest = ls.objective(ls.example("press"), {"coupler.length": ("20 cm", "24 cm")}, minimize="F32_peak")
-    >>> found = differential_evolution(
+    >>> result = differential_evolution(
     ...     lightest, lightest.bounds, vectorized=True, updating="deferred", polish=False, maxiter=3, rng=1)
-    >>> best = lightest.scene(found.x)
-    >>> bool(ls.peaks(best, of=["F32"]).F32_peak == found.fun)
+    >>> best = lightest.scene(result.x)
+    >>> bool(ls.peaks(best, of=["F32"]).F32_peak == result.fun)
     True
     """
     require_scene(scene)
@@ -130,39 +186,37 @@ def objective(
     both = minimize is not None and maximize is not None
     if both or minimize is maximize:
         refuse([f'minimize: give {"either" if both else "it,"} or maximize, as minimize="F32_peak"'])
-    wanted, path = (maximize, "maximize") if minimize is None else (minimize, "minimize")
-    if not isinstance(wanted, str) and not callable(wanted):
-        refuse([f"{path} = {quote(wanted)}: must be a name, or a function of the Dataset of peaks"])
-    wanted_of = None if of is None else list(of)
-    ready = Objective(
-        scene, ranges, _measure(wanted, path), constraint, _of(scene, wanted, constraint, wanted_of), options
-    )
-    _try(ready, wanted, path)
+    target, path = (maximize, "maximize") if minimize is None else (minimize, "minimize")
+    if not isinstance(target, str) and not callable(target):
+        refuse([f"{path} = {quote(target)}: must be a name, or a function of the Dataset of peaks"])
+    names = _names(scene, target, constraint, None if of is None else list(of))
+    ready = Objective(scene, ranges, _measure(target, path), constraint, names, options)
+    _try(ready, target, path)
     return ready
 
 
-def _try(ready: Objective, wanted: Any, path: str) -> None:
-    """At the ends of all ranges, so that what is wrong is said here and not in the middle of a search."""
-    found = ready.peaks(np.array(ready.bounds))
-    refuse(name_problems(path, wanted, map(str, found.data_vars)) if isinstance(wanted, str) else [])
+def _try(ready: Objective, target: Any, path: str) -> None:
+    """Evaluate at the ends of all ranges, so that errors appear here and not in the middle of a search."""
+    results = ready.peaks(np.array(ready.bounds))
+    refuse(name_problems(path, target, map(str, results.data_vars)) if isinstance(target, str) else [])
     ready(np.array(ready.bounds))
 
 
-def _measure(wanted: Any, path: str) -> Measure:
+def _measure(target: Any, path: str) -> Measure:
     sign = 1.0 if path == "minimize" else -1.0
-    return lambda found: sign * (found[wanted] if isinstance(wanted, str) else wanted(found))
+    return lambda results: sign * (results[target] if isinstance(target, str) else target(results))
 
 
-def _of(scene: Scene, wanted: Any, constraint: Measure | None, of: list[str] | None) -> list[str] | None:
-    """What to ask `peaks` for."""
-    named = [_quantity(wanted)] if isinstance(wanted, str) else []
+def _names(scene: Scene, target: Any, constraint: Measure | None, of: list[str] | None) -> list[str] | None:
+    """Return the quantities that `peaks` is to compute."""
+    named = [_quantity(target)] if isinstance(target, str) else []
     if of is None and (constraint is not None or not named):
         of = list(scene.mechanism.peak_quantities(scene.drive))
     return list(dict.fromkeys([*named, *(of or [])]))
 
 
 def _quantity(name: str) -> str:
-    """The quantity of which a name of peaks is one: F32 of F32_peak; means are asked for by their own names."""
+    """Return the quantity of a peak's name, F32 of F32_peak; means have names of their own in `peaks`."""
     return next((name.removesuffix(f"_{word}") for word in WORDS if name.endswith(f"_{word}")), name)
 
 

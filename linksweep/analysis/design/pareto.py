@@ -1,4 +1,4 @@
-"""pareto(ds, minimize=[...]): the designs that no other design beats in everything asked for."""
+"""The Pareto front: the designs that no other design beats in every objective."""
 
 from __future__ import annotations
 
@@ -13,33 +13,38 @@ from linksweep.mechanisms import indices
 from linksweep.results.compute import requested
 
 FRONT = "front"
-"""Dimension of a front whose designs had several."""
+"""Dimension of a front whose designs lie along several dims."""
 BATCH = 64
 KEPT = ("ok", "partial_revolution")
-"""Words of a status whose designs have peaks to choose by: an arm moves over part of a turn, and is none the worse."""
+"""Status of designs whose peaks count: a machine that moves over part of a turn is not worse for it."""
 
 
 def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str] = ()) -> xr.Dataset:
-    """The Pareto front of a study: designs for which no other is as good in every objective and better in one.
+    """Select the Pareto front of a study: no other design is as good in every objective and better in one.
 
     Parameters
     ----------
-    ds : Dataset over designs, as from `peaks`
-    minimize, maximize : names of variables or coordinates of it ("F32_peak", "coupler.length"); what else is wanted
-        can be put there first, as ``ds.assign(weight=...)``
+    ds : Dataset
+        Designs, as from `peaks`.
+    minimize : iterable of str, default ()
+        Names of its variables or coordinates ("F32_peak", "coupler.length"); add others first, as
+        ``ds.assign(weight=...)``.
+    maximize : iterable of str, default ()
+        Names of those that are to be large.
 
     Returns
     -------
-    The same Dataset at those designs alone, the best in the first objective first, then in the second, and so on.
-    Equal designs are all kept. A design whose status is neither ok (0) nor partial_revolution (1), or with an objective
-    that is not finite, is never among them; of designs that must turn fully, give ``ds.where(ds.status == 0)``. One
-    design dim keeps its name; of several the designs lie along `front`, and their labels with them.
-    `linksweep.scene_at` makes scenes of them.
+    Dataset
+        Same variables at those designs alone, the best in the first objective first, then in the second, and so on.
+        Equal designs are all kept. A design whose status is neither ok (0) nor partial_revolution (1), or with an
+        objective that is not finite, is never among them; of designs that must turn fully, give ``ds.where(ds.status ==
+        0)``. One design dim keeps its name; of several the designs lie along `front`, and their labels with them.
+        `linksweep.scene_at` makes scenes of them.
 
     Raises
     ------
     ValueError
-        For names that are not there, that are no numbers, or that change over the revolution.
+        If a name is unknown, holds no numbers, or changes over the revolution.
 
     Notes
     -----
@@ -65,7 +70,7 @@ def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str]
 
 
 def has_peaks(ds: xr.Dataset) -> xr.DataArray:
-    """Whether each design has peaks to choose by."""
+    """Return whether each design has peaks that count."""
     if "status" not in ds.variables:
         return xr.DataArray(True)
     words = str(ds["status"].attrs.get("flag_meanings", "ok")).split()
@@ -73,7 +78,7 @@ def has_peaks(ds: xr.Dataset) -> xr.DataArray:
 
 
 def front(costs: np.ndarray) -> np.ndarray:
-    """Rows of costs (designs, objectives) that no other dominates, in order of the columns; equal ones are all kept."""
+    """Return the rows of costs (designs, objectives) that no other dominates, sorted by columns; equal rows too."""
     order = np.lexsort(costs.T[::-1])  # only what comes before a row can dominate it
     ordered = costs[order]
     first = np.ones(len(order), dtype=bool)
@@ -84,17 +89,17 @@ def front(costs: np.ndarray) -> np.ndarray:
 
 
 def _of_two(costs: np.ndarray) -> np.ndarray:
-    """Whether each of different rows in order has a last column below all before it."""
+    """Return whether each of different rows in order has a last column below all before it."""
     last = costs[:, -1]
     before = np.minimum.accumulate(np.concatenate([[np.inf], last]))[:-1]
     return last < before
 
 
 def _of_more(costs: np.ndarray) -> np.ndarray:
-    """The same for any number of columns: each row of the front strikes out what it dominates of all after it.
+    """Return whether no row before it dominates each of different rows, in any number of columns.
 
-    The rows with the least sum of ranks come first: they dominate the most, and nothing that comes later can dominate
-    them. Those struck out are dropped a batch of rows at a time.
+    Each row of the front strikes out the rows after it that it dominates. The rows with the least sum of ranks come
+    first: they dominate the most, and no later row can dominate them. Rows are dropped a batch at a time.
     """
     rows = np.argsort(np.argsort(np.argsort(costs, axis=0), axis=0).sum(axis=1), kind="stable")
     best = np.zeros(len(rows), dtype=bool)
@@ -110,17 +115,17 @@ def _of_more(costs: np.ndarray) -> np.ndarray:
 
 
 def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
-    """What is asked for, all to be small."""
+    """Return the objectives, all to be small."""
     refuse(
         [] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"]
     )
-    wanted = [("minimize", name) for name in requested("minimize", minimize)]
-    wanted += [("maximize", name) for name in requested("maximize", maximize)]
-    refuse([] if wanted else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
+    objectives = [("minimize", name) for name in requested("minimize", minimize)]
+    objectives += [("maximize", name) for name in requested("maximize", maximize)]
+    refuse([] if objectives else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
     names = list(map(str, ds.variables))
-    refuse([problem for path, name in wanted for problem in name_problems(path, name, names)])
-    refuse([problem for path, name in wanted for problem in _variable_problems(path, ds[name])])
-    return [-ds[name] if path == "maximize" else ds[name] for path, name in wanted]
+    refuse([problem for path, name in objectives for problem in name_problems(path, name, names)])
+    refuse([problem for path, name in objectives for problem in _variable_problems(path, ds[name])])
+    return [-ds[name] if path == "maximize" else ds[name] for path, name in objectives]
 
 
 def _variable_problems(path: str, values: xr.DataArray) -> list[str]:
@@ -132,7 +137,7 @@ def _variable_problems(path: str, values: xr.DataArray) -> list[str]:
 
 
 def _at(ds: xr.Dataset, designs: dict[str, np.ndarray]) -> xr.Dataset:
-    """A Dataset at positions along its design dims, taken together; dims without labels get their positions."""
+    """Return a Dataset at positions along its design dims, taken together; dims without labels get their positions."""
     ds = ds.assign_coords({dim: np.arange(ds.sizes[dim]) for dim in designs if dim not in ds.coords})
     along = next(iter(designs)) if len(designs) == 1 else FRONT
     return ds.isel({dim: xr.Variable(along, at) for dim, at in designs.items()})
