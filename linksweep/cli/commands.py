@@ -1,4 +1,4 @@
-"""Words of the command line for what an engineer asks next: each takes a scene of one design and prints a table."""
+"""Commands for one design that print a table: bearings, breakdown, balance, orders, flywheel; and animate."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ def add_commands(commands: Any) -> None:
     _plots(drive)
 
 
-def _command(commands: Any, name: str, run: Callable, said: str) -> argparse.ArgumentParser:
-    parser = commands.add_parser(name, help=said)
+def _command(commands: Any, name: str, run: Callable, text: str) -> argparse.ArgumentParser:
+    parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     parser.set_defaults(run=run)
     return parser
@@ -87,7 +87,7 @@ def _plots(parser: argparse.ArgumentParser) -> None:
 
 
 def a_file(endings: tuple[str, ...]) -> Callable[[str], Path]:
-    """Return what reads an argument as a file with one of these endings."""
+    """Return a function that reads an argument as a file with one of these endings."""
 
     def read(text: str) -> Path:
         try:
@@ -100,7 +100,7 @@ def a_file(endings: tuple[str, ...]) -> Callable[[str], Path]:
 
 
 def _number(kind: str) -> Callable[[str], float]:
-    """What reads an argument as a number with a unit, or in SI units."""
+    """Return a function that reads an argument as a number with a unit, or in SI units."""
 
     def read(text: str) -> float:
         try:
@@ -116,21 +116,21 @@ def _number(kind: str) -> Callable[[str], float]:
 
 
 def one_design(path: Path) -> Scene:
-    """The scene of a file, of one design."""
+    """Return the scene of a file, of one design."""
     scene = load_scene(path)
     several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
     refuse([f"{path}: has several designs, over {several}; this takes one, peaks and study take many"] * bool(several))
     return scene
 
 
-def _require_whole(path: Path, found: xr.DataArray) -> None:
+def _require_whole(path: Path, values: xr.DataArray) -> None:
     """Raise ValueError where a cycle has no result at some angle."""
-    whole = bool(np.isfinite(found).all())
+    whole = bool(np.isfinite(values).all())
     refuse([] if whole else [f"{path}: does not run all the way round at that speed; check tells where it ends"])
 
 
 def show(options: argparse.Namespace, draw: Callable[[], Any]) -> None:
-    """Write the figure that a plot draws, where one is asked for, without a screen."""
+    """Write the figure of a plot to the file that the option --plot names, if any, without a screen."""
     if options.plot is None:
         return
     import matplotlib as mpl
@@ -176,12 +176,12 @@ def _breakdown(options: argparse.Namespace) -> None:
 
 
 def _worst_angle(scene: Scene, name: str) -> float:
-    """The crank angle [degree] where a force or torque is largest."""
-    found = peaks(scene, of=[name])
-    ends = [end for end in ("peak", "max", "min") if f"{name}_{end}_at" in found]
-    worst = max(ends, key=lambda end: abs(float(found[f"{name}_{end}"])))
-    at = float(found[f"{name}_{worst}_at"])
-    known = math.isfinite(at) and math.isfinite(float(found[f"{name}_{worst}"]))
+    """Return the crank angle [degree] where a force or torque is largest."""
+    ds = peaks(scene, of=[name])
+    ends = [end for end in ("peak", "max", "min") if f"{name}_{end}_at" in ds]
+    worst = max(ends, key=lambda end: abs(float(ds[f"{name}_{end}"])))
+    at = float(ds[f"{name}_{worst}_at"])
+    known = math.isfinite(at) and math.isfinite(float(ds[f"{name}_{worst}"]))
     refuse([] if known else [f"{name}: has no largest value; peaks and check say why"])
     return at
 
@@ -194,26 +194,26 @@ def _balance(options: argparse.Namespace) -> None:
     balanced = with_counterweights(scene, weights)
     drive = scene.mechanism.drives[scene.drive]
     pins = [f"F{i}{j}_peak" for i, j in scene.mechanism.pins.values()]
-    found = compare(scene, balanced, [*(name.format(drive=drive) for name in BALANCED), *pins])
+    table = compare(scene, balanced, [*(name.format(drive=drive) for name in BALANCED), *pins])
     print(summaries.weight_lines(weights))
-    print(summaries.balance_table(found))
+    print(summaries.balance_table(table))
     show(options, lambda: plot.balance(scene, balanced))
 
 
 def _orders(options: argparse.Namespace) -> None:
     from linksweep import plot
 
-    found = orders(sweep(one_design(options.scene), outputs=options.of), options.of, options.n)
-    _require_whole(options.scene, found[f"{options.of[0]}_amplitude"])
-    print(summaries.order_table(found, options.of))
-    show(options, lambda: plot.orders(found))
+    ds = orders(sweep(one_design(options.scene), outputs=options.of), options.of, options.n)
+    _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
+    print(summaries.order_table(ds, options.of))
+    show(options, lambda: plot.orders(ds))
 
 
 def _flywheel(options: argparse.Namespace) -> None:
     from linksweep import plot
 
     scene = one_design(options.scene)
-    found = flywheel(scene, options.fluctuation)
-    _require_whole(options.scene, found["speed"])
-    print(summaries.drive_table(duty(scene), found))
-    show(options, lambda: plot.torque_with_flywheel(found))
+    ds = flywheel(scene, options.fluctuation)
+    _require_whole(options.scene, ds["speed"])
+    print(summaries.drive_table(duty(scene), ds))
+    show(options, lambda: plot.torque_with_flywheel(ds))

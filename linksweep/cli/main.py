@@ -98,8 +98,8 @@ def _parser() -> argparse.ArgumentParser:
 
     worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
     worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    said = "the largest of so many samples, not the exact peaks"
-    worst.add_argument("--theta2", type=int, metavar="N", help=said)
+    samples = "the largest of so many samples, not the exact peaks"
+    worst.add_argument("--theta2", type=int, metavar="N", help=samples)
     worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
@@ -167,10 +167,10 @@ def _sweep(options: argparse.Namespace) -> None:
 
 def _peaks(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
-    found = peaks(scene, of=options.of, theta2=options.theta2)
-    print(peak_table(found, scene.mechanism))
+    ds = peaks(scene, of=options.of, theta2=options.theta2)
+    print(peak_table(ds, scene.mechanism))
     if options.output:
-        save(found, options.output)
+        save(ds, options.output)
         print(f"\nwritten: {options.output}")
 
 
@@ -185,8 +185,8 @@ def _study(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
     there = options.output.exists()
     of = None if options.of is None else [name for names in options.of for name in names]
-    with study(scene, options.output, of, options.chunk) as found:
-        print(study_report(found, scene.mechanism))
+    with study(scene, options.output, of, options.chunk) as ds:
+        print(study_report(ds, scene.mechanism))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
 
@@ -219,7 +219,7 @@ def _names(text: str) -> list[str]:
 
 
 def _figure(cycle: xr.Dataset) -> Figure:
-    """The report page of a cycle, drawn without a screen."""
+    """Draw the page of a cycle without a screen."""
     import matplotlib as mpl
 
     mpl.use("Agg")

@@ -1,4 +1,4 @@
-"""Results as text, for a terminal."""
+"""Results as text for a terminal."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.interpolation import RINGING
 
 
-def peak_table(found: xr.Dataset, machine: Mechanism) -> str:
+def peak_table(ds: xr.Dataset, machine: Mechanism) -> str:
     """Return the peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
-    rows = [("quantity", "value", "unit", f"at {machine.index}", *(f"worst {dim}" for dim in found.sizes))]
-    for name in map(str, found.data_vars):
-        if f"{name}_at" in found or name.endswith(("_mean", "_rms")):
-            rows.append(_row(found, name))
-    return "\n".join([*aligned(rows), *_remarks(found, machine)])
+    rows = [("quantity", "value", "unit", f"at {machine.index}", *(f"worst {dim}" for dim in ds.sizes))]
+    for name in map(str, ds.data_vars):
+        if f"{name}_at" in ds or name.endswith(("_mean", "_rms")):
+            rows.append(_row(ds, name))
+    return "\n".join([*aligned(rows), *_remarks(ds, machine)])
 
 
-def _row(found: xr.Dataset, name: str) -> tuple[str, ...]:
-    values = found[name]
+def _row(ds: xr.Dataset, name: str) -> tuple[str, ...]:
+    values = ds[name]
     place = _worst(values)
-    angle = f"{float(found[f'{name}_at'].isel(place)):.2f}°" if f"{name}_at" in found else ""
-    labels = (_label(found, dim, place.get(dim)) for dim in found.sizes)
+    angle = f"{float(ds[f'{name}_at'].isel(place)):.2f}°" if f"{name}_at" in ds else ""
+    labels = (_label(ds, dim, place.get(dim)) for dim in ds.sizes)
     return name, f"{float(values.isel(place)):.6g}", _unit(values), angle, *labels
 
 
@@ -38,10 +38,10 @@ def _worst(values: xr.DataArray) -> dict[Hashable, int]:
     return dict(zip(values.dims, map(int, np.unravel_index(int(np.argmax(known)), values.shape)), strict=True))
 
 
-def _label(found: xr.Dataset, dim: Hashable, k: int | None) -> str:
+def _label(ds: xr.Dataset, dim: Hashable, k: int | None) -> str:
     if k is None:
         return "any"
-    value = found[dim].values[k] if dim in found.coords else k
+    value = ds[dim].values[k] if dim in ds.coords else k
     return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
 
 
@@ -49,9 +49,9 @@ def _unit(values: xr.DataArray) -> str:
     return str(values.attrs["units"])
 
 
-def _remarks(found: xr.Dataset, machine: Mechanism) -> list[str]:
+def _remarks(ds: xr.Dataset, machine: Mechanism) -> list[str]:
     """Return what the status of peaks means, where it is not ok throughout."""
-    status = np.asarray(found.status.values).reshape(-1)
+    status = np.asarray(ds.status.values).reshape(-1)
     partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
     who, which = "It does", ""
     if status.size > 1:
@@ -66,56 +66,56 @@ def _remarks(found: xr.Dataset, machine: Mechanism) -> list[str]:
     return ["", *remarks] if remarks else []
 
 
-def study_report(found: xr.Dataset, machine: Mechanism) -> str:
+def study_report(ds: xr.Dataset, machine: Mechanism) -> str:
     """Return a summary of a study: the worst and the best design of each peak, and the number of designs by status."""
-    text = peak_table(found, machine)
-    if not found.sizes:
+    text = peak_table(ds, machine)
+    if not ds.sizes:
         return text
-    rows = [_best(found, name) for name in map(str, found.data_vars) if name.endswith("_peak")]
-    header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in found.sizes))
+    rows = [_best(ds, name) for name in map(str, ds.data_vars) if name.endswith("_peak")]
+    header = ("quantity", "least peak", "unit", *(f"best {dim}" for dim in ds.sizes))
     tables = [text, "", *aligned([header, *filter(None, rows)]), ""] if any(rows) else [text, ""]
-    shape = ", ".join(f"{dim} {n}" for dim, n in found.sizes.items())
-    designs = prod(found.sizes.values())
-    counts = np.bincount(found.status.values.reshape(-1)) * (designs // found.status.size)
-    said = ", ".join(f"{word} {n}" for word, n in zip(_words(found.status), counts, strict=False) if n)
-    return "\n".join([*tables, f"designs: {designs} ({shape}): {said}"])
+    shape = ", ".join(f"{dim} {n}" for dim, n in ds.sizes.items())
+    designs = prod(ds.sizes.values())
+    counts = np.bincount(ds.status.values.reshape(-1)) * (designs // ds.status.size)
+    counts_text = ", ".join(f"{word} {n}" for word, n in zip(_words(ds.status), counts, strict=False) if n)
+    return "\n".join([*tables, f"designs: {designs} ({shape}): {counts_text}"])
 
 
-def _best(found: xr.Dataset, name: str) -> tuple[str, ...]:
-    """A peak where it is least, of the designs that are ok all the way round; empty where there is none."""
-    values = found[name].where(found.status == 0)
+def _best(ds: xr.Dataset, name: str) -> tuple[str, ...]:
+    """Return a peak where it is least, of the designs that are ok all the way round; empty where there is none."""
+    values = ds[name].where(ds.status == 0)
     size = np.where(np.isfinite(values.values), values.values, np.inf)
     if not np.isfinite(size).any():
         return ()
     place = dict(zip(values.dims, map(int, np.unravel_index(int(np.argmin(size)), size.shape)), strict=True))
-    labels = (_label(found, dim, place.get(dim)) for dim in found.sizes)
-    return name, f"{float(size.min()):.6g}", _unit(found[name]), *labels
+    labels = (_label(ds, dim, place.get(dim)) for dim in ds.sizes)
+    return name, f"{float(size.min()):.6g}", _unit(ds[name]), *labels
 
 
-def check_lines(found: xr.Dataset) -> list[str]:
-    """What check found, in words."""
-    said: Iterable[tuple[str, str]]
-    if "grashof" not in found:
-        others = [name for name in found.data_vars if name != "overshoot"]
-        said = ((str(name).replace("_", " "), _summary(found[name])) for name in others)
+def check_lines(ds: xr.Dataset) -> list[str]:
+    """Return the findings of a check, a line for each."""
+    lines: Iterable[tuple[str, str]]
+    if "grashof" not in ds:
+        others = [name for name in ds.data_vars if name != "overshoot"]
+        lines = ((str(name).replace("_", " "), _summary(ds[name])) for name in others)
     else:
-        said = (*(_of_a_batch(found) if found.arc_start.ndim > 1 else _of_one(found)), *_of_acceleration(found))
-    return [f"{title + ':':<26}{text}" for title, text in (*said, *_of_splines(found))]
+        lines = (*(_of_a_batch(ds) if ds.arc_start.ndim > 1 else _of_one(ds)), *_of_acceleration(ds))
+    return [f"{title + ':':<26}{text}" for title, text in (*lines, *_of_splines(ds))]
 
 
-def _of_splines(found: xr.Dataset) -> Iterator[tuple[str, str]]:
-    """Splines through loads that ring."""
-    ringing = found.overshoot.where(found.overshoot > RINGING, drop=True) if "overshoot" in found else ()
+def _of_splines(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield the splines through loads that ring."""
+    ringing = ds.overshoot.where(ds.overshoot > RINGING, drop=True) if "overshoot" in ds else ()
     for overshoot in ringing:
         yield "a spline rings", f"{overshoot.spline.item()} by {100.0 * float(overshoot):.2g} % of its range"
 
 
 def _summary(finding: xr.DataArray) -> str:
-    """A finding in words: how many designs have each, or the range of its values."""
+    """Return a finding in words: the number of designs with each meaning, or the range of its values."""
     if "flag_meanings" in finding.attrs:
         words, counts = _words(finding), np.bincount(finding.values.reshape(-1))
-        found = [(word, n) for word, n in zip(words, counts, strict=False) if n]
-        return found[0][0] if finding.size == 1 else ", ".join(f"{word} {n}" for word, n in found)
+        counted = [(word, n) for word, n in zip(words, counts, strict=False) if n]
+        return counted[0][0] if finding.size == 1 else ", ".join(f"{word} {n}" for word, n in counted)
     unit = {"degree": "°", "1": ""}.get(_unit(finding), f" {_unit(finding)}")
     ends = [f"{value:.6g}{unit}" for value in np.unique(finding.values[np.isfinite(finding.values)])]
     if len(ends) > 4:
@@ -124,49 +124,49 @@ def _summary(finding: xr.DataArray) -> str:
 
 
 def _labelled(finding: xr.DataArray, unit: str) -> list[str]:
-    """The values of one design, each with its label where they have some."""
+    """Return the values of one design, each with its label where they have labels."""
     if finding.ndim != 1 or finding[finding.dims[0]].dtype.kind != "U":
         return []
     pairs = zip(finding.values, finding[finding.dims[0]].values, strict=True)
     return [f"{value:.6g}{unit} ({str(label).replace('_', ' ')})" for value, label in pairs if np.isfinite(value)]
 
 
-def _of_acceleration(found: xr.Dataset) -> Iterator[tuple[str, str]]:
-    if "alpha2_difference" in found:
-        worst, at = (_summary(found[f"alpha2_difference{end}"]) for end in ("", "_at"))
+def _of_acceleration(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    if "alpha2_difference" in ds:
+        worst, at = (_summary(ds[f"alpha2_difference{end}"]) for end in ("", "_at"))
         yield "alpha2", f"differs from that of omega2 by up to {worst}, at {at}"
 
 
-def _of_one(found: xr.Dataset) -> Iterator[tuple[str, str]]:
+def _of_one(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
     arcs = [
         f"{start:.4f}° to {end:.4f}°"
-        for start, end in zip(found.arc_start.values, found.arc_end.values, strict=True)
+        for start, end in zip(ds.arc_start.values, ds.arc_end.values, strict=True)
         if np.isfinite(start)
     ]
     toggles = [
         f"{angle:.4f}° ({str(name).replace('_', ', ')})"
-        for name, angle in zip(found.toggle.values, found.toggle_angle.values, strict=True)
+        for name, angle in zip(ds.toggle.values, ds.toggle_angle.values, strict=True)
         if np.isfinite(angle)
     ]
-    yield "Grashof class", _words(found.grashof)[int(found.grashof)]
-    yield "can be assembled", _words(found.assembly)[int(found.assembly)]
+    yield "Grashof class", _words(ds.grashof)[int(ds.grashof)]
+    yield "can be assembled", _words(ds.assembly)[int(ds.assembly)]
     yield "at theta2 from", " and ".join(arcs) or "nowhere"
     yield "toggles at theta2", ", ".join(toggles) or "none"
-    yield "least transmission angle", f"{float(found.transmission_angle_min):.4f}°"
+    yield "least transmission angle", f"{float(ds.transmission_angle_min):.4f}°"
 
 
-def _of_a_batch(found: xr.Dataset) -> Iterator[tuple[str, str]]:
-    design = found.arc_start.isel(arc=0)
+def _of_a_batch(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    design = ds.arc_start.isel(arc=0)
     yield "designs", f"{design.size} ({', '.join(f'{dim} {n}' for dim, n in design.sizes.items())})"
-    for title, flag in (("Grashof class", found.grashof), ("can be assembled", found.assembly)):
+    for title, flag in (("Grashof class", ds.grashof), ("can be assembled", ds.assembly)):
         words, values = _words(flag), flag.broadcast_like(design).values
         counts = np.bincount(values.reshape(-1), minlength=len(words))
         yield title, ", ".join(f"{word} {n}" for word, n in zip(words, counts, strict=True) if n)
-    least = found.transmission_angle_min.min()  # where there is one
+    least = ds.transmission_angle_min.min()  # where there is one
     if np.isfinite(least):
         yield "least transmission angle", f"{float(least):.4f}°"
 
 
 def _words(flag: xr.DataArray) -> list[str]:
-    """What the values of a flag mean."""
+    """Return the meanings of a flag's values."""
     return str(flag.attrs["flag_meanings"]).replace("_", "-").split()

@@ -1,4 +1,4 @@
-"""The film of a mechanism that turns: the forces in its joints as arrows, and where on their curves they are.
+"""The film of a machine that moves: the forces in its joints as arrows, and their place on their curves.
 
 Frames lie at equal steps of time. Where toggles, or the lengths, end a revolution, the mechanism goes to and fro over
 the longest part that there is; a car stops where it leaves the track. Angles that have no result are skipped.
@@ -47,7 +47,7 @@ ROUND = (5.0, 2.0, 1.0)  # what a scale's number begins with
 
 
 class Frame(NamedTuple):
-    """A position of a mechanism: crank angle [degree], where its parts are, the force in each joint (x, y) [N]."""
+    """A position of a machine: crank angle [degree], the places of its parts, the force in each joint (x, y) [N]."""
 
     angle: float
     shape: Shape
@@ -107,7 +107,8 @@ def animate(
 
 
 def way(cycle: xr.Dataset, rate: xr.DataArray, frames: int, to_and_fro: bool = True) -> np.ndarray:
-    """Angles of the frames [degree], at equal steps of time: of a cycle, or of a part of it where that is not whole.
+    """Return the angles of the frames [degree], at equal steps of time: of a cycle, or of a part of one that is not
+    whole.
 
     The part is the longest, to and fro, or else the first. `rate` is the speed at each angle: where it is negative, the
     cycle is run through backwards.
@@ -117,25 +118,25 @@ def way(cycle: xr.Dataset, rate: xr.DataArray, frames: int, to_and_fro: bool = T
     ended = np.isin(words[status.astype(int)], ENDS)
     period = period_of(cycle)
     if period and not ended.any():
-        found = _at_equal_times(angles, pace, frames + 1)[:-1]
+        at = _at_equal_times(angles, pace, frames + 1)[:-1]
     elif to_and_fro:
         to = _at_equal_times(*_longest(angles, pace, ended, period), frames // 2 + 1)
-        found = np.concatenate([to, to[-2:0:-1]])
+        at = np.concatenate([to, to[-2:0:-1]])
     else:
-        found = _at_equal_times(*_parts(angles, pace, ended)[0], frames)
-    found = found % period if period else found
-    return found[::-1] if np.nansum(pace) < 0.0 else found
+        at = _at_equal_times(*_parts(angles, pace, ended)[0], frames)
+    at = at % period if period else at
+    return at[::-1] if np.nansum(pace) < 0.0 else at
 
 
 def period_of(cycle: xr.Dataset) -> float | None:
-    """The period [degree] whose angles a Dataset has, None where they are no whole cycle."""
+    """Return the period [degree] that a Dataset's angles fill; None where they are no whole cycle."""
     return signals.full_turn(np.sort(cycle[signals.INDEX].values.astype(float)))
 
 
 def _longest(
     angles: np.ndarray, pace: np.ndarray, ended: np.ndarray, period: float | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Angles and speeds of the longest part; in a whole cycle it may go on beyond the end."""
+    """Return angles and speeds of the longest part; in a whole cycle it may go on beyond the end."""
     if period and not ended.all():
         first = int(np.argmax(ended))
         angles = np.concatenate([angles[first:-1], angles[:first] + period])
@@ -144,7 +145,7 @@ def _longest(
 
 
 def _parts(angles: np.ndarray, pace: np.ndarray, ended: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Angles and speeds of each part of two angles or more between those where nothing moves."""
+    """Return angles and speeds of each part of two angles or more between those where nothing moves."""
     edges = np.flatnonzero(np.diff(~ended, prepend=False, append=False)).reshape(-1, 2)
     parts = [(angles[start:stop], pace[start:stop]) for start, stop in edges if stop - start > 1]
     refuse([] if parts else [NOTHING])
@@ -152,7 +153,8 @@ def _parts(angles: np.ndarray, pace: np.ndarray, ended: np.ndarray) -> list[tupl
 
 
 def _at_equal_times(angles: np.ndarray, rate: np.ndarray, count: int) -> np.ndarray:
-    """Angles between the first and the last at equal steps of time; of angle, where it does not move or may not."""
+    """Return angles between the first and the last at equal steps of time; of angle, where the speed is 0 or
+    unknown."""
     pace = np.abs(rate[1:] + rate[:-1])
     steps = np.diff(angles)
     if np.isfinite(pace).all() and (pace > 0.0).all():
@@ -193,12 +195,12 @@ def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: A
 
 
 def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
-    """The frames at these angles, those that have a result."""
-    found = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
-    good = np.flatnonzero(found["status"].values == 0)
+    """Return the frames at those of these angles that have a result."""
+    cycle = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
+    good = np.flatnonzero(cycle["status"].values == 0)
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
-    parts = {force: _rows(found, force) for force in drawing.forces}
+    parts = {force: _rows(cycle, force) for force in drawing.forces}
     return [
         Frame(
             float(angles[k]),
@@ -209,25 +211,25 @@ def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) ->
     ]
 
 
-def _rows(found: xr.Dataset, force: str) -> np.ndarray:
-    """Components (x, y) at every angle, also of a force that does not depend on it."""
-    count = found.sizes[signals.INDEX]
-    return np.array([np.broadcast_to(part.values, count) for part in signals.components(found, force)])
+def _rows(cycle: xr.Dataset, force: str) -> np.ndarray:
+    """Return the components (x, y) at every angle, also of a force that does not depend on it."""
+    count = cycle.sizes[signals.INDEX]
+    return np.array([np.broadcast_to(part.values, count) for part in signals.components(cycle, force)])
 
 
 def arrows_of(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
-    """Where the arrow of each force begins and ends, (2, xy) [m]."""
-    found = {}
+    """Return start and end of the arrow of each force, (2, xy) [m]."""
+    arrows = {}
     for name, force in shot.forces.items():
         size = float(np.hypot(*force))
-        shown = min(size, OFF_SCALE * top)
+        drawn = min(size, OFF_SCALE * top)
         start = shot.shape.pins[drawing.start_of(name)]
-        found[name] = np.array([start, start + force * (longest / top * shown / (size or 1.0))])
-    return found
+        arrows[name] = np.array([start, start + force * (longest / top * drawn / (size or 1.0))])
+    return arrows
 
 
 def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.ndarray], longest: float) -> None:
-    """All that moves."""
+    """Draw all that moves."""
     draw_links(ax, drawing, shape)
     for name, ends in arrows.items():
         _arrow(ax, name, ends, NAMED * longest)
@@ -236,7 +238,7 @@ def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.nd
 
 
 def _arrow(ax: Axes, name: str, ends: np.ndarray, named: float) -> None:
-    """The arrow of a force with its name at the tip, outside."""
+    """Draw the arrow of a force with its name outside its tip."""
     from linksweep.plot.kit.labels import arrow
 
     length = float(np.hypot(*(ends[1] - ends[0])))
@@ -256,7 +258,7 @@ def _beside(color: str) -> dict[str, Any]:
 
 
 def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]]) -> None:
-    """Axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
+    """Set axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
     moving: list[Artist] = []
     for shot in shots[:: max(1, len(shots) // KNOWN)]:
         renewed(ax, moving, partial(draw_links, ax, drawing, shot.shape))
@@ -272,7 +274,7 @@ def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, n
 
 
 def scale(ax: Axes, top: float, longest: float) -> None:
-    """How long a round force is, in the lower left corner."""
+    """Draw the length of a round force in the lower left corner."""
     from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
     decade = 10.0 ** np.floor(np.log10(0.7 * top))
@@ -318,7 +320,7 @@ def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
 
 
 def panels() -> tuple[Figure, Axes, Axes]:
-    """A figure with the machine above and the curves below."""
+    """Return a figure with axes for the machine above and for the curves below."""
     from matplotlib.figure import Figure
 
     figure = Figure(SIZE, DPI, layout="constrained")
@@ -327,14 +329,14 @@ def panels() -> tuple[Figure, Axes, Axes]:
 
 
 def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, dict[str, str]], list[Artist]]:
-    """A line above the axes: the angle, and the word of each value; what writes the values behind them comes back."""
+    """Write a line above the axes, the angle and the word of each value; return the function that writes the values."""
     style: dict[str, Any] = {"textcoords": "offset points", "va": "baseline"}
     places = np.linspace(0.0, 1.0, len(words) + 1, endpoint=False)
     texts = {}
     for place, (name, word) in zip(places, {"": angle, **words}.items(), strict=True):
         style["color"] = FORCE_COLORS.get(name, BLACK)
-        said = ax.annotate(word, (place, 1.0), (0.0, 5.0), xycoords="axes fraction", **style)
-        texts[name] = ax.annotate("", (1.0, 1.0), (4.0, 5.0), xycoords=(said, "axes fraction"), **style)
+        title = ax.annotate(word, (place, 1.0), (0.0, 5.0), xycoords="axes fraction", **style)
+        texts[name] = ax.annotate("", (1.0, 1.0), (4.0, 5.0), xycoords=(title, "axes fraction"), **style)
 
     def say(angle: float, values: dict[str, str]) -> list[Artist]:
         for name, text in {"": f"{angle:.1f}°".replace("-", "−"), **values}.items():
@@ -345,7 +347,7 @@ def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, di
 
 
 def follower(ax: Axes, names: list[str]) -> Callable[[float, dict[str, float]], list[Artist]]:
-    """An upright line, and a dot on each curve; what moves them comes back."""
+    """Draw an upright line, and a dot on each curve; return the function that moves them."""
     cursor = ax.axvline(0.0, color=GREY, linewidth=1.0, zorder=1.9)  # below curves, so that labels stay where they are
     colors = [FORCE_COLORS.get(name, BLUE) for name in names]
     dots = ax.scatter(np.zeros(len(names)), np.zeros(len(names)), c=colors, s=24.0, zorder=2.8, edgecolors="white")
@@ -359,7 +361,7 @@ def follower(ax: Axes, names: list[str]) -> Callable[[float, dict[str, float]], 
 
 
 def renewed(ax: Axes, moving: list[Artist], draw: Callable[[], None]) -> None:
-    """Draw again what moves: what was drawn for the last frame goes."""
+    """Draw again all that moves, after removing the artists of the last frame."""
     for artist in moving:
         artist.remove()
     stays = set(ax.get_children())

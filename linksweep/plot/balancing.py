@@ -75,14 +75,14 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
 
 
 def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
-    """The shaking force's components against each other."""
+    """Draw the shaking force's components against each other."""
     grid(ax)
     ax.set_aspect("equal", adjustable="datalim")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     ax.axvline(0.0, color=GREY, linewidth=0.8)
     for name, cycle in cycles.items():
         _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
-        ax.plot(x, y, label=_said(name, np.hypot(x, y)), **STYLES[name])
+        ax.plot(x, y, label=_legend_text(name, np.hypot(x, y)), **STYLES[name])
     ax.plot([0.0], [0.0], "+", color="black", markersize=9.0)
     ax.set_xlabel("$F_{sx}$ [N]")
     ax.set_ylabel("$F_{sy}$ [N]")
@@ -94,21 +94,21 @@ def _over_angle(ax: Axes, cycles: dict[str, xr.Dataset], name: str, title: str, 
     grid(ax)
     for when, cycle in cycles.items():
         angles, values = signals.revolution(cycle, cycle[name])
-        ax.plot(angles, values, label=_said(when, values), **STYLES[when])
+        ax.plot(angles, values, label=_legend_text(when, values), **STYLES[when])
     crank_angles(ax, angles)
     ax.set_ylabel(label)
     ax.set_title(title, loc="left")
     _legend(ax)
 
 
-def _said(when: str, values: np.ndarray) -> str:
-    """When, and how large: a force that is balanced away leaves its rounding."""
+def _legend_text(when: str, values: np.ndarray) -> str:
+    """Return the legend of a curve, with its largest value; a force that is balanced away leaves its rounding."""
     largest = float(np.nanmax(np.abs(values)))
     return f"{when}, up to {signals.number(largest if largest > ROUNDING else 0.0)}"
 
 
 def _legend(ax: Axes) -> None:
-    """Above the curves, in room made for it."""
+    """Draw the legend above the curves, in room made for it."""
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.16 * (high - low), auto=True)
     style: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "handlelength": 1.8, "columnspacing": 1.0}

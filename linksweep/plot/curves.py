@@ -48,15 +48,15 @@ class Curve(NamedTuple):
     angles: np.ndarray
     values: np.ndarray
     style: dict[str, Any]
-    said: str  # at its peak
+    name_at_peak: str  # at its peak
 
 
 class Mark(NamedTuple):
-    """A peak to be marked on a curve, and what to call it."""
+    """A peak to be marked on a curve, and its name."""
 
     peak: signals.Peak
     curve: Curve
-    said: str
+    name_at_peak: str
 
 
 def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
@@ -111,7 +111,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     runaway = any(found and found.value > HEADROOM * top for found in peaks)
     _legend(ax, curves, widest, runaway)
     marks = [
-        Mark(found, curve, curve.said)
+        Mark(found, curve, curve.name_at_peak)
         for found, curve in zip(peaks, curves, strict=True)
         if found and found.value > 0.0
     ]
@@ -181,22 +181,22 @@ def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
 
 
 def kind_of(drawing: Drawing, names: Iterable[str]) -> str:
-    """What forces these are: "pin", "guide", "pin and guide"."""
+    """Return the kind of forces in words: "pin", "guide", "pin and guide"."""
     return " and ".join(dict.fromkeys("pin" if drawing.at_pin(name) else drawing.joint_of[name] for name in names))
 
 
-def _curves(ds: xr.Dataset, found: dict[str, xr.DataArray]) -> list[Curve]:
-    """The lines to draw: one for each signal, or of a single signal one for each design."""
+def _curves(ds: xr.Dataset, by_name: dict[str, xr.DataArray]) -> list[Curve]:
+    """Return the lines to draw: one for each signal, or of a single signal one for each design."""
     curves: list[Curve] = []
     joints = drawing_of_results(ds).joint_of
-    for name, signal in found.items():
+    for name, signal in by_name.items():
         for design, values in signals.designs(signal).items():
             color, dashes = STYLES[len(curves) % len(STYLES)]
             text = design or f"{signals.symbol(name)} ({joints.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
-            said = signals.symbol(name) if len(found) > 1 else ""
+            symbol_at_peak = signals.symbol(name) if len(by_name) > 1 else ""
             angles, row = signals.revolution(ds, values)
-            curves.append(Curve(name, text, angles, row, style, said))
+            curves.append(Curve(name, text, angles, row, style, symbol_at_peak))
     return curves
 
 
@@ -207,9 +207,9 @@ def _draw(ax: Axes, curves: Sequence[Curve]) -> None:
 
 
 def _span(ax: Axes, extremes: Sequence[signals.Peak], size: float) -> None:
-    """Limits of a signed signal: zero and what is to be shown, with room for labels."""
-    shown = [float(np.clip(found.value, -size, size)) for found in extremes]
-    low, high = min([0.0, *shown]), max([0.0, *shown])
+    """Set the limits of a signed signal, with zero and room for labels."""
+    values = [float(np.clip(peak.value, -size, size)) for peak in extremes]
+    low, high = min([0.0, *values]), max([0.0, *values])
     room = 0.18 * ((high - low) or 1.0)
     ax.set_ylim(low - room, high + room)
 
@@ -222,24 +222,24 @@ def _extremes(curve: Curve) -> dict[str, signals.Peak]:
 
 
 def shade_gaps(ax: Axes, ds: xr.Dataset, signal: xr.DataArray) -> signals.Gap | None:
-    """Shade the angles without a result and say why; the widest comes back. Several designs have gaps of their own."""
+    """Shade the angles without a result, with the reason; return the widest. Several designs have gaps of their own."""
     status = ds.get("status", signal)
     if any(dim != signals.INDEX for dim in status.dims):
         return None
-    found = signals.gaps(ds, signal)
-    for gap in found:
+    gaps = signals.gaps(ds, signal)
+    for gap in gaps:
         ax.axvspan(gap.start, gap.stop, facecolor=SHADE, linewidth=0.0, zorder=0.4)
-    found.sort(key=lambda gap: gap.start - gap.stop)
-    room, said = ROOM * np.ptp(ds[signals.INDEX].values), set()
-    for gap in found:
-        if gap.width >= room or gap.reason not in said:
+    gaps.sort(key=lambda gap: gap.start - gap.stop)
+    room, reasons = ROOM * np.ptp(ds[signals.INDEX].values), set()
+    for gap in gaps:
+        if gap.width >= room or gap.reason not in reasons:
             _reason(ax, gap, room)
-        said.add(gap.reason)
-    return found[0] if found else None
+        reasons.add(gap.reason)
+    return gaps[0] if gaps else None
 
 
 def _reason(ax: Axes, gap: signals.Gap, room: float) -> None:
-    """Why there is no result: a word in the gap, or beside it where there is no room [degree] for one."""
+    """Write the reason why there is no result in the gap, or beside it where there is no room [degree]."""
     from linksweep.plot.kit.labels import label
 
     width, middle = gap.width, 0.5 * (gap.start + gap.stop)
@@ -253,7 +253,8 @@ def _reason(ax: Axes, gap: signals.Gap, room: float) -> None:
 
 
 def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None, runaway: bool) -> None:
-    """In the room above the curves; where a curve runs through that, in the gap beside it, or where there is room."""
+    """Draw the legend above the curves; where a curve runs through that room, in the gap beside it, or where there
+    is room."""
     compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5, "frameon": False}
     texts = [curve.text for curve in curves]
     if not runaway:
@@ -270,7 +271,7 @@ def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None, runaway:
 
 
 def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
-    """A dot on each peak with its value and angle; an arrowhead at the edge for one that is off the scale.
+    """Draw a dot on each peak with its value and angle; an arrowhead at the edge for one that is off the scale.
 
     Peaks that lie close together, as those of two pins of one link often do, share a label with a line for each.
     """
@@ -290,9 +291,9 @@ def _mark(ax: Axes, marks: Sequence[Mark], units: str) -> None:
     for group in groups:
         x, y, first = group[0]
         heading = [] if y == first.peak.value else [("off scale:", GREY)]
-        label(ax, x, y, *heading, *((_said(mark, units), mark.curve.style["color"]) for *_, mark in group))
+        label(ax, x, y, *heading, *((_label_text(mark, units), mark.curve.style["color"]) for *_, mark in group))
 
 
-def _said(mark: Mark, units: str) -> str:
-    text = f"{mark.said} {signals.number(mark.peak.value)} {units} at {signals.angle_text(mark.peak.angle)}"
+def _label_text(mark: Mark, units: str) -> str:
+    text = f"{mark.name_at_peak} {signals.number(mark.peak.value)} {units} at {signals.angle_text(mark.peak.angle)}"
     return text.strip()

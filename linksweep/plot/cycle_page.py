@@ -79,14 +79,14 @@ def cycle(ds: xr.Dataset) -> Figure:
 
 
 def _most_loaded(ds: xr.Dataset) -> tuple[str, float]:
-    """The pin force that is largest, and the crank angle [degree] where it is."""
-    found = {}
+    """Return the pin force that is largest, and the crank angle [degree] where it is."""
+    peaks = {}
     for name in force_names(ds, None):
         if not drawing_of_results(ds).at_pin(name):
             continue
         largest = signals.peak(*signals.revolution(ds, signals.magnitude(ds, name)))
         if largest is None:
             raise ValueError("there is no result at any angle of the Dataset: see its status, and linksweep.check")
-        found[name] = largest
-    name = max(found, key=lambda force: found[force].value)
-    return name, found[name].angle
+        peaks[name] = largest
+    name = max(peaks, key=lambda force: peaks[force].value)
+    return name, peaks[name].angle

@@ -73,15 +73,15 @@ def film_of_cylinders(machine: MultiCylinder, frames: int) -> Film:
     curve.plot(cycle["theta2"], cycle["T12"])
     curve.set(xlabel="crank angle $\\theta_2$ [°]", ylabel="torque $T_{12}$ [N m]", xlim=(0.0, machine.period))
     torque = np.interp(angles, cycle["theta2"], cycle["T12"], period=machine.period)
-    say, follow = readings(curve, "$\\theta_2$ =", {"T12": signals.symbol("T12")}), follower(curve, ["T12"])
+    write, follow = readings(curve, "$\\theta_2$ =", {"T12": signals.symbol("T12")}), follower(curve, ["T12"])
     moving: list[list[Artist]] = [[] for _ in panels]
 
     def draw(k: int) -> list[Artist]:
         for ax, own, ends, there in zip(panels, shots, arrows, moving, strict=True):
             renewed(ax, there, partial(draw_frame, ax, drawing, own[k].shape, ends[k], longest))
         now = float(torque[k])
-        said = say(float(angles[k]), {"T12": f"{signals.number(now)} N m"})
-        return [*(artist for there in moving for artist in there), *said, *follow(float(angles[k]), {"T12": now})]
+        texts = write(float(angles[k]), {"T12": f"{signals.number(now)} N m"})
+        return [*(artist for there in moving for artist in there), *texts, *follow(float(angles[k]), {"T12": now})]
 
     return Film(figure, draw, frames)
 

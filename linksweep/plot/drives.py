@@ -113,7 +113,7 @@ def torque_with_flywheel(found: xr.Dataset) -> Figure:
 
 
 def _torques(ax: Axes, found: xr.Dataset) -> None:
-    """The torque at constant speed around the constant torque, what is given too much and too little shaded."""
+    """Draw the torque at constant speed around the constant torque, excess and lack shaded."""
     steady = replace(scene_of(found, whole=False), alpha2=0.0)
     cycle = sweep(steady, found[signals.INDEX].values, ["reduced_torque"])
     angles, without = signals.revolution(cycle, cycle["reduced_torque"])
@@ -121,12 +121,12 @@ def _torques(ax: Axes, found: xr.Dataset) -> None:
     grid(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     more = (constant - without) * np.sign(float(found["speed"].mean())) > 0.0
-    for where, color, said in ((more, SKY, "gains speed"), (~more, ORANGE, "loses speed")):
-        ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=said)
+    for where, color, text in ((more, SKY, "gains speed"), (~more, ORANGE, "loses speed")):
+        ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=text)
     ax.plot(angles, without, color=BLUE, label="without flywheel")
     size = constant if abs(constant) > ROUNDING * np.max(np.abs(without)) else 0.0
-    said = f"with it, constant: {signals.number(size)} N m"
-    ax.axhline(constant, color=VERMILION, linestyle="--", label=said)
+    text = f"with it, constant: {signals.number(size)} N m"
+    ax.axhline(constant, color=VERMILION, linestyle="--", label=text)
     crank_angles(ax, angles)
     ax.margins(y=0.12)
     ax.set_ylabel("torque on the crank [N m]")
@@ -136,9 +136,9 @@ def _torques(ax: Axes, found: xr.Dataset) -> None:
 def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
     from linksweep.plot.kit.labels import label
 
-    for said, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
-        ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{said}")
-        label(ax, angles[k], speed[k], (f"{said} {speed[k]:#.5g} rad/s", BLUE))
+    for end, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
+        ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{end}")
+        label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} rad/s", BLUE))
 
 
 def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:

@@ -32,7 +32,7 @@ LEFT_OUT = "no value"
 
 
 class Side(NamedTuple):
-    """An axis of the map: the dim along it, its designs in order, where they lie, and the cells' edges."""
+    """An axis of the map: its dim, its designs in order, their places, and the cells' edges."""
 
     dim: str
     name: str
@@ -42,7 +42,7 @@ class Side(NamedTuple):
     edges: np.ndarray
     words: tuple[str, ...]
 
-    def said(self, place: float) -> str:
+    def text_at(self, place: float) -> str:
         value = self.words[round(place)] if self.words else f"{place:.4g}"
         unit = self.text.rpartition(" [")[2].rstrip("]") if self.text.endswith("]") else ""
         return f"{in_words(self.name)} {value} {unit}".strip()
@@ -119,14 +119,14 @@ def heat_map(
 
 
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
-    """The axes x and y."""
+    """Return the axes x and y."""
     require_study(ds)
     refuse(variable_problems(ds, "name", name, numbers=True))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])
     known = {**{dim: dim for dim in dims}, **_along(ds, dims)}
-    given = {"x": x, "y": y}
-    refuse([p for path, side in given.items() if side is not None for p in name_problems(path, side, known)])
+    names = {"x": x, "y": y}
+    refuse([p for path, side in names.items() if side is not None for p in name_problems(path, side, known)])
     if x is None:
         x = next(dim for dim in reversed(dims) if y is None or dim != known[y])
     if y is None:
@@ -143,7 +143,7 @@ def _other_dims(name: str, dims: list[str]) -> str:
 
 
 def _along(ds: xr.Dataset, dims: list[str]) -> dict[str, str]:
-    """Coordinates along one of the dims alone, and that dim."""
+    """Return the coordinates along one of the dims alone, with that dim."""
     one_dim = {str(name): str(item.dims[0]) for name, item in ds.coords.items() if item.ndim == 1}
     return {name: dim for name, dim in one_dim.items() if dim in dims}
 
@@ -152,18 +152,18 @@ def _side(ds: xr.Dataset, name: str, dim: str) -> Side:
     if name == dim:
         name = _parameter(ds, dim)
     item = ds[name].rename(name)  # of a dim without labels its positions
-    found = column(item, item.values)
-    order = np.argsort(found.values)
-    places = found.values[order]
+    item_column = column(item, item.values)
+    order = np.argsort(item_column.values)
+    places = item_column.values[order]
     if len(places) < 2 or not (np.diff(places) > 0.0).all():
         refuse([f"{name} has {quote(places.tolist())} along {dim}: must be two numbers or more, all different"])
     middles = 0.5 * (places[1:] + places[:-1])
     ends = 2.0 * places[[0, -1]] - middles[[0, -1]]
-    return Side(dim, name, found.text, order, places, np.array([ends[0], *middles, ends[1]]), found.words)
+    return Side(dim, name, item_column.text, order, places, np.array([ends[0], *middles, ends[1]]), item_column.words)
 
 
 def _parameter(ds: xr.Dataset, dim: str) -> str:
-    """The parameter whose values are the labels of a dim, for it has a unit; else the dim."""
+    """Return the parameter whose values are the labels of a dim, for it has a unit; else the dim."""
     others = [name for name, over in _along(ds, [dim]).items() if over == dim and name != dim]
     if dim not in ds.coords:
         return others[0] if len(others) == 1 else dim
@@ -171,34 +171,34 @@ def _parameter(ds: xr.Dataset, dim: str) -> str:
 
 
 def _field(item: xr.DataArray, across: Side, up: Side) -> np.ndarray:
-    """A result at the cells (y, x); one that does not depend on a dim is the same along it."""
+    """Return a result at the cells (y, x), repeated along a dim that it does not depend on."""
     shape = {up.dim: len(up.order), across.dim: len(across.order)}
     values = item.variable.set_dims(shape).transpose(*shape).values.astype(float)
     return values[np.ix_(up.order, across.order)]
 
 
 def _status(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
-    """The status at the cells; of several designs of other dims the worst."""
+    """Return the status at the cells, the worst over other dims."""
     status = ds["status"] if "status" in ds.variables else xr.DataArray(0)
     return _field(status.max([dim for dim in status.dims if dim not in (across.dim, up.dim)]), across, up)
 
 
 def _kept(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
-    """Whether all designs of a cell have peaks to choose by."""
+    """Return whether all designs of a cell have peaks."""
     sound = has_peaks(ds)
     return _field(sound.all([dim for dim in sound.dims if dim not in (across.dim, up.dim)]), across, up) > 0.0
 
 
 def _reasons(ds: xr.Dataset, status: np.ndarray, ok: np.ndarray) -> dict[str, np.ndarray]:
-    """Which cells have no colour, by the word of their status."""
+    """Return the cells without colour, by the word of their status."""
     words = str(ds["status"].attrs.get("flag_meanings", "")).split() if "status" in ds.variables else []
-    found = {word: (status == code) & ~ok for code, word in enumerate(words) if code}
-    found[LEFT_OUT] = ~ok & ~np.any([np.zeros(ok.shape, dtype=bool), *found.values()], axis=0)
-    return {word: cells for word, cells in found.items() if cells.any()}
+    cells_of = {word: (status == code) & ~ok for code, word in enumerate(words) if code}
+    cells_of[LEFT_OUT] = ~ok & ~np.any([np.zeros(ok.shape, dtype=bool), *cells_of.values()], axis=0)
+    return {word: cells for word, cells in cells_of.items() if cells.any()}
 
 
 def _not_ok(ax: Axes, across: Side, up: Side, reasons: dict[str, np.ndarray]) -> list[Any]:
-    """Grey cells, hatched by reason; handles for the legend."""
+    """Draw grey cells, hatched by reason; return handles for the legend."""
     from matplotlib.patches import Patch, PathPatch
 
     handles = []
@@ -216,7 +216,7 @@ def _not_ok(ax: Axes, across: Side, up: Side, reasons: dict[str, np.ndarray]) ->
 
 
 def _outline(x: np.ndarray, y: np.ndarray, cells: np.ndarray) -> Any:
-    """The rectangles of cells, each row's neighbours as one, in one path, so that a hatch runs through."""
+    """Return one path of the cells' rectangles, each row's neighbours as one, so that a hatch runs through."""
     from matplotlib.path import Path
 
     steps = np.diff(cells.astype(np.int8), axis=1, prepend=0, append=0)
@@ -228,11 +228,11 @@ def _outline(x: np.ndarray, y: np.ndarray, cells: np.ndarray) -> Any:
 
 
 def _best(ax: Axes, item: xr.DataArray, across: Side, up: Side, values: np.ndarray, maximize: bool) -> Any:
-    """A star on the best design; its handle says what and where it is."""
+    """Draw a star on the best design; return its handle, with value and place."""
     row, col = np.unravel_index(np.nanargmax(values if maximize else -values), values.shape)
     at = float(across.places[col]), float(up.places[row])
     text = f"{'largest' if maximize else 'least'}: {signals.number(values[row, col])} {item.attrs.get('units', '')}"
-    where = f"{text.strip()} at {across.said(at[0])}, {up.said(at[1])}"
+    where = f"{text.strip()} at {across.text_at(at[0])}, {up.text_at(at[1])}"
     style: dict[str, Any] = {
         "marker": "*",
         "markersize": 13.0,
@@ -253,7 +253,7 @@ def _require_on_map(ds: xr.Dataset, contours: Any, across: Side, up: Side) -> No
 
 
 def _contours(ax: Axes, item: xr.DataArray, across: Side, up: Side, ok: np.ndarray) -> Any:
-    """Lines of equal value with their numbers, where designs are ok; their handle for the legend."""
+    """Draw lines of equal value with their numbers, where designs are ok; return their handle."""
     from matplotlib.lines import Line2D
     from matplotlib.patheffects import withStroke
 
@@ -278,6 +278,6 @@ def _axes(ax: Axes, across: Side, up: Side) -> None:
 
 
 def _legend(ax: Axes, handles: list[Any]) -> None:
-    """Above the map, which has no room of its own."""
+    """Draw the legend above the map."""
     place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
     ax.legend(handles=handles, ncols=1, fontsize="small", frameon=False, **place)

@@ -1,4 +1,4 @@
-"""Plots of why a pin is loaded: the shares of each source over the revolution, and the peak over the crank's speed."""
+"""Plots of the causes of a pin's load: the contribution of each source, and the peak over the crank's speed."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = Non
 
 
 def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[float, np.ndarray]) -> None:
-    """Limits for what is usual, where the sum runs off beside a gap."""
+    """Limit the axis to usual sizes, where the sum grows without bound beside a gap."""
     size = np.abs(whole)
     largest = signals.peak(angles, size)
-    shown = signals.scale([size], [largest])
-    if largest is None or largest.value <= shown:
+    usual = signals.scale([size], [largest])
+    if largest is None or largest.value <= usual:
         return
-    tops = [float(np.max(np.abs(stack[size <= shown]), initial=0.0)) for stack in stacks.values()]
+    tops = [float(np.max(np.abs(stack[size <= usual]), initial=0.0)) for stack in stacks.values()]
     ax.set_ylim(-1.1 * tops[1], 1.1 * tops[0])
     ax.set_title("off scale beside a gap", loc="left", fontsize="small", color=GREY)
 
@@ -130,17 +130,17 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
     omega2 = xr.DataArray(values, dims="omega2")
     at_rest = replace(scene, omega2=0.0)
     name = f"{of}_peak"
-    found = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
-    refuse([] if np.isfinite(found).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
+    worst = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
+    refuse([] if np.isfinite(worst).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
     rest = float(peaks(at_rest, of=[of])[name])
     limit = None if below is None else float(speed_limit(scene, of, below).omega2_limit)
     ax = axes_or_new(ax)
     grid(ax)
-    symbol, units = signals.symbol(of) or of, signals.unit(found, "N")
-    ax.plot(omega2.values, found.values, color=BLUE, label=f"peak of {symbol}")
+    symbol, units = signals.symbol(of) or of, signals.unit(worst, "N")
+    ax.plot(omega2.values, worst.values, color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
     ax.set_xlim(float(omega2.min()), float(omega2.max()))
-    ax.set_ylim(0.0, ROOM * max(float(found.max()), below or 0.0) or 1.0)
+    ax.set_ylim(0.0, ROOM * max(float(worst.max()), below or 0.0) or 1.0)
     if limit is not None:
         _mark_limit(ax, limit, float(below or 0.0), units)
     ax.set_xlabel("crank speed $\\omega_2$ [rad/s]")
@@ -152,8 +152,9 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
 def _mark_limit(ax: Axes, limit: float, below: float, units: str) -> None:
     from linksweep.plot.kit.labels import label
 
-    said = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {limit:.5g} rad/s")
-    ax.axhline(below, color=VERMILION, linewidth=1.0, label=f"limit, {signals.number(below)} {units}: kept {said}")
+    range_text = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {limit:.5g} rad/s")
+    text = f"limit, {signals.number(below)} {units}: kept {range_text}"
+    ax.axhline(below, color=VERMILION, linewidth=1.0, label=text)
     if ax.get_xlim()[0] <= limit <= ax.get_xlim()[1]:
         ax.plot([limit], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
         label(ax, limit, below, (f"{limit:.5g} rad/s = {limit * 30.0 / np.pi:.5g} rpm", VERMILION))

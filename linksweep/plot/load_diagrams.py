@@ -67,15 +67,15 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
-    shown = signals.scale([size], [largest])
+    usual = signals.scale([size], [largest])
     _cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
     units = signals.unit(signals.components(ds, pin)[0], "N")
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
-        tip = _peak(ax, pin, largest, signals.tip(x, y), units, shown)
-    _ticks(ax, angles, x, y, shown)
-    near = size <= BEYOND * shown
+        tip = _peak(ax, pin, largest, signals.tip(x, y), units, usual)
+    _ticks(ax, angles, x, y, usual)
+    near = size <= BEYOND * usual
     _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
     ax.set_xlabel(f"{_axis(drawing, pin, link, 'x')} [{units}]")
     ax.set_ylabel(f"{_axis(drawing, pin, link, 'y')} [{units}]")
@@ -128,14 +128,14 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
 
 
 def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ...]]) -> None:
-    """The loci of all pins side by side, so that they can be compared."""
+    """Draw the loci of all pins to one scale."""
     sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
-    shown = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
+    usual = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
     _cross(ax)
     for force, (_, x, y) in loci.items():
         text = f"{signals.symbol(force)} ({drawing_of_results(ds).joint_text(force)})"
         ax.plot(x, y, color=FORCE_COLORS[force], label=text)
-    near = [np.hypot(x, y) <= BEYOND * shown for _, x, y in loci.values()]
+    near = [np.hypot(x, y) <= BEYOND * usual for _, x, y in loci.values()]
     _limits(
         ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))
     )
@@ -144,7 +144,7 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
 
 
 def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
-    """Crank angles [degree] and the components of a force in the axes of a frame."""
+    """Return crank angles [degree] and the components of a force in the axes of a frame."""
     angles, x, y = signals.revolution(ds, *signals.components(ds, pin))
     drawing = drawing_of_results(ds)
     link = drawing.link_of(pin, frame)
@@ -154,12 +154,12 @@ def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
 
 
 def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Components of the same force in axes turned by an angle, a variable of the sweep or a parameter."""
+    """Return the components of a force in axes turned by an angle, a variable of the sweep or a parameter."""
     if name not in ds:
         scene = scene_of(ds, whole=False)
         standing = getattr(scene.mechanism, name, None)
-        given = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
-        ds = ds.assign({name: given[name]})
+        angles = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
+        ds = ds.assign({name: angles[name]})
     angle = np.radians(signals.revolution(ds, ds[name])[1])
     cos, sin = np.cos(angle), np.sin(angle)
     return cos * x + sin * y, cos * y - sin * x
@@ -174,7 +174,7 @@ def _axis(drawing: Drawing, pin: str, link: int, axis: str) -> str:
 
 
 def _cross(ax: Axes) -> None:
-    """Equal scales, with a cross through the origin."""
+    """Set equal scales, and draw a cross through the origin."""
     from matplotlib.ticker import MaxNLocator
 
     ax.set_aspect("equal", adjustable="datalim")
@@ -186,22 +186,22 @@ def _cross(ax: Axes) -> None:
 
 
 def _limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
-    """Limits around these points and the origin, which equal scales may still widen."""
+    """Set limits around these points and the origin, which equal scales may still widen."""
     for values, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
         low, high = np.min(values, initial=0.0), np.max(values, initial=0.0)
         room = 0.16 * ((high - low) or 1.0)
         set_limits(low - room, high + room, auto=True)
 
 
-def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: float) -> None:
-    """Dots on the locus at round crank angles, some with the angle beside them."""
+def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: float) -> None:
+    """Draw dots on the locus at round crank angles, some with the angle beside them."""
     from linksweep.plot.kit.labels import label
 
     at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
     closed = (x[0], y[0]) == (x[-1], y[-1])
     at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
     points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
-    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * shown)
+    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * usual)
     at, points = at[there], points[:, there]
     ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
     named = at % LABELLED == 0.0
@@ -211,12 +211,12 @@ def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, shown: fl
         label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
 
 
-def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, shown: float) -> np.ndarray:
-    """An arrow from the origin to the largest load, with value and angles; where it was drawn to comes back."""
+def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, usual: float) -> np.ndarray:
+    """Draw an arrow from the origin to the largest load, with value and angles; return its end."""
     from linksweep.plot.kit.labels import arrow, label
 
-    beyond = largest.value > BEYOND * shown
-    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
+    beyond = largest.value > BEYOND * usual
+    tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
     direction = np.degrees(np.arctan2(force[1], force[0]))
     lines = (
         f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}",

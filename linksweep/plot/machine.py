@@ -1,4 +1,4 @@
-"""The mechanism drawn in a position: bars, pins, block, ground, the crank's circle and the curve of a point."""
+"""The machine drawn in a position: bars, pins, block, ground, the crank's circle and the curve of a point."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BLOCK = 0.13  # of the bars' lengths together: half a side of the block
 
 
 class Shape(NamedTuple):
-    """A mechanism in a position, lengths in [m]: its pins, and what of it moves on which curve."""
+    """A machine in a position, lengths in [m]: its pins, and the curves of point and block."""
 
     pins: dict[str, np.ndarray]
     curve: np.ndarray  # (2, angles) of the coupler point, closed
@@ -106,7 +106,7 @@ def _angle(theta2: Any) -> float:
 
 
 def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
-    """Positions of the pins over the revolution and, behind them, at these angles; the status says where none."""
+    """Return the positions of the pins over the revolution and, behind them, at these angles, with their status."""
     set_aside: dict[str, Any] = dict(drawing.ideal)
     machine = replace(scene.mechanism, **set_aside)
     geometry = Scene(machine, omega2=0.0, drive="crank")
@@ -129,28 +129,33 @@ def _require_assembled(cycle: xr.Dataset, angle: float) -> None:
 
 
 def _meaning(cycle: xr.Dataset) -> str:
-    """What the last status says, to follow a subject."""
+    """Return the meaning of the last status, to follow a subject."""
     word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values[-1])]
-    said = {"cannot_assemble": "cannot be assembled", "toggle": "is at a toggle", "dead_centre": "is at a dead centre"}
-    said |= {"jammed": "is jammed by friction", "jammed_two_solutions": "is jammed by friction, with two solutions"}
-    said |= {"no_cycle": "does not turn fully, as the cycle in its cylinder must"}
-    return said.get(word, word.replace("_", " "))
+    phrases = {
+        "cannot_assemble": "cannot be assembled",
+        "toggle": "is at a toggle",
+        "dead_centre": "is at a dead centre",
+    }
+    phrases |= {"jammed": "is jammed by friction", "jammed_two_solutions": "is jammed by friction, with two solutions"}
+    phrases |= {"no_cycle": "does not turn fully, as the cycle in its cylinder must"}
+    return phrases.get(word, word.replace("_", " "))
 
 
 def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.ndarray]:
-    """Components (x, y) of the force in each joint at the angle [N]. Raises ValueError where there are none."""
-    found = sweep(scene, theta2=[angle], outputs=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
-    signals.require_one_design(found.values())
-    if found.status.values[-1]:
-        raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(found)}")
+    """Return the components (x, y) of the force in each joint at the angle [N]. Raises ValueError where there are
+    none."""
+    sample = sweep(scene, theta2=[angle], outputs=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
+    signals.require_one_design(sample.values())
+    if sample.status.values[-1]:
+        raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(sample)}")
     return {
-        force: np.array([part.values.reshape(-1)[0] for part in signals.components(found, force)])
+        force: np.array([part.values.reshape(-1)[0] for part in signals.components(sample, force)])
         for force in drawing.forces
     }
 
 
 def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
-    """Where everything is at the last angle of a cycle, and the curves that it moves on over the others."""
+    """Return the machine's shape at the last angle of a cycle, with the curves over the others."""
     machine, carrier = scene.mechanism, drawing.carrier
     moving = {pin: np.array([cycle[f"{pin}x"].values, cycle[f"{pin}y"].values]) for pin in drawing.moving}
     fixed = drawing.fixed(machine)
@@ -169,7 +174,7 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
 
 
 def _axes(machine: Any, drawing: Drawing, cycle: xr.Dataset, link: int) -> np.ndarray:
-    """The direction of a link's own x axis at each angle of the cycle, (2, angles)."""
+    """Return the direction of a link's own x axis at each angle of the cycle, (2, angles)."""
     name = drawing.frames[link].angle
     angle = cycle[name].values if name in cycle else np.full(cycle.sizes[signals.INDEX], _one(getattr(machine, name)))
     return np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
@@ -182,7 +187,8 @@ def _one(number: Any) -> float:
 
 
 def draw_ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
-    """What stays: the frame's line or the guide, a support under each ground pin, the curves of pin B and the point."""
+    """Draw all that stands: the frame's line or the guide, a support under each ground pin, the curves of pin B and
+    point."""
     machine: Any = scene.mechanism
     grid(ax)
     standing = np.array([shape.pins[pin] for pin in drawing.fixed(machine)])
@@ -196,7 +202,7 @@ def draw_ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
 
 
 def _guide(ax: Axes, guide: Guide, shape: Shape, half: float) -> None:
-    """The guide's centre line, and its sides along the block's travel."""
+    """Draw the guide's centre line, and its sides along the block's travel."""
     low, high = _travel(shape, guide.foot)
     ends = min(low - 2.0 * half, 0.0), max(high + 2.0 * half, 0.0)
     machine_parts.centre_line(ax, np.array([guide.foot + end * guide.along for end in ends]))
@@ -204,7 +210,7 @@ def _guide(ax: Axes, guide: Guide, shape: Shape, half: float) -> None:
 
 
 def _offset(ax: Axes, scene: Scene, drawing: Drawing) -> None:
-    """How far a guide lies off the crank's bearing."""
+    """Draw the distance of a guide from the crank's bearing."""
     from linksweep.plot.kit.labels import label
 
     foot = np.zeros(2) if drawing.guide is None else drawing.guide(scene.mechanism).foot
@@ -215,19 +221,20 @@ def _offset(ax: Axes, scene: Scene, drawing: Drawing) -> None:
 
 
 def _travel(shape: Shape, origin: np.ndarray) -> tuple[float, float]:
-    """Between which places the block slides along its line [m], seen from a point."""
+    """Return the ends of the block's travel along its line [m], from a point."""
     places = np.sum((shape.block - origin[:, None]) * shape.along, axis=0)
     return float(np.nanmin(places)), float(np.nanmax(places))
 
 
 def _half_side(drawing: Drawing, shape: Shape) -> float:
-    """Half a side of the block [m]."""
+    """Return half a side of the block [m]."""
     lengths = [shape.pins[end] - shape.pins[start] for start, end in drawing.bars.values()]
     return BLOCK * sum(float(np.hypot(*length)) for length in [*lengths, shape.pins.get("D", np.zeros(2))])
 
 
 def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
-    """What moves: the block, bars from pin to pin with their numbers, the point tied to its link, the pins on top."""
+    """Draw all that moves: the block, bars from pin to pin with their numbers, the point tied to its link, the pins
+    on top."""
     ends = {number: np.array([shape.pins[pin] for pin in pair]) for number, pair in drawing.bars.items()}
     covered = [shape.point]
     if drawing.block is not None:
@@ -248,7 +255,7 @@ def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
 
 
 def _block(ax: Axes, block: Block, shape: Shape, half: float, bars: np.ndarray) -> None:
-    """The block with its number, where no bar covers that; `bars` has the ends of each."""
+    """Draw the block with its number, where no bar covers that; `bars` has the ends of each."""
     centre, (x, y) = shape.pins[block.pin], shape.along[:, -1]
     machine_parts.block(ax, centre, np.array([x, y]), half)
     places = centre + 0.7 * half * np.array([(x, y), (-x, -y), (-y, x), (y, -x)])
@@ -258,7 +265,7 @@ def _block(ax: Axes, block: Block, shape: Shape, half: float, bars: np.ndarray) 
 
 
 def _slideway(ax: Axes, drawing: Drawing, shape: Shape, number: int, pivot: np.ndarray) -> np.ndarray:
-    """A link that a block slides on, as long as its travel; its ends come back."""
+    """Draw a link that carries a block, as long as the block's travel; return its ends."""
     along, half = shape.along[:, -1], _half_side(drawing, shape)
     across = np.array([-along[1], along[0]])
     foot = pivot + across * (across @ (shape.pins["B"] - pivot))
@@ -278,7 +285,7 @@ def _names(ax: Axes, shape: Shape, point: str) -> None:
 
 
 def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray]) -> None:
-    """An arrow from each joint, to one scale, with its value [N]."""
+    """Draw an arrow from each joint, to one scale, with its value [N]."""
     from linksweep.plot.kit.labels import arrow, label
 
     extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))

@@ -63,12 +63,12 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
         line(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
-    shown = signals.scale([size], [largest])
-    near = [np.where(size <= BEYOND * shown, part, np.nan) for part in (x, y)]
+    usual = signals.scale([size], [largest])
+    near = [np.where(size <= BEYOND * usual, part, np.nan) for part in (x, y)]
     ax.plot(*near, color=BLUE, label=f"_path {name}")
     _dots(ax, angles, *near)
     if largest and largest.value > 0.0:
-        _largest(ax, name, largest, signals.tip(x, y), shown, signals.unit(ds[f"{name}x"], "N"))
+        _largest(ax, name, largest, signals.tip(x, y), usual, signals.unit(ds[f"{name}x"], "N"))
     ax.margins(0.14)
     for axis, set_label in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
         words = "shaking force " if name == "Fs" else "force "
@@ -84,15 +84,15 @@ def _dots(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
     ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_dots")
     for angle, point in zip(at, points.T, strict=True):
         if angle % LABELLED == 0.0 and np.isfinite(point).all():
-            said = "$\\theta_2$ = " if angle == 0.0 else ""
-            label(ax, *point, (said + signals.angle_text(angle), BLUE))
+            prefix = "$\\theta_2$ = " if angle == 0.0 else ""
+            label(ax, *point, (prefix + signals.angle_text(angle), BLUE))
 
 
-def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, shown: float, units: str) -> None:
+def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, usual: float, units: str) -> None:
     from linksweep.plot.kit.labels import arrow, label
 
-    beyond = peak.value > BEYOND * shown
-    tip = force * (BEYOND * shown / np.hypot(*force)) if beyond else force
+    beyond = peak.value > BEYOND * usual
+    tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
     arrow(ax, np.zeros(2), tip, VERMILION)
     ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")
     lines = (
@@ -149,7 +149,7 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     width = 0.8 * step / len(wanted)
     for k, (name, amplitude) in enumerate(zip(wanted, chosen, strict=True)):
         place = order + (k - 0.5 * (len(wanted) - 1)) * width
-        ax.bar(place, amplitude.values, width, color=COLORS[k], label=_said(name, amplitude))
+        ax.bar(place, amplitude.values, width, color=COLORS[k], label=_legend_text(name, amplitude))
     ax.xaxis.set_major_locator(MaxNLocator(16, integer=True))
     ax.set_xlabel("order [turns per turn of the crank]")
     ax.set_ylabel(f"amplitude [{units.pop()}]")
@@ -159,8 +159,8 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     return ax
 
 
-def _said(name: str, amplitude: xr.DataArray) -> str:
-    """A signal, and its largest order."""
+def _legend_text(name: str, amplitude: xr.DataArray) -> str:
+    """Return the legend of a signal, with its largest order."""
     text = f"$F_{{{name[1:]}}}$" if name[0] == "F" else signals.symbol(name) or name.replace("_", " ")
     if not np.nansum(amplitude.values) > 0.0:
         return text

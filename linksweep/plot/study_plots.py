@@ -89,16 +89,16 @@ def scatter(
     """
     require_study(ds)
     better = requested("maximize", maximize)
-    given = {"x": x, "y": y} | ({} if color is None else {"color": color})
-    found = [problem for path, name in given.items() for problem in variable_problems(ds, path, name)]
-    refuse(found + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
-    designs = designs_of(ds, given.values())
+    names = {"x": x, "y": y} | ({} if color is None else {"color": color})
+    problems = [problem for path, name in names.items() for problem in variable_problems(ds, path, name)]
+    refuse(problems + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
+    designs = designs_of(ds, names.values())
     best = _front(designs, (x, y), better) if front else np.array([], dtype=int)
-    shown = by_chance(designs.number, DOTS, best)
+    drawn = by_chance(designs.number, DOTS, best)
     across, up = designs.columns[x], designs.columns[y]
     ax = axes_or_new(ax)
     grid(ax)
-    _dots(ax, across.values[shown], up.values[shown], designs, shown, color)
+    _dots(ax, across.values[drawn], up.values[drawn], designs, drawn, color)
     if front:
         steps: dict[str, Any] = {
             "color": VERMILION,
@@ -116,30 +116,30 @@ def scatter(
     return ax
 
 
-def _dots(ax: Axes, x: np.ndarray, y: np.ndarray, designs: Designs, shown: np.ndarray, color: str | None) -> None:
-    size = float(np.clip(400.0 / np.sqrt(len(shown)), 2.0, 20.0))
-    dots: dict[str, Any] = {"s": size, "linewidths": 0.0, "rasterized": True, "label": designs.counted(len(shown))}
+def _dots(ax: Axes, x: np.ndarray, y: np.ndarray, designs: Designs, drawn: np.ndarray, color: str | None) -> None:
+    size = float(np.clip(400.0 / np.sqrt(len(drawn)), 2.0, 20.0))
+    dots: dict[str, Any] = {"s": size, "linewidths": 0.0, "rasterized": True, "label": designs.counted(len(drawn))}
     if color is None:
         ax.scatter(x, y, color=BLUE, alpha=0.6, **dots)
         return
     third = designs.columns[color]
     limits = span(third.values)
-    cloud = ax.scatter(x, y, c=third.values[shown], norm=norm(limits), cmap="viridis", **dots)
+    cloud = ax.scatter(x, y, c=third.values[drawn], norm=norm(limits), cmap="viridis", **dots)
     color_bar(ax, cloud, third, limits)
 
 
 def _front(designs: Designs, names: tuple[str, str], better: list[str]) -> np.ndarray:
-    """Positions of the designs on the front, the best in the first of the two first."""
+    """Return the positions of the designs on the front, the best in the first of the two first."""
     costs = [designs.columns[name].values * (-1.0 if name in better else 1.0) for name in names]
     return front_of(np.stack(costs, axis=-1))
 
 
-def _scale(ax: Axes, which: str, found: Column, keep: np.ndarray) -> None:
+def _scale(ax: Axes, which: str, item: Column, keep: np.ndarray) -> None:
     """Scale and label of the axis x or y, on which the designs to be kept are seen in any case."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    low, high = span(found.values)
-    kept = found.values[keep]
+    low, high = span(item.values)
+    kept = item.values[keep]
     low, high = min([low, *kept]), max([high, *kept])
     if many_sizes((low, high)):
         room = (high / low) ** ROOM
@@ -151,9 +151,9 @@ def _scale(ax: Axes, which: str, found: Column, keep: np.ndarray) -> None:
     else:
         room = ROOM * (high - low) or 0.5
         ax.set(**{f"{which}lim": (low - room, high + room)})
-    ax.set(**{f"{which}label": found.text})
-    if found.words:
-        ax.set(**{f"{which}ticks": range(len(found.words)), f"{which}ticklabels": found.words})
+    ax.set(**{f"{which}label": item.text})
+    if item.words:
+        ax.set(**{f"{which}ticks": range(len(item.words)), f"{which}ticklabels": item.words})
 
 
 def parallel_coordinates(
@@ -201,19 +201,19 @@ def parallel_coordinates(
     '$T_{12}$ peak\\n[N m]'
     """
     require_study(ds)
-    wanted = _axis_names(ds) if names is None else requested("names", names)
-    refuse(_problems(ds, wanted, color, best))
-    designs = designs_of(ds, wanted if color is None else [*wanted, color])
-    objective = designs.columns[wanted[-1] if color is None else color]
+    of_axes = _axis_names(ds) if names is None else requested("names", names)
+    refuse(_problems(ds, of_axes, color, best))
+    designs = designs_of(ds, of_axes if color is None else [*of_axes, color])
+    objective = designs.columns[of_axes[-1] if color is None else color]
     order = np.argsort(-objective.values if maximize else objective.values, kind="stable")
-    shown = by_chance(designs.number, LINES, order[:best])
-    shown = shown[np.argsort(-np.argsort(order)[shown])]  # better ones on top
-    axes = [designs.columns[name] for name in wanted]
+    drawn = by_chance(designs.number, LINES, order[:best])
+    drawn = drawn[np.argsort(-np.argsort(order)[drawn])]  # better ones on top
+    axes = [designs.columns[name] for name in of_axes]
     points = np.stack([_fractions(item) for item in axes], axis=-1)
-    ax = axes_or_new(ax, figsize=(max(6.4, 1.25 * len(wanted) + 1.4), 4.4))
-    _lines(ax, points[shown], objective, shown, designs.counted(len(shown)))
+    ax = axes_or_new(ax, figsize=(max(6.4, 1.25 * len(of_axes) + 1.4), 4.4))
+    _lines(ax, points[drawn], objective, drawn, designs.counted(len(drawn)))
     if best:
-        _mark(ax, points[order[:best]], f"best: {designs.said(order[:best])}")
+        _mark(ax, points[order[:best]], f"best: {designs.labels_at(order[:best])}")
     for place, item in enumerate(axes):
         _axis(ax, place, item)
     ax.set_xticks(range(len(axes)), [item.text.replace(" [", "\n[") for item in axes])
@@ -224,20 +224,20 @@ def parallel_coordinates(
     return ax
 
 
-def _problems(ds: xr.Dataset, wanted: list[str], color: Any, best: Any) -> list[str]:
-    problems = [problem for name in wanted for problem in variable_problems(ds, "names", name)]
+def _problems(ds: xr.Dataset, names: list[str], color: Any, best: Any) -> list[str]:
+    problems = [problem for name in names for problem in variable_problems(ds, "names", name)]
     problems += [] if color is None else variable_problems(ds, "color", color)
-    if not 2 <= len(wanted) <= MOST_AXES:
-        problems.append(f"names: there are {len(wanted)}, {wanted}; must be from 2 to {MOST_AXES}")
+    if not 2 <= len(names) <= MOST_AXES:
+        problems.append(f"names: there are {len(names)}, {names}; must be from 2 to {MOST_AXES}")
     return problems + ([] if best == 0 else count_problems("best", best))
 
 
 def _axis_names(ds: xr.Dataset) -> list[str]:
-    """The parameters that vary, labels of dims only where no parameter says more, and the peaks."""
+    """Return the parameters that vary, labels of dims only where no parameter says more, and the peaks."""
     labels = [str(name) for name in ds.dims if name in ds.coords and ds[name].dtype.kind not in "iu"]
     parameters = [str(name) for name, item in ds.coords.items() if item.dims and name not in ds.dims]
-    said = {ds[name].values.tobytes() for name in parameters}
-    labels = [name for name in labels if ds[name].values.tobytes() not in said]
+    known = {ds[name].values.tobytes() for name in parameters}
+    labels = [name for name in labels if ds[name].values.tobytes() not in known]
     return [*labels, *parameters, *(str(name) for name in ds.data_vars if str(name).endswith("_peak"))]
 
 
@@ -247,35 +247,35 @@ def _limits(item: Column) -> tuple[float, float]:
 
 
 def _fractions(item: Column, values: np.ndarray | None = None) -> np.ndarray:
-    """Heights on an axis that runs from 0 to 1; what is off its scale, just beyond the end."""
+    """Return heights on an axis that runs from 0 to 1; of values off its scale, just beyond the end."""
     limits, values = _limits(item), item.values if values is None else values
     low, high = np.log(limits) if many_sizes(limits) else limits
     values = np.log(np.maximum(values, limits[0] / 2.0)) if many_sizes(limits) else values
     return np.clip((values - low) / (high - low), -ROOM, 1.0 + ROOM)
 
 
-def _lines(ax: Axes, points: np.ndarray, objective: Column, shown: np.ndarray, said: str) -> None:
-    """A line for each design, coloured by the objective."""
+def _lines(ax: Axes, points: np.ndarray, objective: Column, drawn: np.ndarray, text: str) -> None:
+    """Draw a line for each design, coloured by the objective."""
     from matplotlib.collections import LineCollection
 
     limits = span(objective.values)
     places = np.broadcast_to(np.arange(points.shape[1]), points.shape)
-    alpha = float(np.clip(30.0 / np.sqrt(len(shown)), 0.25, 0.9))
-    style: dict[str, Any] = {"linewidths": 0.8, "alpha": alpha, "rasterized": True, "label": said, "zorder": 1.5}
+    alpha = float(np.clip(30.0 / np.sqrt(len(drawn)), 0.25, 0.9))
+    style: dict[str, Any] = {"linewidths": 0.8, "alpha": alpha, "rasterized": True, "label": text, "zorder": 1.5}
     lines = LineCollection(list(np.stack([places, points], axis=-1)), norm=norm(limits), cmap="viridis", **style)
-    lines.set_array(objective.values[shown])
+    lines.set_array(objective.values[drawn])
     ax.add_collection(lines, autolim=False)
     color_bar(ax, lines, objective, limits)
 
 
-def _mark(ax: Axes, points: np.ndarray, said: str) -> None:
-    """The best, as lines that stand out; the legend tells which they are."""
+def _mark(ax: Axes, points: np.ndarray, text: str) -> None:
+    """Draw the best as lines that stand out, with their labels in the legend."""
     for k, row in enumerate(points):
-        ax.plot(row, color=VERMILION, linewidth=1.5, zorder=2.2, label=f"_best {k + 1}" if k else said)
+        ax.plot(row, color=VERMILION, linewidth=1.5, zorder=2.2, label=f"_best {k + 1}" if k else text)
 
 
 def _axis(ax: Axes, place: int, item: Column) -> None:
-    """An upright axis with its numbers, and an arrow where lines go off its scale."""
+    """Draw an upright axis with its numbers, and an arrow where lines go off its scale."""
     from matplotlib.patheffects import withStroke
 
     halo: list[Any] = [withStroke(linewidth=2.5, foreground=ax.get_facecolor())]
@@ -293,6 +293,6 @@ def _axis(ax: Axes, place: int, item: Column) -> None:
 
 
 def _legend(ax: Axes) -> Any:
-    """Above the axes, where there are no designs."""
+    """Draw the legend above the axes, where there are no designs."""
     place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
     return ax.legend(ncols=1, fontsize="small", frameon=False, **place)

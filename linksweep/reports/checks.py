@@ -1,4 +1,4 @@
-"""What was checked, with a verdict on each; and where a revolution is not whole, what must be said before all else."""
+"""The checks of a report, each with a verdict, and the warning above all numbers where a revolution is not whole."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ EXACT = 1e-6  # of the largest force: far below what anybody knows of masses and
 
 
 class Check(NamedTuple):
-    """What was looked at, what was found, and whether it is as it should be; None where that is not for us to say."""
+    """A row of the checks: title, result, and whether it is as it should be; None where that is not for this page to
+    state."""
 
     title: str
-    found: Markup
+    result: Markup
     sound: bool | None = None
 
     @property
@@ -42,8 +43,8 @@ class Check(NamedTuple):
 
 
 def checks(results: Results) -> Markup:
-    """The table of all checks."""
-    rows = ((item.title, item.found, item.verdict) for item in _checks(results))
+    """Return the table of all checks."""
+    rows = ((item.title, item.result, item.verdict) for item in _checks(results))
     return table((), rows, class_="checks")
 
 
@@ -61,64 +62,64 @@ def _other(name: str, finding: xr.DataArray, results: Results) -> Iterator[Check
 
 
 def _checks(results: Results) -> Iterator[Check]:
-    found = results.check
-    for name in [str(name) for name in found.data_vars if name not in KNOWN]:
-        yield from _other(name, found[name], results)
-    if "grashof" in found:
-        yield Check("Grashof class", joined(_words(found["grashof"]).replace(" ", "-")))
-    if "rocker_motion" in found:
-        yield Check("rocker", joined(_words(found["rocker_motion"])))
-    if "arc_start" in found:
+    findings = results.check
+    for name in [str(name) for name in findings.data_vars if name not in KNOWN]:
+        yield from _other(name, findings[name], results)
+    if "grashof" in findings:
+        yield Check("Grashof class", joined(_words(findings["grashof"]).replace(" ", "-")))
+    if "rocker_motion" in findings:
+        yield Check("rocker", joined(_words(findings["rocker_motion"])))
+    if "arc_start" in findings:
         yield _assembly(results)
     for name, title in {"toggle_angle": "toggles", "dead_centre_angle": "dead centres of the drive"}.items():
-        if name in found:
-            yield _special(title, found[name], results)
+        if name in findings:
+            yield _special(title, findings[name], results)
     yield from _transmission(results)
-    if "friction_to_jam" in found:
+    if "friction_to_jam" in findings:
         yield from _friction(results)
-    if "alpha2_difference" in found:
+    if "alpha2_difference" in findings:
         yield _acceleration(results)
     yield from _numerical(results.cycle)
 
 
 def _assembly(results: Results) -> Check:
     """Check at which crank angles the machine can be assembled."""
-    found, everywhere = results.check, int(results.check["assembly"]) == 0
-    arcs = [(a, b) for a, b in zip(found["arc_start"].values, found["arc_end"].values, strict=True) if np.isfinite(a)]
-    parts = _listed([joined(angle(a, 2), " to ", angle(b % 360.0, 2)) for a, b in arcs])
+    findings, everywhere = results.check, int(results.check["assembly"]) == 0
+    arcs = zip(findings["arc_start"].values, findings["arc_end"].values, strict=True)
+    parts = _listed([joined(angle(a, 2), " to ", angle(b % 360.0, 2)) for a, b in arcs if np.isfinite(a)])
     sound = everywhere or (results.part is not None and results.sound)
     return Check("assembly", joined("at every crank angle" if everywhere else parts), sound)
 
 
 def _special(title: str, angles: xr.DataArray, results: Results) -> Check:
-    """Crank angles that it had better not come to."""
-    there = [float(one) for one in np.unique(angles.values[np.isfinite(angles.values)])]
-    said = _listed([angle(one, 2) for one in there]) if there else "none"
-    return Check(title, joined(said), not any(map(results.reaches, there)))
+    """Check that the machine does not come to special crank angles."""
+    special = [float(one) for one in np.unique(angles.values[np.isfinite(angles.values)])]
+    text = _listed([angle(one, 2) for one in special]) if special else "none"
+    return Check(title, joined(text), not any(map(results.reaches, special)))
 
 
 def _transmission(results: Results) -> Iterator[Check]:
-    """The angles of the coupler, where the crank drives: with another drive they say nothing."""
-    found = results.peaks
-    if "transmission_angle_min" not in found:
+    """Yield the range of the transmission angle, where the crank drives: with another drive it means nothing."""
+    worst = results.peaks
+    if "transmission_angle_min" not in worst:
         return
-    least, most = (float(found[f"transmission_angle_{end}"]) for end in ("min", "max"))
+    least, most = (float(worst[f"transmission_angle_{end}"]) for end in ("min", "max"))
     if results.scene.drive != "crank" or not np.isfinite(least):
         return
-    at = (float(found[f"transmission_angle_{end}_at"]) for end in ("min", "max"))
+    at = (float(worst[f"transmission_angle_{end}_at"]) for end in ("min", "max"))
     ends = [joined(angle(end), " (at ", angle(where), ")") for end, where in zip((least, most), at, strict=True)]
-    said = joined(ends[0], " to ", ends[1]) if most - least > 1e-9 else angle(least)
+    text = joined(ends[0], " to ", ends[1]) if most - least > 1e-9 else angle(least)
     sound = least >= LEAST_TRANSMISSION
-    yield Check("transmission angle", joined(said, "" if sound else f", below {LEAST_TRANSMISSION:g}°"), sound)
+    yield Check("transmission angle", joined(text, "" if sound else f", below {LEAST_TRANSMISSION:g}°"), sound)
 
 
 def _friction(results: Results) -> Iterator[Check]:
-    found = results.check
-    jams = bool(np.isfinite(found["jam_angle"]).any()) and (results.part is None or not results.sound)
-    least, given = float(found["friction_to_jam"]), float(results.scene.mechanism.friction)
+    findings = results.check
+    jams = bool(np.isfinite(findings["jam_angle"]).any()) and (results.part is None or not results.sound)
+    least, friction = float(findings["friction_to_jam"]), float(results.scene.mechanism.friction)
     if np.isfinite(least):
-        said = joined("wedges the slide from ", number(least), " on; here ", number(given, text=f"{given:g}"))
-        yield Check("friction", said, not jams)
+        text = joined("wedges the slide from ", number(least), " on; here ", number(friction, text=f"{friction:g}"))
+        yield Check("friction", text, not jams)
 
 
 def _acceleration(results: Results) -> Check:
@@ -129,7 +130,7 @@ def _acceleration(results: Results) -> Check:
 
 
 def _numerical(cycle: xr.Dataset) -> Iterator[Check]:
-    """How far the powers of a sample are from balance, and how far rounding can be felt, at worst."""
+    """Yield the largest error of the balance of power, and of rounding."""
     for name, title, of, limit in (
         ("power_residual", "balance of power", "of its terms, at worst", BALANCED),
         ("error_bound", "rounding", "of the largest pin force", EXACT),
@@ -140,7 +141,7 @@ def _numerical(cycle: xr.Dataset) -> Iterator[Check]:
 
 
 def warnings(results: Results) -> Markup:
-    """What must be said before all numbers."""
+    """Return the warning above all numbers where there are angles without a result."""
     if results.sound:
         return Markup()
     way = "all the way" if results.part else "all the way round"
@@ -154,20 +155,20 @@ def warnings(results: Results) -> Markup:
 
 
 def _where(results: Results) -> Markup:
-    """Between which angles there is no result, and why."""
+    """Return the angles without a result, by reason."""
     ds = results.cycle.rename({results.scene.mechanism.index: signals.INDEX})
     by_reason: dict[str, list[Markup]] = {}
     for gap in signals.gaps(ds, ds["status"]):
         by_reason.setdefault(gap.reason, []).append(_angles(gap))
-    found = [joined(reason, " ", _listed(angles)) for reason, angles in by_reason.items()]
+    reasons = [joined(reason, " ", _listed(angles)) for reason, angles in by_reason.items()]
     lost = ", no work of a cycle, no flywheel, no orders" if results.linkage else ""
     lost = "" if results.part else f"; there are no means{lost}"
     rest = f"Peaks and figures are those of the other {results.scene.mechanism.spot}s{lost}."
-    return joined("No result: ", _listed(found), ". ", rest) if found else safe(rest)
+    return joined("No result: ", _listed(reasons), ". ", rest) if reasons else safe(rest)
 
 
 def _angles(gap: signals.Gap) -> Markup:
-    """The angles of a gap: one, where but one sample has no result."""
+    """Return the angles of a gap: one, where a single sample has no result."""
     if gap.width < 2.5 / STEPS:
         return joined("at ", angle(0.5 * (gap.start + gap.stop)))
     return joined("from ", angle(gap.start), " to ", angle(gap.stop))
@@ -183,7 +184,7 @@ def _meanings(flag: xr.DataArray) -> list[str]:
 
 
 def _listed(parts: list[Markup]) -> Markup:
-    """Several things as one says them: "a, b and c"."""
+    """Join pieces as a list in words: "a, b and c"."""
     if len(parts) < 2:
         return joined(*parts)
     return joined(*(joined(part, ", ") for part in parts[:-2]), parts[-2], " and ", parts[-1])

@@ -36,16 +36,16 @@ def parts_of(machine: MultiCylinder) -> dict[str, Any]:
     engine = machine.engine
     refuse(["engine: has several designs, and a report shows one; give one"] * bool(design_labels(engine)))
     refuse(turning_problems(engine))
-    found = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS])
-    refuse([] if int(found["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
+    worst = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS])
+    refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
     mains = bearings(machine) if machine.mains else None
     return {
         "kind": f"{len(machine.crank_angles)} cylinders",
         "warnings": "",
         "machine": section("One cylinder", page_inputs.links(engine), page_inputs.loads(engine)),
         "left": joined(
-            section("Cylinders", _cylinders(machine, found)),
-            section("Peaks of all together", _peaks(machine, found)),
+            section("Cylinders", _cylinders(machine, worst)),
+            section("Peaks of all together", _peaks(machine, worst)),
         ),
         "right": joined(
             section("Motion", page_inputs.settings(engine)),
@@ -63,7 +63,7 @@ def _signals() -> list[str]:
     return [name for name in SHAKING if name not in ("Fsx", "Fsy")]
 
 
-def _cylinders(machine: MultiCylinder, found: xr.Dataset) -> Markup:
+def _cylinders(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     header = ("", "crank ahead", "bank", "place", *(symbol(name) for name in PINS))
     standing = zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True)
     rows = [
@@ -72,42 +72,42 @@ def _cylinders(machine: MultiCylinder, found: xr.Dataset) -> Markup:
             angle(ahead),
             angle(bank),
             number(1e3 * z, "mm"),
-            *(number(float(found[f"{name}_peak"][k]), "N") for name in PINS),
+            *(number(float(worst[f"{name}_peak"][k]), "N") for name in PINS),
         )
         for k, (ahead, bank, z) in enumerate(standing)
     ]
     return table(header, rows, class_="numbers")
 
 
-def _peaks(machine: MultiCylinder, found: xr.Dataset) -> Markup:
+def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     rows: list[tuple[Any, ...]] = []
     for name in _signals():
-        quantity, bound = machine.quantity[name], float(found[f"{name}_bound"])
+        quantity, bound = machine.quantity[name], float(worst[f"{name}_bound"])
         unit = page_tables.UNITS.get(quantity.units, quantity.units)
-        ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in found else {"_peak": ""}
+        ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
         what = quantity.long_name.split(",")[0].split(" of all")[0].split(" of the drive")[0]
         for end, words in ends.items():
-            value, at = float(found[name + end]), float(found[f"{name}{end}_at"])
+            value, at = float(worst[name + end]), float(worst[f"{name}{end}_at"])
             known = abs(value) > CANCELLED * bound
-            shown = (number(value if known else 0.0, unit), angle(at) if known else NONE, tiny(bound))
-            rows.append((symbol(name), tag("span", what + words, title=quantity.long_name), *shown))
+            cells = (number(value if known else 0.0, unit), angle(at) if known else NONE, tiny(bound))
+            rows.append((symbol(name), tag("span", what + words, title=quantity.long_name), *cells))
     return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
 
 
 def _drive(machine: MultiCylinder) -> Markup:
     work = duty(machine)
-    wanted = xr.DataArray(np.array(FLUCTUATIONS), dims="wanted")
-    size = flywheel(machine, wanted)["flywheel_inertia"]
+    fluctuations = xr.DataArray(np.array(FLUCTUATIONS), dims="target")
+    size = flywheel(machine, fluctuations)["flywheel_inertia"]
     rows = [
         ("mean torque", number(float(work["effort_mean"]), "N m")),
         ("mean power", number(float(work["power_mean"]), "W")),
     ]
-    rows += [(said, number(float(work[name]), "J")) for name, said in page_tables.WORKS.items()]
+    rows += [(title, number(float(work[name]), "J")) for name, title in page_tables.WORKS.items()]
     rows += [(f"flywheel for δ = {d:g}", number(float(J), "kg m²")) for d, J in zip(FLUCTUATIONS, size, strict=True)]
     return table((), rows, class_="numbers")
 
 
-def _mains(found: xr.Dataset) -> Markup:
+def _mains(loads: xr.Dataset) -> Markup:
     header = ("", "place", "largest load", "at θ₂", "equivalent load")
     rows = [
         (
@@ -117,8 +117,8 @@ def _mains(found: xr.Dataset) -> Markup:
             angle(float(one["F_peak_at"])),
             number(float(one["equivalent_load"]), "N"),
         )
-        for name in found["main"].values
-        for one in [found.sel(main=name)]
+        for name in loads["main"].values
+        for one in [loads.sel(main=name)]
     ]
     return table(header, rows, class_="numbers")
 

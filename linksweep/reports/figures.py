@@ -1,4 +1,4 @@
-"""The figures of a report, drawn for half the width of an A4 page, as pictures that stand in the page itself."""
+"""The figures of a report, drawn for half the width of an A4 page, and embedded in it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ORDERS = 6
 
 
 class Picture(NamedTuple):
-    """A panel: its title, its size [inches], and what draws it into axes."""
+    """A panel: its title, its size [inches], and the function that draws it into axes."""
 
     title: str
     size: tuple[float, float]
@@ -41,7 +41,8 @@ class Picture(NamedTuple):
 
 
 def of_the_cycle(results: Results) -> Markup:
-    """The mechanism where a pin is loaded most, pin forces, the drive, and why that pin is loaded."""
+    """Return the pictures of a cycle: the machine where a pin is loaded most, pin forces, the drive, and that load's
+    sources."""
     track, drawing = results.scene.mechanism.track, results.scene.mechanism.drawing
     if track and results.moves:
         return _wide(track.title, plot.loop, results)
@@ -49,7 +50,7 @@ def of_the_cycle(results: Results) -> Markup:
 
 
 def of_bearings_and_shaking(results: Results) -> Markup:
-    """Load diagrams of all pins, and the path and the orders of the shaking force."""
+    """Return the load diagrams of all pins, and the path and the orders of the shaking force."""
     drawing = results.scene.mechanism.drawing
     if not drawing or not results.moves:
         return Markup()
@@ -85,17 +86,17 @@ def _of_shaking(results: Results) -> Iterator[Picture]:
     ds = results.cycle.isel({signals.INDEX: slice(STEPS * int(results.inertia_period))})
     yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(ds, ax=ax))
     if results.whole:
-        found = orders(ds, ["Fsx", "Fsy"], n=ORDERS)
-        yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(found, ax=ax))
+        harmonics = orders(ds, ["Fsx", "Fsy"], n=ORDERS)
+        yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(harmonics, ax=ax))
 
 
 def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
-    """The pin force that is largest, and its crank angle [degree]: the exact one where that has a position to draw."""
-    found = results.peaks
+    """Return the largest pin force and its crank angle [degree], the exact one where that has a position to draw."""
+    peaks = results.peaks
     pins = drawing.pin_forces
-    force = max(pins, key=lambda name: float(found[f"{name}_peak"]))
-    at = float(found[f"{force}_peak_at"])
-    if np.isfinite(found[f"{force}_peak"]) and int(sweep(results.scene, [at], ["status"])["status"][0]) == 0:
+    force = max(pins, key=lambda name: float(peaks[f"{name}_peak"]))
+    at = float(peaks[f"{force}_peak_at"])
+    if np.isfinite(peaks[f"{force}_peak"]) and int(sweep(results.scene, [at], ["status"])["status"][0]) == 0:
         return force, at
     largest = {
         name: signals.peak(*signals.revolution(results.cycle, signals.magnitude(results.cycle, name))) for name in pins
@@ -105,7 +106,7 @@ def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
 
 
 def _legend_below(ax: Axes) -> None:
-    """The legend below the axes, where it takes no width."""
+    """Move the legend below the axes, where it takes no width."""
     legend, entries = ax.get_legend(), ax.get_legend_handles_labels()
     if legend is not None:
         legend.remove()
@@ -130,7 +131,7 @@ def _drawn(picture: Picture) -> Markup:
 
 
 def _wide(title: str, draw: Callable[[Any], Figure], results: Results) -> Markup:
-    """A figure that brings its own panels."""
+    """Return a figure with panels of its own."""
     import matplotlib.pyplot as plt
     from matplotlib import style
 
@@ -142,7 +143,7 @@ def _wide(title: str, draw: Callable[[Any], Figure], results: Results) -> Markup
 
 
 def _image(figure: Figure, title: str) -> Markup:
-    """The figure as SVG within the page, the same to the byte for the same results."""
+    """Return a figure as SVG within the page, byte for byte equal for equal results."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": None})
     data = b64encode(drawn.getvalue()).decode("ascii")

@@ -1,4 +1,4 @@
-"""What a scene is, as a person writes it down: its links in a table, its motion and its loads in words.
+"""The inputs of a report: links in a table, motion and loads in words.
 
 Lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in bar. What changes over the
 revolution is told by its least and its greatest value.
@@ -42,7 +42,7 @@ def kind_of(scene: Scene) -> str:
 
 
 def links(scene: Scene) -> Markup:
-    """The table of a mechanism's links: how long and how heavy, and where the centre of gravity is."""
+    """Return the table of the links: lengths, masses, inertias and centres of gravity."""
     mechanism: Any = scene.mechanism
     header = ["link", "length", "mass", "inertia", "centre of gravity", "made as"]
     rows = [_link(mechanism, body.role, body.number) for body in mechanism.bodies]
@@ -52,25 +52,25 @@ def links(scene: Scene) -> Markup:
 
 
 def loads(scene: Scene) -> Markup:
-    """The table of what acts on it, each load in words."""
+    """Return the table of the loads, each in words."""
     pairs = zip(_sampled(scene).loads, scene.loads, strict=True)
-    rows = [(f"load {k}", _load(load) + _followed(given)) for k, (load, given) in enumerate(pairs, 1)]
+    rows = [(f"load {k}", _load(load) + _followed(own)) for k, (load, own) in enumerate(pairs, 1)]
     return table((), rows, class_="settings") if rows else Markup()
 
 
 def settings(scene: Scene) -> Markup:
-    """The table of the mechanism's other numbers, its drive, its speed and gravity."""
+    """Return the table of the mechanism's other parameters, its drive, its speed and gravity."""
     rows = [*_of_mechanism(scene.mechanism), *_of_motion(_sampled(scene)), ("gravity", _gravity(*scene.gravity))]
     return table((), rows, class_="settings")
 
 
 def _sampled(scene: Scene) -> Scene:
-    """The scene with what changes over the revolution at so many angles."""
+    """Return the scene with arrays and functions over the angle at `SAMPLES` angles."""
     return scene.at(crank_grid(SAMPLES, scene.period, scene.mechanism.index))
 
 
 def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
-    """A row of the table; a slider or a block has its numbers in the mechanism itself."""
+    """Return a row of the table; a slider or a block has its numbers in the mechanism itself."""
     link = getattr(mechanism, role, None)
     owner, prefix = (mechanism, f"{role}_") if link is None else (link, "")
     values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
@@ -91,13 +91,13 @@ def _made(link: Any) -> str:
 
 
 def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
-    """Its numbers that no link has, and its branch."""
+    """Yield the parameters that belong to no link, and the branch."""
     bodies = tuple(f"{body.role}_" for body in mechanism.bodies)
     for item in fields(mechanism):
         value = getattr(mechanism, item.name)
         kind = item.metadata["rule"].kind if "rule" in item.metadata else ""
         if kind and not item.name.startswith(bodies) and not (kind in LEFT_OUT and value == item.default):
-            yield _said(item.name), quantity(value, kind)
+            yield _plain(item.name), quantity(value, kind)
         elif isinstance(value, str):
             yield item.name, value
 
@@ -135,65 +135,66 @@ def _gravity(x: float, y: float) -> str:
 
 
 def _load(load: Any) -> str:
-    """A load in words: a force or torque as a sentence, anything else by its numbers' names."""
+    """Return a load in words: a force or torque as a sentence, anything else by its parameters."""
     if not isinstance(load, Load):
         return _in_words(load)
-    said = []
+    parts = []
     if load.force is not None:
         start = "its centre of gravity" if load.origin == "cg" else "its first pin"
         at = f"{quantity(load.at[0], 'length')} at {quantity(load.at[1], 'angle')} from {start}"
         axes = "" if load.frame == "ground" else ", in its own axes"
-        said.append(f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {at}")
+        parts.append(f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {at}")
     if load.torque is not None:
-        said.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
-    return "; ".join(said + _breaks(load.breaks))
+        parts.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
+    return "; ".join(parts + _breaks(load.breaks))
 
 
 def _followed(load: Any) -> str:
-    """The position that a load follows, and the way on which it acts."""
+    """Return the position that a load follows, and the direction of motion in which it acts."""
     if getattr(load, "over", None) is None:
         return ""
     return f", over {load.over}" + (f", while {load.while_}" if load.while_ else "")
 
 
 def _breaks(angles: Sequence[float]) -> list[str]:
-    """Angles at which a load jumps, kinks or is narrow."""
+    """Return in words the angles at which a load jumps, kinks or is narrow."""
     return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
 
 
 def _in_words(part: Any) -> str:
-    """A dataclass by its name and its numbers: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
-    said = []
+    """Return a dataclass in words: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
+    parts = []
     for item in fields(part):
         value = getattr(part, item.name)
         if is_dataclass(value):
-            said.append(f"{_said(item.name)}: {_in_words(value)}")
+            parts.append(f"{_plain(item.name)}: {_in_words(value)}")
         elif "rule" in item.metadata:
-            said += [] if value is None else [f"{_said(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
+            parts += [] if value is None else [f"{_plain(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
         elif item.name == "breaks":
-            said += _breaks(value)
+            parts += _breaks(value)
         elif value is None:
             continue
         else:
-            said.append(f"{_said(item.name)} {_end(value) if isinstance(value, tuple) else value}")
+            parts.append(f"{_plain(item.name)} {_end(value) if isinstance(value, tuple) else value}")
     kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
-    return f"{kind} ({', '.join(said)})"
+    return f"{kind} ({', '.join(parts)})"
 
 
 def _end(end: tuple[str, Any, Any]) -> str:
-    """Where a spring is fixed: a point of the ground, or of a link in its polar coordinates."""
+    """Return the end of a spring in words: a point of the ground, or of a link in its polar coordinates."""
     link, first, second = end
     if link == "ground":
         return f"ground at ({quantity(first, 'length')}, {quantity(second, 'length')})"
     return f"{link}, {quantity(first, 'length')} at {quantity(second, 'angle')} from its first pin"
 
 
-def _said(name: str) -> str:
+def _plain(name: str) -> str:
     return name.strip("_").replace("_", " ")
 
 
 def quantity(value: Any, kind: str) -> str:
-    """A number of a scene in the unit in which it is shown; of what changes over the revolution the extremes."""
+    """Format a parameter in its unit on the page; for one that changes over the revolution, its least and largest
+    value."""
     unit, factor = SHOWN.get(kind, (UNITS[kind].replace("^2", "²").replace("^3", "³"), 1.0))
     if kind == "length" and np.max(np.abs(value)) >= LONG:
         unit, factor = "m", 1.0
@@ -206,7 +207,7 @@ def _number(value: Any, factor: float = 1.0) -> str:
 
 
 def _short(value: float) -> str:
-    """Five significant digits, small numbers with a power of ten, without zeros that say nothing."""
+    """Format a number with five significant digits, without trailing zeros."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e7:
         return f"{value:.{max(5, len(f'{abs(value):.0f}'))}g}"
     digits, _, power = f"{value:.4e}".partition("e")

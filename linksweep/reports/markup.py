@@ -1,4 +1,4 @@
-"""HTML in small pieces, and numbers as one writes them.
+"""HTML in small pieces, and numbers as text.
 
 Text is escaped wherever it is put into a piece; only a Markup goes in as it stands.
 """
@@ -26,24 +26,24 @@ class Markup(str):
 
 
 def safe(content: Any) -> Markup:
-    """Content as HTML: a Markup as it is, anything else as the text that it is."""
+    """Return content as HTML: a Markup as it is, anything else as escaped text."""
     return content if isinstance(content, Markup) else Markup(escape(str(content)))
 
 
 def joined(*pieces: Any) -> Markup:
-    """Pieces one after the other."""
+    """Join pieces of content."""
     return Markup("".join(map(safe, pieces)))
 
 
 def tag(name: str, *contents: Any, **attributes: str) -> Markup:
-    """An element with its contents; ``class_`` stands for the attribute class."""
+    """Return an element with its contents; ``class_`` stands for the attribute class."""
     words = "".join(f' {key.rstrip("_")}="{escape(value)}"' for key, value in attributes.items())
     end = "" if name in VOID else f"</{name}>"
     return Markup(f"<{name}{words}>{joined(*contents)}{end}")
 
 
 def table(header: Sequence[Any], rows: Iterable[Sequence[Any]], **attributes: str) -> Markup:
-    """A table; the first cell of each row is its head."""
+    """Return a table; the first cell of each row is its head."""
     lines = [tag("tr", tag("th", row[0], scope="row"), *(tag("td", cell) for cell in row[1:])) for row in rows]
     head = [tag("thead", tag("tr", *(tag("th", cell, scope="col") for cell in header)))] if header else []
     return tag("table", *head, tag("tbody", *lines), **attributes)
@@ -55,33 +55,33 @@ def section(title: str, *contents: Markup) -> Markup:
 
 
 def number(value: float, unit: str = "", text: str = "") -> Markup:
-    """A number in four significant digits, or as the text says, with its unit.
+    """Return a number with its unit, in four significant digits or as `text`.
 
     The whole of the number stands in the element's value, for whoever reads the page by a program.
     """
     if math.isnan(value):
         return safe(NONE)
-    shown = written(text or signals.number(value)) if math.isfinite(value) else "∞" if value > 0.0 else "−∞"
-    return joined(tag("data", shown, value=repr(float(value))), with_unit("", unit))
+    digits = written(text or signals.number(value)) if math.isfinite(value) else "∞" if value > 0.0 else "−∞"
+    return joined(tag("data", digits, value=repr(float(value))), with_unit("", unit))
 
 
 def tiny(value: float) -> Markup:
-    """A number of which only the order of magnitude matters."""
+    """Return a number in two digits, where only its order of magnitude matters."""
     return number(value, text=f"{value:.1e}" if value else "0")
 
 
 def angle(value: float, digits: int = 1) -> Markup:
-    """An angle [degree]."""
+    """Return an angle [degree]."""
     return number(value, "°", f"{value:.{digits}f}")
 
 
 def with_unit(text: str, unit: str) -> str:
-    """A number's text and its unit, which no line break parts."""
+    """Return a number's text and its unit without a line break between them."""
     return text + (unit if unit in ("", "°") else THIN + unit)
 
 
 def written(text: str) -> str:
-    """A number's digits in groups of three where there are five or more, its power of ten raised."""
+    """Return a number's digits in groups of three where there are five or more, its power of ten raised."""
     digits, _, power = text.replace("-", "−").partition("e")
     whole, point, rest = digits.partition(".")
     if len(whole.lstrip("−")) > 4:
@@ -91,6 +91,6 @@ def written(text: str) -> str:
 
 
 def symbol(name: str) -> str:
-    """F32 as one writes it, F₃₂; a name in words without its underscores."""
+    """Return F32 as F₃₂; a name in words without its underscores."""
     letter, rest = name[:1], name[1:]
     return letter + rest.translate(LOWERED) if re.fullmatch(r"\d+|s", rest) else name.replace("_", " ")

@@ -1,4 +1,4 @@
-"""report(scene, "report.html"): all that matters about one machine on a page to print, in a file that stands alone.
+"""report(scene, "report.html"): inputs, checks, peaks and figures of one machine on a page to print, in one file.
 
 The template is `page.html`. Inputs, checks, tables and figures are pieces of their own: `page_inputs`, `page_checks`,
 `page_tables`, `page_figures`. There is no date in the page, and the figures are drawn with matplotlib's own settings
@@ -91,7 +91,7 @@ def report(
 
 
 def page(scene: Scene, title: str | None = None, part: Range | None = None) -> str:
-    """The report as HTML."""
+    """Return the report as HTML."""
     results = results_of(scene, part)
     kind = page_inputs.kind_of(scene)
     between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
@@ -150,9 +150,9 @@ def _design_problems(scene: Scene) -> list[str]:
     labels = design_labels(scene)
     if not labels:
         return []
-    said = ", ".join(f"{dim} ({len(values)})" for dim, values in labels.items())
+    sizes = ", ".join(f"{dim} ({len(values)})" for dim, values in labels.items())
     choice = ", ".join(f"{dim!r}: {values[0].item()!r}" for dim, values in labels.items())
     return [
-        f"the scene is over several designs, {said}, and a report shows one: choose it, "
+        f"the scene is over several designs, {sizes}, and a report shows one: choose it, "
         f"ls.report(ls.scene_at(scene, {{{choice}}}), ...), or of a Dataset with isel"
     ]

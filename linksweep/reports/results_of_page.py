@@ -1,4 +1,4 @@
-"""What a report tells of a scene, computed once: its cycle, its peaks, and whatever of the rest applies to it."""
+"""The results of a scene that a report shows, each computed once."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Range = tuple[float, float]
 
 
 class Results(NamedTuple):
-    """Datasets of one design; None for what does not apply to its mechanism, or to how it moves."""
+    """Datasets of one design; None for those that do not apply to its mechanism, or to its motion."""
 
     scene: Scene
     part: Range | None
@@ -39,53 +39,53 @@ class Results(NamedTuple):
 
     @property
     def forces(self) -> tuple[str, ...]:
-        """What is sought at each angle: pin forces, torques, the force of a track."""
+        """Default quantities of peaks: pin forces, torques, the force of a track."""
         return self.scene.mechanism.peak_quantities(self.scene.drive)
 
     @property
     def linkage(self) -> bool:
-        """Return whether the machine has links, and so pins, a drive's power and shaking."""
+        """True where the machine has links, and so pins, a drive's power and shaking."""
         return bool(self.scene.mechanism.bodies)
 
     @property
     def inertia_period(self) -> float:
-        """After which what inertia alone makes repeats itself [degree]: a turn, unless the crank's speed takes two."""
+        """Period of the inertia of the links alone [degree]: a turn, unless the crank's speed takes two."""
         index = self.scene.mechanism.index
         over = {*self.scene.functions, *(path for path, array in self.scene.arrays.items() if index in array.dims)}
         return self.scene.period if over & {"omega2", "alpha2"} else self.scene.mechanism.period
 
     @property
     def moves(self) -> bool:
-        """Whether there is any result at all."""
+        """True where there is any result at all."""
         return bool((self.cycle["status"] == 0).any())
 
     @property
     def sound(self) -> bool:
-        """Whether there is one wherever it is to move."""
+        """True where there is a result at every angle of the motion."""
         return int(self.peaks["status"]) == 0 if self.part is None else bool((self.cycle["status"] == 0).all())
 
     @property
     def whole(self) -> bool:
-        """Whether that is all the way round."""
+        """True where there is a result all the way round."""
         return self.sound and self.part is None
 
     def reaches(self, angle: float) -> bool:
-        """Whether it comes to this crank angle [degree] on its way."""
+        """Return whether the motion comes to a crank angle [degree]."""
         return self.part is None or (angle - self.part[0]) % 360.0 <= self.part[1] - self.part[0]
 
 
 def results_of(scene: Scene, part: Range | None = None) -> Results:
-    """All that the report shows of a scene of one design."""
+    """Compute all results that the report shows of a scene of one design."""
     theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
     cycle = sweep(scene, theta2, _outputs(scene))
     worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
-    found = Results(scene, part, cycle, worst, check(scene))
-    if not found.linkage or part is not None:
-        return found
-    found = found._replace(geometry=geometry(scene))
-    if turning_problems(scene) or not found.whole:
-        return found
-    return found._replace(duty=duty(scene), flywheel=None if steady_problems(scene) else _flywheel(scene))
+    results = Results(scene, part, cycle, worst, check(scene))
+    if not results.linkage or part is not None:
+        return results
+    results = results._replace(geometry=geometry(scene))
+    if turning_problems(scene) or not results.whole:
+        return results
+    return results._replace(duty=duty(scene), flywheel=None if steady_problems(scene) else _flywheel(scene))
 
 
 def _angles(first: float, last: float) -> np.ndarray:
@@ -103,12 +103,12 @@ def _known(scene: Scene, *names: str) -> list[str]:
     return [name for name in names if name in scene.table.quantity]
 
 
-def _sought(scene: Scene) -> tuple[str, ...]:
+def _forces(scene: Scene) -> tuple[str, ...]:
     return scene.mechanism.peak_quantities(scene.drive)
 
 
 def _peaks_of(scene: Scene) -> list[str]:
-    return [*_sought(scene), *(f"{name}_bound" for name in _sought(scene)), *_others(scene)]
+    return [*_forces(scene), *(f"{name}_bound" for name in _forces(scene)), *_others(scene)]
 
 
 def _others(scene: Scene) -> list[str]:
@@ -116,15 +116,15 @@ def _others(scene: Scene) -> list[str]:
 
 
 def _exact(scene: Scene) -> xr.Dataset:
-    """Exact peaks, with the bounds of what is sought; of a whole revolution means as well."""
-    found = peaks(scene, _peaks_of(scene))
-    if int(found["status"]):
-        return found
+    """Return exact peaks with their bounds; for a whole revolution means as well."""
+    worst = peaks(scene, _peaks_of(scene))
+    if int(worst["status"]):
+        return worst
     shaking = [name for name in SHAKING if name in _others(scene)]
-    averages = [f"{name}_{kind}" for name in (*_sought(scene), *shaking) for kind in ("mean", "rms")]
-    return found.assign(peaks(scene, averages).data_vars)
+    averages = [f"{name}_{kind}" for name in (*_forces(scene), *shaking) for kind in ("mean", "rms")]
+    return worst.assign(peaks(scene, averages).data_vars)
 
 
 def _flywheel(scene: Scene) -> xr.Dataset:
-    wanted: Any = np.array(FLUCTUATIONS)
-    return flywheel(scene, xr.DataArray(wanted, {"wanted": wanted}, "wanted"))
+    fluctuations: Any = np.array(FLUCTUATIONS)
+    return flywheel(scene, xr.DataArray(fluctuations, {"target": fluctuations}, "target"))

@@ -1,4 +1,4 @@
-"""The tables of a report: peaks, what the drive gives, how it moves, how it shakes."""
+"""The tables of a report: peaks, drive, geometry, motion, shaking."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHAKEN = {"Fs": "N", "Ms": "N m"}
 
 
 def peaks(results: Results) -> Markup:
-    """The worst of each pin force and of the drive, and where; how sure that is; of a whole revolution the mean."""
+    """Return the table of peaks: value, angle, bound, and for a whole revolution the means."""
     more = [kind for kind in ("bound", "mean", "rms") if f"{results.forces[0]}_{kind}" in results.peaks]
     header = ("", "", "peak", f"at {symbol(results.scene.mechanism.index.replace('theta', 'θ'))}", *more)
     rows = [row for name in results.forces for row in _peak(results, name, more)]
@@ -31,14 +31,14 @@ def peaks(results: Results) -> Markup:
 
 
 def _peak(results: Results, name: str, more: list[str]) -> Iterator[tuple[Any, ...]]:
-    """A row for a magnitude; of a signed quantity one for its largest and one for its least value."""
-    found, quantity = results.peaks, results.scene.table.quantity[name]
-    size, unit = float(found[f"{name}_peak"]), UNITS.get(quantity.units, quantity.units)
-    rest = [_summary(size, kind, float(found[f"{name}_{kind}"]), unit) for kind in more]
-    ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in found else {"_peak": ""}
-    for ending, said in ends.items():
-        value, spot = float(found[name + ending]), float(found[f"{name}{ending}_at"])
-        what = tag("span", _where(results, name) + said, title=quantity.long_name)
+    """Yield a row for a magnitude; for a signed quantity one for its largest and one for its least value."""
+    worst, quantity = results.peaks, results.scene.table.quantity[name]
+    size, unit = float(worst[f"{name}_peak"]), UNITS.get(quantity.units, quantity.units)
+    rest = [_summary(size, kind, float(worst[f"{name}_{kind}"]), unit) for kind in more]
+    ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
+    for ending, suffix in ends.items():
+        value, spot = float(worst[name + ending]), float(worst[f"{name}{ending}_at"])
+        what = tag("span", _where(results, name) + suffix, title=quantity.long_name)
         yield symbol(name), what, _of(size, value, unit), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
 
 
@@ -49,19 +49,19 @@ def _summary(size: float, kind: str, value: float, unit: str) -> str:
 
 
 def _where(results: Results, name: str) -> str:
-    """Of which joint a force is, and of which link on which: "pin B: coupler on crank"; else what it is."""
-    said = results.scene.table.quantity[name].long_name
+    """Return the joint of a force and its two links, "pin B: coupler on crank"; else the quantity's name."""
+    name_in_words = results.scene.table.quantity[name].long_name
     if name in results.scene.mechanism.drives.values():
         return f"drive of the {results.scene.drive}"
-    pair, at_pin, pin = said.partition(" at pin ")
+    pair, at_pin, pin = name_in_words.partition(" at pin ")
     if not at_pin:
-        return said.split(" on the ")[0].split(" about ")[0]
+        return name_in_words.split(" on the ")[0].split(" about ")[0]
     here, there = (part.partition("(")[2].partition(")")[0] for part in pair.split(" on link "))
     return f"{'pin ' if len(pin) == 1 else ''}{pin}: {here} on {there}"
 
 
 def drive(results: Results) -> Markup:
-    """Power; of a crank that comes round, work; and of one that turns steadily, its flywheel."""
+    """Return the table of power; for a whole revolution work as well, for a steady crank its flywheel."""
     if "power_peak" not in results.peaks:
         return Markup()
     ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))
@@ -69,29 +69,29 @@ def drive(results: Results) -> Markup:
     return table((), [("power", ends), *works, *_flywheel(results.flywheel)], class_="numbers")
 
 
-def _works(found: xr.Dataset, most: float) -> list[tuple[Any, ...]]:
-    turned = float(abs(found["work_fed"]) + abs(found["work_regenerated"]))
-    works = [(title, _of(turned, float(found[name]), "J")) for name, title in WORKS.items() if name in found]
-    return [("mean power", _of(most, float(found["power_mean"]), "W")), *works]
+def _works(work: xr.Dataset, most: float) -> list[tuple[Any, ...]]:
+    turned = float(abs(work["work_fed"]) + abs(work["work_regenerated"]))
+    works = [(title, _of(turned, float(work[name]), "J")) for name, title in WORKS.items() if name in work]
+    return [("mean power", _of(most, float(work["power_mean"]), "W")), *works]
 
 
-def _flywheel(found: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
-    for one in found["wanted"].values if found is not None else ():
-        size = float(found["flywheel_inertia"].sel(wanted=one))  # type: ignore[index]
+def _flywheel(sizes: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
+    for one in sizes["target"].values if sizes is not None else ():
+        size = float(sizes["flywheel_inertia"].sel(target=one))  # type: ignore[index]
         if np.isfinite(size):
             yield joined(f"flywheel for {100.0 * one:g} % fluctuation"), number(size, "kg m²")
 
 
 def geometry(results: Results) -> Markup:
-    """How far it moves, how evenly, and where it turns round; empty where nothing of it swings or slides."""
-    found, rows = results.geometry, []
-    if found is None:
+    """Return the table of swing, stroke, time ratio and reversals; empty where nothing swings or slides."""
+    shape, rows = results.geometry, []
+    if shape is None:
         return Markup()
-    if "swing" in found:
-        rows.append(("swing of the rocker", angle(float(found["swing"]), 2)))
-    if "stroke" in found:
-        rows.append(("stroke of the slider", number(1e3 * float(found["stroke"]), "mm")))
-    rows.append(("time ratio", number(float(found["time_ratio"]))))
+    if "swing" in shape:
+        rows.append(("swing of the rocker", angle(float(shape["swing"]), 2)))
+    if "stroke" in shape:
+        rows.append(("stroke of the slider", number(1e3 * float(shape["stroke"]), "mm")))
+    rows.append(("time ratio", number(float(shape["time_ratio"]))))
     turns = [float(one) for one in _reversals(results) if np.isfinite(one)]
     if turns:
         rows.append(
@@ -101,29 +101,29 @@ def geometry(results: Results) -> Markup:
 
 
 def _reversals(results: Results) -> Iterable[float]:
-    """Crank angles at which it turns round, on its own branch."""
-    found: xr.DataArray = results.geometry["reversal_angle"]  # type: ignore[index]
+    """Return the crank angles of reversal on the machine's own branch."""
+    angles: xr.DataArray = results.geometry["reversal_angle"]  # type: ignore[index]
     branch = results.scene.mechanism.branch
-    labels = found[found.dims[0]].values
+    labels = angles[angles.dims[0]].values
     own = [label for label in labels if str(label).startswith(branch)] or list(labels)
-    return found.sel({found.dims[0]: own}).values
+    return angles.sel({angles.dims[0]: own}).values
 
 
 def shaking(results: Results) -> Markup:
     """Return the table of the force and the moment of the links' inertia on the ground."""
-    found = results.peaks
-    if not {"Fs_peak", "Ms_peak"} <= {*found}:
+    worst = results.peaks
+    if not {"Fs_peak", "Ms_peak"} <= {*worst}:
         return Markup()
-    at = float(found["Fs_peak_at"])
+    at = float(worst["Fs_peak_at"])
     at = at % results.inertia_period if results.part is None else at
-    force = joined(number(float(found["Fs_peak"]), "N"), " at ", angle(at))
-    moment = joined(number(float(found["Ms_min"])), " to ", number(float(found["Ms_max"]), "N m"))
+    force = joined(number(float(worst["Fs_peak"]), "N"), " at ", angle(at))
+    moment = joined(number(float(worst["Ms_min"])), " to ", number(float(worst["Ms_max"]), "N m"))
     rows = {"Fs": ("force", force), "Ms": ("moment about A", moment)}
     return table((), (_with_rms(results, name, row) for name, row in rows.items()), class_="numbers")
 
 
 def _with_rms(results: Results, name: str, row: tuple[str, Markup]) -> tuple[str, Markup]:
-    """Of a whole revolution, the root mean square as well."""
+    """Append the root mean square, for a whole revolution."""
     if not results.whole:
         return row
     rms = _of(float(results.peaks[f"{name}_peak"]), float(results.peaks[f"{name}_rms"]), SHAKEN[name])
@@ -145,10 +145,10 @@ def _highlight(results: Results, name: str) -> Markup:
 
 
 def _of(size: float, value: float, unit: str) -> Markup:
-    """A number that is nought where it is but what rounding leaves of terms of this size."""
+    """Return a number, 0 where it is the rounding of terms of this size."""
     return number(value, unit, "0" if abs(value) <= NOISE * size else "")
 
 
 def _there(rows: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
-    """Without those that have no number."""
+    """Return the rows that have a number."""
     return [row for row in rows if row[1] != NONE]

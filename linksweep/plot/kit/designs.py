@@ -1,4 +1,5 @@
-"""Designs of a study as plots take them: names in words, one number a design, which are ok, how much a scale shows."""
+"""Designs of a study for plots: names in words, one number for each design, the designs that are ok, the ends of a
+scale."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ class Column(NamedTuple):
 
 
 class Designs(NamedTuple):
-    """The designs that are ok, of `total` in all, with what was asked of them."""
+    """The designs that are ok, of `total` in all, with their columns and labels."""
 
     columns: dict[str, Column]
     labels: dict[str, np.ndarray]
@@ -41,23 +42,24 @@ class Designs(NamedTuple):
     def number(self) -> int:
         return len(next(iter(self.columns.values())).values)
 
-    def said(self, at: np.ndarray) -> str:
-        """Which designs these are, as `scene_at` takes them: of one dim all of its labels, of several the first."""
+    def labels_at(self, at: np.ndarray) -> str:
+        """Return the labels of designs as `scene_at` takes them: of one dim all of its labels, of several dims the
+        first design."""
         if len(self.labels) == 1:
             ((dim, values),) = self.labels.items()
             return f"{dim} {', '.join(label(value) for value in values[at].tolist())}"
         return ", ".join(f"{dim} = {label(values[at[:1]].tolist()[0])}" for dim, values in self.labels.items())
 
-    def counted(self, shown: int) -> str:
-        """How many of the designs are on the paper, and how many there are."""
+    def counted(self, drawn: int) -> str:
+        """Return in words how many designs are drawn, of how many."""
         ok = f"designs{'' if self.number == self.total else ' that are ok'}"
-        if shown == self.number:
-            return f"{whole(shown)} {ok}"
-        return f"{whole(shown)} of {whole(self.number)} {ok}, chosen by chance"
+        if drawn == self.number:
+            return f"{whole(drawn)} {ok}"
+        return f"{whole(drawn)} of {whole(self.number)} {ok}, chosen by chance"
 
 
 def designs_of(ds: xr.Dataset, names: Iterable[str]) -> Designs:
-    """The designs whose status is ok or partial_revolution and that have a finite number for each of the names.
+    """Select the designs whose status is ok or partial_revolution and that have a finite number for each of the names.
 
     Raises ValueError where a name does not hold one number for each design, and where no design is ok.
     """
@@ -80,7 +82,7 @@ def require_study(ds: Any) -> None:
 
 
 def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: bool = False) -> list[str]:
-    """What is wrong with a name that must stand for one number of each design, or one word where these will do."""
+    """Return the problems of a name that must stand for one number, or one word, for each design."""
     if problems := name_problems(path, name, map(str, ds.variables)):
         return problems
     if numbers and ds[name].dtype.kind not in "fiub":
@@ -91,14 +93,14 @@ def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: bool = Fals
 
 
 def none_ok(ds: xr.Dataset, names: Iterable[str]) -> str:
-    """What to say when there is nothing to draw, and what the designs' status is."""
+    """Return the message where there is nothing to draw, with the counts of each status."""
     nothing = f"no design is ok and has a finite {' and '.join(names)}"
     if "status" not in ds.variables:
         return nothing
     meanings = str(ds["status"].attrs.get("flag_meanings", "")).split()
     counts = {word: int((ds["status"] == code).sum()) for code, word in enumerate(meanings)}
-    found = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
-    return f'{nothing} (status: {found}); to see what is finite all the same, give ds.drop_vars("status")'
+    statuses = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
+    return f'{nothing} (status: {statuses}); to see what is finite all the same, give ds.drop_vars("status")'
 
 
 def column(item: xr.DataArray, values: np.ndarray) -> Column:
@@ -110,13 +112,13 @@ def column(item: xr.DataArray, values: np.ndarray) -> Column:
 
 
 def heading(item: xr.DataArray) -> str:
-    """A name in words with its unit: F32_peak in N as "$F_{32}$ peak [N]"."""
+    """Return a name in words with its unit: F32_peak in N as "$F_{32}$ peak [N]"."""
     units = str(item.attrs.get("units", "")).replace("degree", "°")
     return in_words(str(item.name)) + ("" if units in ("", "1") else f" [{units}]")
 
 
 def in_words(name: str) -> str:
-    """F32_peak as "$F_{32}$ peak", coupler.cg_angle as "coupler cg angle"; paths with numbers in them as they are."""
+    """Return F32_peak as "$F_{32}$ peak", coupler.cg_angle as "coupler cg angle"; a path with numbers as it is."""
     if "[" in name:
         return name
     first, _, rest = name.replace(".", "_").partition("_")
@@ -124,17 +126,17 @@ def in_words(name: str) -> str:
 
 
 def label(value: Any) -> str:
-    """A label as one types it, as far as a reader wants it."""
+    """Format a label with six digits at most."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def whole(count: int) -> str:
-    """100 000 rather than 100000."""
+    """Format a count in groups of three digits: 100 000."""
     return f"{count:_}".replace("_", "\N{THIN SPACE}")
 
 
 def span(values: np.ndarray) -> tuple[float, float]:
-    """The scale that shows designs as they usually are: all of them, unless a few lie far from the rest.
+    """Return the ends of a scale that shows all designs, but for a few that lie far from the others.
 
     Near toggles peaks grow without bound, and one such design would flatten all the others. What is farther from the
     middle nine tenths than these are wide is off the scale.
@@ -146,39 +148,39 @@ def span(values: np.ndarray) -> tuple[float, float]:
 
 
 def many_sizes(limits: tuple[float, float]) -> bool:
-    """Whether a scale is better logarithmic: from small to large numbers, all above zero."""
+    """Return whether a scale is better logarithmic: above zero, with a largest number many times the least."""
     return 0.0 < DECADE * limits[0] < limits[1]
 
 
 def norm(limits: tuple[float, float]) -> Any:
-    """Numbers to colours."""
+    """Return matplotlib's map from numbers to colours."""
     from matplotlib.colors import LogNorm, Normalize
 
     return (LogNorm if many_sizes(limits) else Normalize)(*limits)
 
 
 def levels(limits: tuple[float, float]) -> np.ndarray:
-    """A few round numbers on a scale."""
+    """Return a few round numbers on a scale."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
     locator: Any = LogLocator(subs=ROUND) if many_sizes(limits) else MaxNLocator(6)
-    found = locator.tick_values(*limits)
-    return found[(found >= limits[0]) & (found <= limits[1])]
+    ticks = locator.tick_values(*limits)
+    return ticks[(ticks >= limits[0]) & (ticks <= limits[1])]
 
 
-def color_bar(ax: Axes, colored: Any, shown: Column, limits: tuple[float, float]) -> None:
-    """The colour bar, with a pointed end where values are off its scale, and round numbers."""
+def color_bar(ax: Axes, colored: Any, item: Column, limits: tuple[float, float]) -> None:
+    """Add a colour bar with round numbers, and with a pointed end where values are off its scale."""
     round_numbers: dict[str, Any] = {"ticks": levels(limits), "format": "%g"} if many_sizes(limits) else {}
-    if shown.words:
-        round_numbers = {"ticks": range(len(shown.words)), "format": lambda value, _: shown.words[round(value)]}
-    bar = ax.figure.colorbar(colored, ax=ax, label=shown.text, extend=beyond(shown.values, limits), **round_numbers)
+    if item.words:
+        round_numbers = {"ticks": range(len(item.words)), "format": lambda value, _: item.words[round(value)]}
+    bar = ax.figure.colorbar(colored, ax=ax, label=item.text, extend=beyond(item.values, limits), **round_numbers)
     bar.minorticks_off()
     if bar.solids is not None:
         bar.solids.set(alpha=1.0)
 
 
 def beyond(values: np.ndarray, limits: tuple[float, float]) -> str:
-    """At which ends of a scale there is something beyond it, in matplotlib's words for colour bars."""
+    """Return the ends of a scale beyond which there are values, in matplotlib's words for colour bars."""
     below, above = (values < limits[0]).any(), (values > limits[1]).any()
     return {(False, False): "neither", (True, False): "min", (False, True): "max"}.get(
         (bool(below), bool(above)), "both"
@@ -186,7 +188,7 @@ def beyond(values: np.ndarray, limits: tuple[float, float]) -> str:
 
 
 def by_chance(count: int, most: int, keep: np.ndarray) -> np.ndarray:
-    """Positions of at most so many out of many, those to be kept among them; the same ones each time."""
+    """Choose positions of at most `most` out of `count` at random, those to be kept among them; equal for each call."""
     if count <= most:
         return np.arange(count)
     others = np.setdiff1d(np.arange(count), keep)

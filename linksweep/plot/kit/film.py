@@ -1,4 +1,4 @@
-"""A film: frames drawn one after the other on one figure; it shows itself in notebooks and is saved as GIF or HTML."""
+"""A film: frames drawn one after the other on one figure, shown in notebooks, and saved as GIF or HTML."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class Film:
         return [self.image(k).quantize(palette=palette, dither=Image.Dither.NONE) for k in range(len(self))]
 
     def _repr_html_(self) -> str:
-        """A player with all frames in it: nothing is fetched."""
+        """Return an HTML player that contains all frames."""
         width, height = self._pictures[0].size
         frames = json.dumps([_as_text(picture) for picture in self._pictures])
         filled = {"NAME": f"film-{secrets.token_hex(6)}", "WIDTH": str(width), "HEIGHT": str(height)}
@@ -140,7 +140,7 @@ def _as_text(picture: Image.Image) -> str:
 
 
 def _palette() -> Image.Image:
-    """The colours that plots are drawn in, in tints as well, which the edges of lines have."""
+    """Return the colours of all plots, and their tints for the edges of lines."""
     tints = 1.0 - np.array(TINTS)[:, None, None] * (1.0 - np.array([to_rgb(ink) for ink in INKS]))
     colours = np.concatenate([[to_rgb(plain) for plain in PLAIN], tints.reshape(-1, 3)])
     image = Image.new("P", (1, 1))

@@ -1,4 +1,4 @@
-"""Labels that find their own place when the figure is drawn: near their point, off the curves, and off each other.
+"""Labels that find a free place when the figure is drawn: near their point, off the curves, and off each other.
 
 They look at what is really on the paper: the size of the figure, of the font and of the axes at that moment. So they
 stay right when the figure is resized, or laid out anew because another panel came.
@@ -70,7 +70,7 @@ def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, color: str) -> None:
 
 
 class Placer(Artist):
-    """Puts the labels of its axes into place just before they are drawn."""
+    """An artist that places the labels of its axes just before they are drawn."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -94,7 +94,7 @@ class Placer(Artist):
 
 
 class Ink:
-    """Which cells of the axes curves and markers cover, and how many of them lie in a box.
+    """The cells of the axes that curves and markers cover.
 
     Boxes are rows (left, bottom, right, top) [pixel].
     """
@@ -106,7 +106,7 @@ class Ink:
         self.cells = np.zeros(1 + np.ceil((self.frame[2:] - self.frame[:2]) / self.side).astype(int), dtype=bool)
 
     def add_line(self, line: Line2D) -> None:
-        """Cover what a line covers, with its markers, as broad as they are."""
+        """Add the cells that a line and its markers cover."""
         points = line.get_transform().transform(line.get_xydata())
         if line.get_linestyle() != "None":
             self.add(self._broad(_dense(points), 0.5 * line.get_linewidth()))
@@ -126,18 +126,18 @@ class Ink:
         self.cells[tuple(self._cell(points[inside]).T)] = True
 
     def count(self, boxes: np.ndarray) -> np.ndarray:
-        """Covered cells in each box, by a table of sums."""
+        """Count the covered cells in each box, by a table of sums."""
         sums = np.pad(self.cells.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
         (left, bottom), (right, top) = self._cell(boxes[:, :2]).T, self._cell(boxes[:, 2:]).T + 1
         return sums[right, top] - sums[left, top] - sums[right, bottom] + sums[left, bottom]
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """Whether each point lies on a covered cell."""
+        """Return whether each point lies on a covered cell."""
         cell = self._cell(points)
         return self.cells[cell[..., 0], cell[..., 1]]
 
     def _broad(self, points: np.ndarray, radius: float) -> np.ndarray:
-        """The points with those of a square around each, of this half side [points]."""
+        """Return the points, and those of a square around each, of this half side [points]."""
         if radius < CELL:
             return points
         ticks = np.linspace(-radius, radius, 2 + int(2.0 * radius / CELL)) * self.point
@@ -150,7 +150,7 @@ class Ink:
 
 
 def _dense(points: np.ndarray) -> np.ndarray:
-    """The points of a line with 2000 or more in all, evenly between each two; NaN where the line has a gap."""
+    """Return at least 2000 points of a line, evenly spaced between each two; NaN where the line has a gap."""
     points = np.where(np.isfinite(points), points, np.nan)
     steps = max(1, 2000 // max(len(points), 1))
     between = np.linspace(0.0, 1.0, steps, endpoint=False)[:, None, None]
@@ -159,17 +159,17 @@ def _dense(points: np.ndarray) -> np.ndarray:
 
 
 def _texts(axes: Axes, renderer: Any) -> np.ndarray:
-    """Boxes of what else is written in the axes."""
-    found: list[Any] = [text for text in axes.texts if text.get_text()]
+    """Return the boxes of the other texts in the axes."""
+    texts: list[Any] = [text for text in axes.texts if text.get_text()]
     if axes.get_legend() is not None:
-        found.append(axes.get_legend())
-    return np.reshape([other.get_window_extent(renderer).extents for other in found], (-1, 4))
+        texts.append(axes.get_legend())
+    return np.reshape([other.get_window_extent(renderer).extents for other in texts], (-1, 4))
 
 
 def _place(
     note: AnnotationBbox, anchor: np.ndarray, ink: Ink, taken: np.ndarray, renderer: Any
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Move a label to the cheapest of its places; its box and the points of its leader come back."""
+    """Move a label to its cheapest place; return its box and the points of its leader."""
     point = ink.point
     size = np.array(note.offsetbox.get_bbox(renderer).size) + SPACE * point
     centres = anchor + PLACES[:, :2] * point + np.sign(np.round(PLACES[:, :2], 9)) * size / 2.0
@@ -183,7 +183,7 @@ def _place(
 
 
 def _cost(boxes: np.ndarray, leaders: np.ndarray, ink: Ink, taken: np.ndarray) -> np.ndarray:
-    """How bad each place is: on another text or outside the axes worst, then on a curve, then across one."""
+    """Return the cost of each place: highest on another text or outside the axes, then on a curve, then across one."""
     on_texts = _overlap(boxes, taken)
     on_texts += on_texts > 0.0
     points = leaders[:, :, None]
@@ -195,7 +195,7 @@ def _cost(boxes: np.ndarray, leaders: np.ndarray, ink: Ink, taken: np.ndarray) -
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Area that each box shares with each of the others, as a fraction of the smaller of the two."""
+    """Return the area that each box shares with each of the others, as a fraction of the smaller of the two."""
     low = np.maximum(boxes[:, None, :2], others[:, :2])
     high = np.minimum(boxes[:, None, 2:], others[:, 2:])
     smaller = np.minimum(_area(boxes)[:, None], _area(others))

@@ -1,4 +1,4 @@
-"""Parts of a drawn mechanism: supports, guide, bars, a block. All take points in the data's coordinates [m]."""
+"""Parts of a drawn machine: supports, guide, bars, a block. All take points in the data's coordinates [m]."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STROKES = 0.35  # of the block's half side: length of the hatching
 
 
 def supports(ax: Axes, at: np.ndarray) -> None:
-    """A hatched support under each ground pin, the rows of `at`."""
+    """Draw a hatched support under each ground pin, the rows of `at`."""
     from matplotlib.path import Path
 
     strokes = [[(x, -1.0), (x - 0.25, -1.3)] for x in np.linspace(-0.7, 0.9, 6)]
@@ -34,14 +34,15 @@ def centre_line(ax: Axes, ends: np.ndarray) -> None:
 
 
 def crank_circle(ax: Axes, radius: float) -> None:
-    """The circle that pin B runs on."""
+    """Draw the circle of pin B."""
     around = np.radians(np.linspace(0.0, 360.0, 181))
     circle = radius * np.array([np.cos(around), np.sin(around)])
     ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label="_crank circle")
 
 
 def rails(ax: Axes, first: np.ndarray, last: np.ndarray, along: np.ndarray, half: float) -> None:
-    """The two sides of a guide, hatched outside, for a block of this half side between its first and last place."""
+    """Draw the two sides of a guide, hatched outside, for a block of this half side between its first and last
+    place."""
     across = np.array([-along[1], along[0]])
     begin, end = first - 1.2 * half * along, last + 1.2 * half * along
     count = 1 + int(np.linalg.norm(end - begin) / (STROKES * half))
@@ -55,7 +56,7 @@ def rails(ax: Axes, first: np.ndarray, last: np.ndarray, along: np.ndarray, half
 
 
 def block(ax: Axes, centre: np.ndarray, along: np.ndarray, half: float) -> None:
-    """A block, as a piston is: about as long as it is wide."""
+    """Draw a block about as long as it is wide."""
     x, y = half * along, 0.92 * half * np.array([-along[1], along[0]])
     corners = centre + np.array([-x - y, x - y, x + y, y - x, -x - y])
     ax.fill(*corners.T, facecolor=BAR, zorder=2.16)
@@ -63,14 +64,14 @@ def block(ax: Axes, centre: np.ndarray, along: np.ndarray, half: float) -> None:
 
 
 def bar(ax: Axes, number: int, ends: np.ndarray, behind: bool = False) -> None:
-    """A bar from pin to pin; one that a block slides on lies behind it."""
+    """Draw a bar from pin to pin; one that carries a block lies behind it."""
     for width, color in ((9.0, EDGE), (7.2, BAR)):
         style: dict[str, Any] = {"color": color, "linewidth": width, "solid_capstyle": "round"}
         ax.plot(*ends.T, zorder=2.12 if behind else 2.2, label=f"_link {number}", **style)
 
 
 def number_of_bar(ax: Axes, number: int, ends: np.ndarray, covered: np.ndarray) -> None:
-    """The number of a bar, on it where it is farthest from points that something else covers, the rows of `covered`."""
+    """Write a bar's number on it, as far as possible from covered points, the rows of `covered`."""
     places = ends[0] + np.array([0.4, 0.65, 0.15, 0.85])[:, None] * (ends[1] - ends[0])
     free = np.linalg.norm(places[:, None] - covered, axis=2).min(axis=1)
     enough = np.flatnonzero(free > 0.14 * np.linalg.norm(ends[1] - ends[0]))
@@ -78,7 +79,7 @@ def number_of_bar(ax: Axes, number: int, ends: np.ndarray, covered: np.ndarray) 
 
 
 def plate(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
-    """What ties a point to its link."""
+    """Draw the triangle that ties a point to its link."""
     style: dict[str, Any] = {"facecolor": BAR, "edgecolor": EDGE, "linewidth": 0.8, "alpha": 0.6}
     ax.fill(*corners.T, zorder=2.11 if behind else 2.15, **style)
 

@@ -1,4 +1,4 @@
-"""Signals of a cycle as plots take them: one design, sorted by crank angle, closed to a full turn, with its gaps."""
+"""Signals of a cycle for plots: one design, sorted by crank angle, closed to a full turn, with its gaps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_LINES = 6  # designs that one plot still tells apart
 
 
 class Gap(NamedTuple):
-    """Crank angles [degree] between which there is no result, and why."""
+    """Crank angles [degree] between which there is no result, and the reason."""
 
     start: float
     stop: float
@@ -30,7 +30,8 @@ class Gap(NamedTuple):
 
 
 class Peak(NamedTuple):
-    """Where a signal is largest: crank angle [degree], value, and whether the cycle has a gap or a pole beside it."""
+    """The largest value of a signal: crank angle [degree], value, and whether the cycle has a gap or a pole beside
+    it."""
 
     angle: float
     value: float
@@ -38,7 +39,7 @@ class Peak(NamedTuple):
 
 
 def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Components x and y of a pin force; of F23 as well where there is only F32."""
+    """Return the components x and y of a pin force; of F23 as well where the Dataset has only F32."""
     _known_force(ds, pin)
     back = f"F{pin[2]}{pin[1]}"
     for name, sign in ((pin, 1.0), (back, -1.0)):
@@ -48,7 +49,7 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
 
 
 def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
-    """Magnitude of a pin force: the Dataset's own, or from its components."""
+    """Return the magnitude of a pin force: the Dataset's own, or from its components."""
     _known_force(ds, pin)
     for name in (pin, f"F{pin[2]}{pin[1]}"):
         if name in ds:
@@ -91,15 +92,15 @@ def require_one_design(signals: Iterable[xr.DataArray]) -> None:
     """Raise ValueError where signals have other dims than theta2."""
     sizes = {dim: n for signal in signals for dim, n in signal.sizes.items() if dim != INDEX}
     if sizes:
-        said = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
+        sizes_text = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
         choice = ", ".join(f"{dim}=0" for dim in sizes)
         raise ValueError(
-            f"there are several designs, over {said}: a plot shows one; choose it, such as ds.isel({choice})"
+            f"there are several designs, over {sizes_text}: a plot shows one; choose it, such as ds.isel({choice})"
         )
 
 
 def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
-    """The signal of each design by a label: one, or up to six along one dim. Raises ValueError for more."""
+    """Return the signal of each design by a label: one, or up to six along one dim. Raises ValueError for more."""
     extra = [dim for dim in signal.dims if dim != INDEX]
     if len(extra) != 1 or signal.sizes[extra[0]] > MOST_LINES:
         require_one_design([signal])
@@ -107,15 +108,15 @@ def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
     dim = extra[0]
     labels = signal[dim].values  # positions where the dim has no coordinate
     units = signal[dim].attrs.get("units", "") if dim in signal.coords else ""
-    return {f"{dim} = {_said(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
+    return {f"{dim} = {_label(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
 
 
-def _said(value: object) -> str:
+def _label(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def revolution(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
-    """Angles and signals as arrays: sorted by angle, and a grid of a whole cycle closed by its first sample again."""
+    """Return angles and signals as arrays, sorted by angle; the grid of a whole cycle ends with its first sample."""
     rows = by_angle(ds, *signals)
     period = ds.attrs.get(WHOLE_TURN) or full_turn(rows[0])
     if period is None:
@@ -131,7 +132,7 @@ def by_angle(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
 
 
 def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
-    """Values at every angle, also of a signal that does not depend on it."""
+    """Return values at every angle, also of a signal that does not depend on it."""
     require_one_design([signal])
     return np.broadcast_to(signal.values.astype(float), (count,))
 
@@ -142,21 +143,21 @@ def full_turn(angles: np.ndarray) -> float | None:
 
 
 def gaps(ds: xr.Dataset, signal: xr.DataArray) -> list[Gap]:
-    """Where there is no result: by the status, or where that is not in the Dataset by the signal's NaN."""
+    """Return the gaps of a cycle: by the status, or where the Dataset has none by the signal's NaN."""
     status = ds["status"] if "status" in ds else xr.where(np.isnan(signal), 1, 0)
     angles, bad = revolution(ds, status)
     reasons = ds["status"].attrs.get("flag_meanings", "").split() if "status" in ds else []
     edges = np.flatnonzero(np.diff(bad, prepend=0.0, append=0.0) != 0.0)
-    found = []
+    intervals = []
     for start, stop in pairwise(edges.tolist()):
         if code := int(bad[start]):
             reason = reasons[code].replace("_", " ") if code < len(reasons) else "no result"
-            found.append(Gap(angles[max(start - 1, 0)], angles[min(stop, len(angles) - 1)], reason))
-    return found
+            intervals.append(Gap(angles[max(start - 1, 0)], angles[min(stop, len(angles) - 1)], reason))
+    return intervals
 
 
 def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
-    """The largest sample, or None where there is no result at all."""
+    """Return the largest sample, or None where there is no result at all."""
     if np.isnan(values).all():
         return None
     k = int(np.nanargmax(values))
@@ -165,7 +166,8 @@ def peak(angles: np.ndarray, values: np.ndarray) -> Peak | None:
 
 
 def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Components (x, y) of the largest force; of an infinite one, those beside it, which have its direction."""
+    """Return the components (x, y) of the largest force; of an infinite one, those beside it, which have its
+    direction."""
     sizes = np.hypot(x, y)
     k = int(np.nanargmax(sizes))
     if np.isinf(sizes[k]):
@@ -175,19 +177,19 @@ def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
-    """The largest size that a plot of these rows should show.
+    """Return the largest size that a plot of these rows should show.
 
     Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where that
     would flatten all the rest, the rest is shown, and what lies beyond is to be marked as off the scale.
     """
     largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for row in rows), default=0.0)
     usual = max((_largest_away_from_gaps(np.abs(row)) for row in rows), default=0.0)
-    runaway = any(found and found.beside_gap and abs(found.value) > 3.0 * usual for found in peaks)
+    runaway = any(peak and peak.beside_gap and abs(peak.value) > 3.0 * usual for peak in peaks)
     return usual if runaway and usual > 0.0 else largest
 
 
 def _largest_away_from_gaps(sizes: np.ndarray) -> float:
-    """The largest of a row without the last fifth of each arc before a gap, where the mechanism nears a toggle."""
+    """Return the largest of a row without the last fifth of each arc before a gap, where a toggle is near."""
     there = np.isfinite(sizes)
     edges = np.flatnonzero(np.diff(there, prepend=False, append=False)).tolist()
     kept = [0.0]
@@ -199,7 +201,7 @@ def _largest_away_from_gaps(sizes: np.ndarray) -> float:
 
 
 def number(value: float) -> str:
-    """Four significant digits, as one writes them."""
+    """Format a number with four significant digits."""
     if value == 0.0:
         return "0"
     if np.isinf(value):
@@ -218,10 +220,10 @@ def angle_text(angle: float) -> str:
 
 
 def symbol(name: str) -> str:
-    """F32 as one writes it; nothing for a name in words."""
+    """Return F32 in mathtext; nothing for a name in words."""
     return f"${name[0]}_{{{name[1:]}}}$" if name[1:].isdigit() else ""
 
 
 def drive_kind(name: str) -> str:
-    """What a drive gives: "drive torque", or what a name in words says, "cylinder force"."""
+    """Return "drive torque", or a name in words without its underscores, "cylinder force"."""
     return "drive torque" if symbol(name) else name.replace("_", " ")

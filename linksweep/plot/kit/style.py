@@ -1,4 +1,4 @@
-"""Colours of Okabe and Ito, which colour-blind readers tell apart, two greys, and the axes to draw in."""
+"""Colours of Okabe and Ito, which colour-blind readers tell apart, two greys, and the look of axes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FORCE_COLORS = {"F12": BLUE, "F32": VERMILION, "F43": GREEN, "F14": PURPLE}
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
-    """The axes given, or those of a new figure."""
+    """Return `ax`, or the axes of a new figure where it is None."""
     if ax is not None:
         return ax
     import matplotlib.pyplot as plt  # here: only those who plot need wait for it
@@ -28,7 +28,7 @@ def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
 
 @contextmanager
 def small_type() -> Iterator[None]:
-    """The look of figures of several panels."""
+    """Set the look of figures of several panels, within a with statement."""
     import matplotlib.pyplot as plt
 
     plt.draw_if_interactive()  # wakes a notebook's backend, which turns on display; rc_context would turn it off again
@@ -37,7 +37,8 @@ def small_type() -> Iterator[None]:
 
 
 def crank_angles(ax: Axes, angles: np.ndarray) -> None:
-    """An axis of crank angles [degree] from the first to the last, with round ticks, as many as there is room for."""
+    """Set an axis of crank angles [degree] from the first to the last, with as many round ticks as there is room
+    for."""
     from matplotlib.ticker import MultipleLocator
 
     span = float(angles[-1] - angles[0])
@@ -52,6 +53,6 @@ def crank_angles(ax: Axes, angles: np.ndarray) -> None:
 
 
 def grid(ax: Axes) -> None:
-    """Faint lines below everything."""
+    """Draw faint grid lines below everything."""
     ax.grid(color=SHADE, linewidth=0.6)
     ax.set_axisbelow(True)

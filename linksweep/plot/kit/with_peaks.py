@@ -1,4 +1,4 @@
-"""A cycle as it is drawn: with samples of its own where its scene's exact peaks are, so that these are marked.
+"""A cycle for plots: with samples of its own at its scene's exact peaks, so that these are marked.
 
 Peaks lie between samples, and of a jump a sample has one side at most. A cycle of one design holds its scene; so the
 angles of the exact peaks of all pins and of the drive are added to it, with one just before and one just behind each.
@@ -41,8 +41,8 @@ def with_peaks(ds: xr.Dataset) -> xr.Dataset:
     turn = full_turn(np.sort(angles))
     ends = float(angles.min()), float(angles.min() + turn if turn else angles.max())
     part = None if ends[1] - ends[0] >= scene.period else ends
-    found = _peaks(scene, tuple(name for name in ["Fs"] if {*SHAKING} <= {*ds.variables}), part)
-    new = np.setdiff1d(_around(found, ends, scene.period), angles)
+    worst = _peaks(scene, tuple(name for name in ["Fs"] if {*SHAKING} <= {*ds.variables}), part)
+    new = np.setdiff1d(_around(worst, ends, scene.period), angles)
     names = [str(name) for name in ds.data_vars if name in scene.table.quantity]
     if not len(new) or not names:
         return ds
@@ -53,14 +53,14 @@ def with_peaks(ds: xr.Dataset) -> xr.Dataset:
     bare = [part.reset_coords(drop=True) for part in (own, more)]
     joined = xr.concat([part.broadcast_like(part[INDEX]) for part in bare], INDEX).sortby(INDEX)
     labels = {name: label for name, label in ds.coords.items() if not label.dims}
-    _raise_to_infinity(joined, found, scene.period)
+    _raise_to_infinity(joined, worst, scene.period)
     if "status" in joined:
         joined = joined.isel({INDEX: (joined["status"] == 0).values | np.isin(joined[INDEX], angles)})
     return joined.assign_coords(labels).assign_attrs({**ds.attrs, WHOLE_TURN: turn or 0.0})
 
 
 def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | None:
-    """Return the same variables at other angles; None where one that is there is not the scene's, but was altered."""
+    """Return a cycle's own variables at other angles; None where one of its samples is not the scene's, but altered."""
     k = int(np.argmax((own["status"] == 0).values)) if "status" in own else 0
     names = [str(name) for name in own.data_vars]
     more = sweep(scene, np.append(own[INDEX].values[k], angles), names)[names]
@@ -69,12 +69,12 @@ def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | 
     return more.isel({INDEX: slice(1, None)}, missing_dims="ignore")
 
 
-def _raise_to_infinity(ds: xr.Dataset, found: xr.Dataset, period: float) -> None:
+def _raise_to_infinity(ds: xr.Dataset, worst: xr.Dataset, period: float) -> None:
     """Make infinite what is largest beside an infinite peak: it has an angle, and its size no meaning."""
-    for name in (str(name) for name in found.data_vars if f"{name}_at" in found and np.isinf(found[name])):
-        stem, sign = name.rpartition("_")[0], float(np.sign(found[name]))
+    for name in (str(name) for name in worst.data_vars if f"{name}_at" in worst and np.isinf(worst[name])):
+        stem, sign = name.rpartition("_")[0], float(np.sign(worst[name]))
         parts = [ds[part] for part in ([stem] if stem in ds else [f"{stem}x", f"{stem}y"]) if part in ds]
-        away = np.mod(ds[INDEX].values - float(found[f"{name}_at"]) + 0.5 * period, period) - 0.5 * period
+        away = np.mod(ds[INDEX].values - float(worst[f"{name}_at"]) + 0.5 * period, period) - 0.5 * period
         if not parts:
             continue
         size = np.nan_to_num(np.hypot(*(part.values for part in parts)) if len(parts) == 2 else sign * parts[0].values)
@@ -85,10 +85,11 @@ def _raise_to_infinity(ds: xr.Dataset, found: xr.Dataset, period: float) -> None
             ds["status"].values[k] = 0
 
 
-def _around(found: xr.Dataset, ends: Part, period: float) -> np.ndarray:
-    """Angles [degree] of peaks, and beside them, between two ends and in the period that begins with the first."""
-    names = [str(name) for name in found.data_vars if str(name).endswith("_at")]
-    at = np.array([float(found[name]) for name in names])
+def _around(worst: xr.Dataset, ends: Part, period: float) -> np.ndarray:
+    """Return the angles [degree] of peaks, and beside them, between two ends and in the period that begins with the
+    first."""
+    names = [str(name) for name in worst.data_vars if str(name).endswith("_at")]
+    at = np.array([float(worst[name]) for name in names])
     around = (at[np.isfinite(at), None] + np.array([-ASIDE, 0.0, ASIDE])).ravel()
     away = np.mod(around - ends[0], period)
     return ends[0] + away[away <= ends[1] - ends[0]]
