@@ -404,10 +404,8 @@ def test_docstring(name):
 
 SHRINKING = {
     "analysis": (33, 6),
-    "cli": (35, 4),
     "mechanisms": (27, 57),
-    "plot": (96, 29),
-    "reports": (43, 19),
+    "plot": (18, 0),
     "results": (82, 30),
     "scene": (57, 43),
 }
