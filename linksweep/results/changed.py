@@ -1,4 +1,4 @@
-"""Quantities of a scene with some of its numbers changed: what if it had no mass, no weight, no friction?"""
+"""Compute quantities of a scene with some of its numbers changed: without masses, weight or friction, say."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from linksweep.scene.scene import Scene
 def quantities_with(
     changed: Mapping[str, float], scene: Scene, grid: Grid, names: tuple[str, ...], threads: int | None = None
 ) -> dict[str, xr.DataArray]:
-    """Quantities of a scene brought to the grid's angles, with other numbers under the names that the physics wires by.
+    """Return quantities of a scene that is sampled at the grid's angles, with some inputs of the physics replaced.
 
-    What a number of 0 multiplies is not computed. Nothing is blanked where a sample is not ok.
+    `changed` has the new numbers by the names of the physics' arguments; terms that a 0 multiplies are not computed.
+    Samples that are not ok are not made NaN.
     """
     inputs = scene.inputs
     forms = tuple((name, changed.get(name, form)) for name, form in inputs.forms)
     fields = {name: field for name, field in inputs.fields.items() if name not in changed}
-    found = evaluate(plan(scene.table, names, forms), fields, grid, inputs.sizes, threads)
-    return {name: xr.DataArray(field.values, dims=field.dims) for name, field in found.items()}
+    results = evaluate(plan(scene.table, names, forms), fields, grid, inputs.sizes, threads)
+    return {name: xr.DataArray(field.values, dims=field.dims) for name, field in results.items()}

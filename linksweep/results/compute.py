@@ -1,4 +1,4 @@
-"""From a scene to arrays: the request planned, run, and blanked where a sample is not ok."""
+"""Compute the arrays of a request: plan it, run the plan, and make samples NaN that are not ok."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
 from linksweep.mechanisms.capabilities import lack
+from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
@@ -23,15 +24,15 @@ SEVERAL = (
 
 
 def requested(path: str, names: Any) -> list[str]:
-    """Names asked for, as a list; one name alone counts as one."""
-    given = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else [names]
-    wrong = [name for name in given if not isinstance(name, str)]
+    """Return the requested names as a list, each once; a single text is one name."""
+    listed = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else [names]
+    wrong = [name for name in listed if not isinstance(name, str)]
     refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
-    return list(dict.fromkeys(given))
+    return list(dict.fromkeys(listed))
 
 
 def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) -> list[str]:
-    """A name that must be one of these quantities; of another drive's unknown is said which one this drive has."""
+    """Return the problem of a name that is no known quantity; for another drive's unknown it names this drive's."""
     drives, known = scene.mechanism.drives, list(known)
     for drive, unknown in drives.items():
         if drive != scene.drive and f"{name}_".startswith(f"{unknown}_") and name not in known:
@@ -41,9 +42,10 @@ def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) 
 
 
 def require_scene(scene: Any) -> None:
+    """Raise ValueError for anything but a Scene."""
     kind = type(scene).__name__
-    said = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
-    refuse([] if isinstance(scene, Scene) else [said])
+    problem = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
+    refuse([] if isinstance(scene, Scene) else [problem])
 
 
 def require(scene: Any, *capabilities: str) -> None:
@@ -54,7 +56,7 @@ def require(scene: Any, *capabilities: str) -> None:
 
 
 def angles_missing(scene: Scene) -> list[str]:
-    """Arrays over the angle that do not say of which angles they are."""
+    """Return the problem of each array over the angle that has no angles as its coordinate."""
     index = scene.mechanism.index
     return [
         f"{path} has {array.sizes[index]} values over {index} but no {index} coordinate: give it its angles with "
@@ -69,43 +71,43 @@ def compute(
     grid: Grid,
     names: tuple[str, ...],
     threads: int | None = None,
-    given: Mapping[str, Field] | None = None,
+    known: Mapping[str, Field] | None = None,
     solver: str = "fast",
 ) -> dict[str, Field]:
-    """The named quantities of a scene that has been brought to the grid's angles; what is `given` is not computed."""
-    given = given or {}
+    """Return quantities of a scene that is sampled at the grid's angles; those that are `known` are not computed."""
+    known = known or {}
     inputs = scene.inputs
-    forms = (*inputs.forms, *((name, field.dims) for name, field in given.items()))
+    forms = (*inputs.forms, *((name, field.dims) for name, field in known.items()))
     request = planned(scene, names, forms, solver)
-    return evaluate(request, {**inputs.fields, **given}, grid, inputs.sizes, threads)
+    return evaluate(request, {**inputs.fields, **known}, grid, inputs.sizes, threads)
 
 
 def planned(scene: Scene, names: tuple[str, ...], forms: InputForms, solver: str) -> Plan:
-    """The plan of a request, superposed where the solver says so."""
+    """Return the plan of a request, superposed if the solver is "superposed"."""
     request = plan(scene.table, names, forms)
     return superposed(request) if solver == "superposed" else request
 
 
 def assembly_of(scene: Scene, threads: int | None = None) -> Field:
-    """Whether each design can be assembled at every angle (0), at some (1) or at none (2)."""
+    """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
     at_one = crank_grid(1, scene.period, scene.mechanism.index)
     return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
 
 
 def changing_pace(scene: Scene, inputs: Inputs) -> tuple[str, ...]:
-    """The quantity that says how fast the index runs, where that changes on the way round; else none."""
+    """Return the quantity that is the rate of the index, if it changes over the revolution; else no name."""
     request = plan(scene.table, (scene.mechanism.pace,), inputs.forms)
     changes = scene.mechanism.index in request.dims(request.outputs[scene.mechanism.pace])
     return (scene.mechanism.pace,) if changes else ()
 
 
 def surely_ok(scene: Scene) -> bool:
-    """Whether the numbers of the mechanism alone say that every sample is ok."""
+    """Return whether every sample is ok by the numbers of the mechanism alone."""
     return scene.bare.mechanism.always_ok(scene.drive)
 
 
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
-    """What happened at each sample, int8; not computed where the lengths alone say that all is well."""
+    """Return the status of each sample (int8); 0 without computing where the mechanism's numbers show it."""
     if surely_ok(scene):
         request = plan(scene.table, ("status",), scene.inputs.forms)
         dims = request.dims(request.outputs["status"])
@@ -116,7 +118,7 @@ def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field
 
 
 def blank(fields: dict[str, Field], status: Field) -> None:
-    """NaN where the status is not 0: where it is so for every design that shares the sample."""
+    """Make samples NaN whose status is not 0 for any design that shares the sample."""
     ok = Field(status.dims, status.values == 0)
     if ok.values.all():
         return
@@ -125,14 +127,12 @@ def blank(fields: dict[str, Field], status: Field) -> None:
 
 
 def only_where(good: Field, field: Field) -> Field:
-    """A field, NaN where no design that shares the number is good."""
+    """Return a field, NaN where no design that shares the number is good."""
     return Field(field.dims, np.where(_for_any(good, field.dims), field.values, np.nan))
 
 
 def _for_any(good: Field, dims: tuple[str, ...]) -> np.ndarray:
-    """Whether it is good for any design that shares what has these dims: broadcasts against that."""
-    beyond = tuple(k for k, dim in enumerate(good.dims) if dim not in dims)
-    shared = [dim for dim in good.dims if dim in dims]
-    there = np.any(good.values, axis=beyond).transpose([shared.index(dim) for dim in dims if dim in shared])
-    sizes = iter(there.shape)
-    return there.reshape([next(sizes) if dim in shared else 1 for dim in dims])
+    """Return whether any design that shares a number of these dims is good, with an axis for each dim."""
+    others = tuple(k for k, dim in enumerate(good.dims) if dim not in dims)
+    shared = tuple(dim for dim in good.dims if dim in dims)
+    return laid(Field(shared, np.any(good.values, axis=others)), dims)

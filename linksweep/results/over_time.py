@@ -1,4 +1,4 @@
-"""Means of samples over time: at equal steps of the crank angle, each stands for the time that the crank takes for it.
+"""Average samples over time: each, at equal steps of the crank angle, counts by the time that the crank takes for it.
 
 mean of q over time = ∑ q/|ω2| / ∑ 1/|ω2|
 """

@@ -1,4 +1,4 @@
-"""position_equation(scene, theta2): document 2's constants and coefficients of a four-bar, labelled."""
+"""Return the position equation of a four-bar, labelled as document 2 prints its constants and coefficients."""
 
 from __future__ import annotations
 
@@ -21,25 +21,30 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
 
     Parameters
     ----------
-    scene : Scene of a FourBar
-    theta2 : crank angle or angles [degree]; a single number is an angle here, not a count
+    scene : Scene
+        Scene of a FourBar.
+    theta2 : float or array_like
+        Crank angle or angles [degree]; a single number is an angle here, not a count.
 
     Returns
     -------
-    Dataset with K1 … K5 (…), A … F (…, theta2), each with its formula as `long_name`; the roots `theta3` and `theta4`
-    (branch, …, theta2) [degree] from x; and `status`. A … F are those of the crank's angle from the line A→D, so that
-    with a ground_angle the page's angles are theirs less that. They are there also where nothing can be assembled,
-    B² < 4AC; the roots are then NaN.
+    Dataset
+        K1 … K5 (…) and A … F (…, theta2) [1], each with its formula as `long_name`; the roots `theta3` and `theta4`
+        (branch, …, theta2) [degree] from x; and `status`.
 
     Raises
     ------
     ValueError
-        For a scene of another machine than a four-bar, and for angles that are none.
+        For a scene of another machine than a four-bar, and for angles that are not finite numbers.
 
     Notes
     -----
-    Equation and source: `linksweep.physics.closures.freudenstein`. Document 2 leaves open which sign of ± is which
-    branch: − is open, + crossed. The roots are not computed by its arctangents, which divide by 2A and 2D.
+    A … F belong to the crank's angle from the line A→D: with a ground_angle, subtract it from the angles of the results
+    to compare them with the page. Where nothing can be assembled, B² < 4AC, A … F keep their values and the roots are
+    NaN.
+
+    Equation and source: `linksweep.physics.closures.freudenstein`. Document 2 leaves open which sign of ± belongs to
+    which branch: − is open, + crossed. The roots are not computed by its arctangents, which divide by 2A and 2D.
 
     Examples
     --------
@@ -57,9 +62,9 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     fields = compute(both.at(grid), grid, tuple(formulas))
     order = (*both.inputs.sizes, grid.dim)
     page = sweep(both, angles, list(roots))
-    found = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
+    coefficients = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
     for name, formula in roots.items():
         page[name].attrs["long_name"] += f"; {formula}"
     coordinates = {str(name): coordinate.variable for name, coordinate in page.coords.items()}
     command = f"linksweep.position_equation(scene, theta2={theta2})"
-    return xr.Dataset(found).merge(page).assign_attrs(provenance(scene, command, coordinates))
+    return xr.Dataset(coefficients).merge(page).assign_attrs(provenance(scene, command, coordinates))

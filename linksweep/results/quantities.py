@@ -1,4 +1,4 @@
-"""quantities(scene): every quantity that can be asked for of a scene, as a table to read and to search."""
+"""List the quantities that can be requested of a scene, as a table to read and to search."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AvailableQuantity:
-    """A quantity that can be asked for of a scene.
+    """A quantity that can be requested of a scene.
 
     Parameters
     ----------
     name : str
-        The name to ask for.
+        Its name in a request.
     units : str
         Its unit, in UDUNITS spelling; "1" where it has none.
     dims : tuple of str
@@ -81,7 +81,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names, to be passed to `linksweep.sweep`."""
+        """Return the names, as `linksweep.sweep` takes them."""
         return tuple(row.name for row in self.rows)
 
     @overload
@@ -107,12 +107,29 @@ class QuantityTable(Sequence[AvailableQuantity]):
         return key in self.names or key in self.rows
 
     def search(self, words: str) -> QuantityTable:
-        """Return the table of those quantities that have all these words in their name, unit or meaning."""
+        """Return the quantities that have all these words in their name, unit or meaning.
+
+        Parameters
+        ----------
+        words : str
+            Words, in small or capital letters.
+
+        Returns
+        -------
+        QuantityTable
+            Table of these quantities.
+        """
         parts = words.casefold().split()
         return QuantityTable(tuple(row for row in self.rows if all(part in str(row).casefold() for part in parts)))
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the table as a DataFrame, its index the names."""
+        """Return the table as a DataFrame.
+
+        Returns
+        -------
+        DataFrame
+            A row for each quantity, its index the names.
+        """
         import pandas as pd
 
         columns = [item.name for item in fields(AvailableQuantity)]
@@ -127,14 +144,14 @@ class QuantityTable(Sequence[AvailableQuantity]):
 
 
 def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
-    """List every quantity that can be asked for of a scene.
+    """List every quantity that can be requested of a scene.
 
     Parameters
     ----------
     scene : Scene
-        Of one design or many.
-    search : str, optional
-        Words, in small or capital letters, that a quantity must have in its name, unit or meaning. Default: none.
+        Scene of any number of designs.
+    search : str, default None
+        Words, in small or capital letters, that a quantity must have in its name, unit or meaning; None for all.
 
     Returns
     -------
@@ -146,7 +163,7 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
     Raises
     ------
     ValueError
-        For a scene that is none.
+        For anything but a Scene.
 
     Notes
     -----
@@ -174,7 +191,7 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
 
 
 def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """Return the dims of each quantity: known from the plan, before anything is computed."""
+    """Return the dims of each quantity, read off the plan without computing anything."""
     sampled = _with_samples(stand_in(scene) if lazy_paths(scene) else scene)
     names = [name for name in (*scene.table.quantity, "status") if name != "cond"]
     of_matrix = names_in(of_form(scene, "reduced")[1])
@@ -186,7 +203,7 @@ def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def _with_samples(scene: Scene) -> Scene:
-    """Return the scene at one angle, or at as many as an array has that does not say at which."""
+    """Return the scene at one angle, or at as many as an array over the index without coordinates has."""
     index = scene.mechanism.index
     counts = [a.sizes[index] for a in scene.arrays.values() if index in a.dims and index not in a.coords]
     return scene.at(crank_grid(counts[0], scene.period, index)) if counts else scene.at_one_angle

@@ -72,11 +72,11 @@ def sweep(
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
-    given = {}
+    known = {}
     if solver == "dense" or "cond" in names:
         solution = dense_solution(sampled, grid, status, threads)
-        given = solution if solver == "dense" else {"cond": solution["cond"]}
-    fields = compute(sampled, grid, names, threads, given, solver)
+        known = solution if solver == "dense" else {"cond": solution["cond"]}
+    fields = compute(sampled, grid, names, threads, known, solver)
     blank(fields, status)
     command = _command(theta2, None if outputs is None else names, solver)
     return described(scene, sampled, grid, fields, status, command)

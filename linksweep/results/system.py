@@ -1,4 +1,4 @@
-"""The textbook's square system: labelled, to be laid beside the page, and solved densely as the fast path's judge."""
+"""Assemble the textbook's square system, labelled as on the page, and solve it as a reference for the fast path."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import blank, compute, require_scene, sample_status
 from linksweep.results.dataset import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.dimensions import laid
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -119,7 +120,7 @@ def assembled(
     equations: tuple[Equation, ...],
     threads: int | None = None,
 ) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
-    """Dims, matrix and right side of a square system, for every design and angle."""
+    """Return dims, matrix and right side of a square system, for every design and angle."""
     fields = compute(scene, grid, names_in(equations), threads)
     dims = (*scene.inputs.sizes, grid.dim)
     dims = tuple(dim for dim in dict.fromkeys(dims) if any(dim in field.dims for field in fields.values()))
@@ -129,38 +130,34 @@ def assembled(
     shape = tuple(sizes[dim] for dim in dims)
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
     for i, row in enumerate(equations):
-        rhs[..., i] = _spread(fields[row.right_side], dims)
+        rhs[..., i] = laid(fields[row.right_side], dims)
         for unknown, entry in row.coefficients.items():
             j = unknowns.index(unknown)
-            matrix[..., i, j] = entry[0] * _spread(fields[entry[1]], dims) if isinstance(entry, tuple) else entry
+            matrix[..., i, j] = entry[0] * laid(fields[entry[1]], dims) if isinstance(entry, tuple) else entry
     return dims, matrix, rhs
 
 
-def _spread(field: Field, dims: tuple[str, ...]) -> np.ndarray:
-    values = np.transpose(field.values, [field.dims.index(dim) for dim in dims if dim in field.dims])
-    sizes = iter(values.shape)
-    return values.reshape([next(sizes) if dim in field.dims else 1 for dim in dims])
-
-
 def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None = None) -> dict[str, Field]:
-    """The unknowns by LAPACK with partial pivoting, and the exact 1-norm condition number `cond`, of the matrix with
-    rows and columns brought to the same size: units and scales then have no say in which pivots are taken."""
+    """Return the unknowns by LAPACK with partial pivoting, and the exact 1-norm condition number `cond`.
+
+    Rows and columns of the matrix are first scaled to one size, so that units and scales do not decide the pivots.
+    """
     unknowns, equations = of_form(scene, "reduced")
     dims, matrix, rhs = assembled(scene, grid, unknowns, equations, threads)
-    bad = np.broadcast_to(_spread(Field(status.dims, status.values != 0), dims), matrix.shape[:-2])
-    matrix[bad] = np.eye(matrix.shape[-1])
+    bad = np.broadcast_to(laid(status, dims) != 0, matrix.shape[:-2])
+    matrix[bad] = np.eye(matrix.shape[-1])  # such a sample becomes NaN: any regular matrix will do
     balanced, rows, columns = equilibrated(matrix, unknowns)
-    with np.errstate(over="ignore", under="ignore"):  # what no float can hold is inf, or 0
+    with np.errstate(over="ignore", under="ignore"):  # numbers out of range become inf, or 0
         solution = np.ldexp(np.linalg.solve(balanced, np.ldexp(rhs, -rows)[..., None])[..., 0], -columns)
-    found = {name: Field(dims, solution[..., k]) for k, name in enumerate(unknowns)}
-    return found | {"cond": Field(dims, np.linalg.cond(balanced, 1))}
+    values = {name: Field(dims, solution[..., k]) for k, name in enumerate(unknowns)}
+    return values | {"cond": Field(dims, np.linalg.cond(balanced, 1))}
 
 
 def equilibrated(matrix: np.ndarray, unknowns: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rows, then columns divided by powers of two until their largest entries lie in [1/2, 1): no digit changes.
+    """Scale rows, then columns by powers of two, so that their largest entries lie in [1/2, 1) and no digit changes.
 
-    Torques are first divided by the largest arm of a force beside them, so that the unit of length has no say either.
-    Returns the matrix with the exponents of its rows and of its columns.
+    Columns of torques are first scaled by the largest arm of a force in the same row, so that the unit of length does
+    not decide the pivots either. Return the matrix with the exponents of its rows and of its columns.
     """
     torques = np.array([name.startswith("T") for name in unknowns])
     beside = (matrix[..., torques] != 0.0).any(axis=-1)[..., None] & ~torques

@@ -48,14 +48,19 @@ class MultiCylinder(ByContent):
 
     Parameters
     ----------
-    engine : Scene of a SliderCrank: one cylinder, with the crank's throw, its share of the crankshaft and its loads,
-        driven by the crank at a constant omega2
-    crank_angles : of each cylinder's crank, ahead of theta2 [degree]; over two turns in a four-stroke engine, where
-        they also say where in its cycle each cylinder is: [0, 540, 180, 360]
-    bank_angles : of each cylinder, turned from the engine's guide [degree]; none by default
-    positions : of each cylinder along the crankshaft [m], z pointing towards the viewer; all 0 by default
-    main_positions : of the main bearings along the crankshaft [m], in order, with every cylinder between two of them;
-        by default halfway between neighbouring throws, and as far outside the first and the last
+    engine : Scene
+        Scene of a SliderCrank: one cylinder, with the crank's throw, its part of the crankshaft and its loads, driven
+        by the crank at a constant omega2.
+    crank_angles : sequence of float
+        Angle of each cylinder's crank, ahead of theta2 [degree]; over two turns in a four-stroke engine, where it also
+        states where in its cycle the cylinder is: [0, 540, 180, 360].
+    bank_angles : sequence of float, default ()
+        Angle of each cylinder, turned from the engine's guide [degree]; () for 0.
+    positions : sequence of float, default ()
+        Position of each cylinder along the crankshaft [m], z pointing towards the viewer; () for 0.
+    main_positions : sequence of float, default ()
+        Positions of the main bearings along the crankshaft [m], in order, with every cylinder between two of them; ()
+        for halfway between neighbouring throws, and as far outside the first and the last.
 
     Raises
     ------
@@ -68,7 +73,7 @@ class MultiCylinder(ByContent):
 
     Examples
     --------
-    An inline four: what is left is the second order, and it goes up and down.
+    An inline four leaves the second order, which goes up and down.
 
     >>> import linksweep as ls
     >>> four = ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360], positions=[-0.15, -0.05, 0.05, 0.15])
@@ -92,13 +97,12 @@ class MultiCylinder(ByContent):
 
     def __post_init__(self) -> None:
         refuse(_engine_problems(self.engine))
-        given = {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}
-        for word, rule in given.items():
+        for word, rule in {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}.items():
             refuse(self._take(word, rule))
         refuse(self._take_mains())
 
     def _take(self, word: str, rule: Rule) -> list[str]:
-        """Numbers of the cylinders as a tuple, one for each."""
+        """Store one number for each cylinder as a tuple, and return its problems."""
         value: Any = getattr(self, word)
         if _no_list(value):
             return [f"{word} = {quote(value)}: must be a list of numbers, one for each cylinder"]
@@ -106,23 +110,23 @@ class MultiCylinder(ByContent):
         if word != "crank_angles":
             numbers = numbers or (0.0,) * len(self.crank_angles)
         normalise(self, **{word: numbers})
-        found = [] if numbers else [f"{word} is empty: give one for each cylinder"]
+        problems = [] if numbers else [f"{word} is empty: give one for each cylinder"]
         if len(numbers) != len(self.crank_angles):
-            found.append(
+            problems.append(
                 f"{word} has {len(numbers)} numbers: must have one for each of {len(self.crank_angles)} cylinders"
             )
-        return found + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
+        return problems + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
 
     def _take_mains(self) -> list[str]:
-        """Take the places of the main bearings; what is wrong with them."""
+        """Store the places of the main bearings, and return their problems."""
         value: Any = self.main_positions
         if _no_list(value):
             return [f"main_positions = {quote(value)}: must be a list of numbers, one for each main bearing"]
         places = tuple(to_float64(number, LENGTH.kind) for number in value)
         normalise(self, main_positions=places)
-        found = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
-        if found or not places:
-            return found
+        problems = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
+        if problems or not places:
+            return problems
         if len(places) < 2 or not np.all(np.diff(places) > 0.0):
             return [
                 f"main_positions = {quote(list(places))}: must be two places or more, in order along the crankshaft"
@@ -151,28 +155,28 @@ class MultiCylinder(ByContent):
 
     @property
     def pin_forces(self) -> tuple[str, ...]:
-        """Magnitudes of the forces in the pins of one cylinder, which its bank leaves alone."""
+        """Magnitudes of the pin forces of one cylinder, which do not depend on its bank angle."""
         return tuple(f"F{i}{j}" for a, b in self.engine.mechanism.pins.values() for i, j in ((a, b), (b, a)))
 
     @property
     def period(self) -> float:
-        """Of the whole cycle [degree]."""
+        """Crank angle of the whole cycle [degree]."""
         return self.engine.period
 
     @cached_property
     def mains(self) -> tuple[float, ...]:
-        """Places of the main bearings along the crankshaft [m], in order; none where nothing says where they are."""
+        """Places of the main bearings along the crankshaft [m], in order; () if neither they nor throws have places."""
         return tuple(self.main_positions) or _halfway(sorted({*self.positions}))
 
     @cached_property
     def throws(self) -> tuple[Throw, ...]:
-        """How each cylinder stands in the engine."""
+        """Place of each cylinder in the engine."""
         standing = zip(self.crank_angles, self.bank_angles, self.positions, strict=True)
         return tuple(Throw(ahead - bank, cos_sin(bank), z, _shares(z, self.mains)) for ahead, bank, z in standing)
 
     @cached_property
     def cylinders(self) -> tuple[Scene, ...]:
-        """The scene of each cylinder, in axes that turn with it: all differ by the direction of gravity alone."""
+        """Scene of each cylinder, in axes that turn with it: they differ in the direction of gravity alone."""
         gx, gy = self.engine.gravity
         banks = [throw.bank for throw in self.throws]
         turned = {
@@ -221,12 +225,12 @@ class MultiCylinder(ByContent):
 
 
 def _bare(cycle: xr.Dataset) -> xr.Dataset:
-    """Return a cylinder's cycle without its own angles."""
+    """Return a cylinder's cycle without its own angles, which differ from the engine's."""
     return cycle.drop_vars([name for name, array in cycle.coords.items() if "theta2" in array.dims])
 
 
 def _halfway(throws: list[float]) -> tuple[float, ...]:
-    """Return places halfway between throws, and as far outside; none for one throw."""
+    """Return places halfway between throws, and as far outside; () for one throw."""
     if len(throws) < 2:
         return ()
     between = [0.5 * (a + b) for a, b in pairwise(throws)]
@@ -234,7 +238,7 @@ def _halfway(throws: list[float]) -> tuple[float, ...]:
 
 
 def _shares(z: float, mains: tuple[float, ...]) -> tuple[float, ...]:
-    """Return what each main carries of a force at z, by the lever rule in the bay where it lies."""
+    """Return the part that each main carries of a force at z, by the lever rule in the bay that z lies in."""
     weights = np.zeros(len(mains))
     if len(mains):
         right = min(max(int(np.searchsorted(mains, z)), 1), len(mains) - 1)
@@ -244,7 +248,7 @@ def _shares(z: float, mains: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def one_cylinder(machine: Scene | MultiCylinder) -> Scene:
-    """Return the scene of a machine's cylinder, or of a machine of one mechanism itself."""
+    """Return the scene of one cylinder of an engine, or a scene itself."""
     return machine.engine if isinstance(machine, MultiCylinder) else machine
 
 
