@@ -1,4 +1,4 @@
-"""duty(scene): what the drive gives over a cycle: torque, power, work, and what it takes back."""
+"""Torque, power and work of the drive over a cycle, fed and regenerated."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from linksweep.scene.scene import Scene
 
 
 class Entry(NamedTuple):
-    """A result: the name of what `peaks` gives for it, and its words; work is mean power over the time of a cycle."""
+    """A result: its name, the name of its source in `peaks`, and its description.
+
+    Work is mean power times the time of a cycle.
+    """
 
     name: str
     source: str
@@ -45,35 +48,39 @@ LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a c
 
 
 def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset:
-    """Torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
+    """Compute torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
 
     Parameters
     ----------
-    scene : Scene, or MultiCylinder, of a machine whose crank turns in one direction: omega2 is nowhere 0
-    threads : at most so many (default: all cores)
+    scene : Scene or MultiCylinder
+        Machine whose crank turns in one direction: omega2 is nowhere 0.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over the design dims.
+    Dataset
+        Results over the design dims:
 
-    - `effort_mean`, `effort_rms`, `effort_peak`: of the drive's torque [N m], of a cylinder its force [N]
-    - `power_mean`, `power_max`, `power_min` [W]
-    - `work`, `work_fed`, `work_regenerated` [J] in a cycle: of one turn, or two of a four-stroke engine; `work` is
-      `work_fed` less `work_regenerated`
-    - `work_of_loads`, and of a slider-crank `work_of_friction` [J]; with `work` they add up to 0 where alpha2 is that
-      of omega2
-    - `status` as in `peaks`; where a revolution is not whole, there is no work of a cycle (NaN)
+        - `effort_mean`, `effort_rms`, `effort_peak`: of the drive's torque [N m], of a cylinder its force [N]
+        - `power_mean`, `power_max`, `power_min` [W]
+        - `work`, `work_fed`, `work_regenerated` [J] in a cycle: of one turn, or two of a four-stroke engine; `work` is
+          `work_fed` less `work_regenerated`
+        - `work_of_loads`, and of a machine with friction `work_of_friction` [J]; with `work` they add up to 0 where
+          alpha2
+          belongs to omega2
+        - `status` as in `peaks`; where a revolution is not whole, there is no work of a cycle (NaN).
 
     Raises
     ------
     ValueError
-        For a car in a loop, and a crank that stands still or turns back.
+        If the machine has no crank, or the crank stands still or turns back.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.duty(ls.example("press"))
-    >>> found.work.units, bool(abs(found.work + found.work_of_loads) < 1e-9)
+    >>> cycle = ls.duty(ls.example("press"))
+    >>> cycle.work.units, bool(abs(cycle.work + cycle.work_of_loads) < 1e-9)
     ('J', True)
     """
     one = one_cylinder(scene)
@@ -82,21 +89,20 @@ def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset
     drive = one.mechanism.drives[one.drive]
     entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
     sources = {entry.source.format(drive=drive): entry for entry in entries}
-    wanted = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
-    found = peaks(scene, of=list(dict.fromkeys(wanted)), threads=threads)
+    names = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
+    worst = peaks(scene, of=list(dict.fromkeys(names)), threads=threads)
     time = cycle_time(one, threads)
-    variables = {entry.name: _value(entry, found[entry.source.format(drive=drive)], time) for entry in entries}
-    whole = found["status"] == 0
+    variables = {entry.name: _value(entry, worst[entry.source.format(drive=drive)], time) for entry in entries}
+    whole = worst["status"] == 0
     for entry in entries:
         if entry.work and not bool(whole.all()):
             variables[entry.name] = variables[entry.name].where(whole)
-    result = found.drop_vars([name for name in found.data_vars if name != "status"]).assign(variables)
-    return result.assign_attrs(command="linksweep.duty(scene)")
+    return worst[["status"]].assign(variables).assign_attrs(command="linksweep.duty(scene)")
 
 
-def _value(entry: Entry, found: xr.DataArray, time: Any) -> xr.DataArray:
-    value = found * time if entry.work else found
-    return value.assign_attrs(units="J" if entry.work else found.units, long_name=entry.long_name)
+def _value(entry: Entry, source: xr.DataArray, time: Any) -> xr.DataArray:
+    value = source * time if entry.work else source
+    return value.assign_attrs(units="J" if entry.work else source.units, long_name=entry.long_name)
 
 
 def turning_problems(scene: Scene) -> list[str]:

@@ -1,4 +1,4 @@
-"""flywheel(scene, fluctuation=0.02): the flywheel that keeps a crank's speed within bounds, and that speed.
+"""The flywheel that keeps a crank's speed within bounds, and that speed over the cycle.
 
 A drive of constant torque T_d, the work of a cycle over its angle, and a mechanism that resists by T_s(θ) at rest:
 
@@ -36,32 +36,37 @@ BISECTIONS = 60
 def flywheel(
     scene: Scene | MultiCylinder, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
 ) -> xr.Dataset:
-    """The flywheel on the crank for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
+    """Compute the flywheel for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
 
     Parameters
     ----------
-    scene : Scene or MultiCylinder whose omega2 is the mean speed, (largest + least)/2
-    fluctuation : wanted coefficient, (largest − least speed)/mean; or
-    inertia : of a given flywheel about the crank's axis [kg m²]; 0 for none. Either may be a DataArray
-    theta2 : a count of angles in the cycle
+    scene : Scene or MultiCylinder
+        Machine whose omega2 is the mean speed, (largest + least)/2.
+    fluctuation : float or DataArray, default None
+        Coefficient of fluctuation that is allowed, (largest − least speed)/mean [1]; give it or the inertia.
+    inertia : float or DataArray, default None
+        Moment of inertia of a flywheel about the crank's axis [kg m²]; 0 for none.
+    theta2 : int, default 720
+        Count of crank angles over the cycle.
 
     Returns
     -------
-    Dataset over the design dims.
+    Dataset
+        Results over the design dims:
 
-    - `flywheel_inertia` [kg m²], of what turns with the crank besides its own; 0 where none is needed
-    - `speed` [rad/s] of the crank over theta2, with the drive's torque constant
-    - `fluctuation`: the coefficient that results; smaller than asked for where no flywheel is needed
-    - `drive_torque` [N m]: that constant torque, on the crank
-    - `energy_fluctuation` [J]: most less least of what is stored at constant speed
+        - `flywheel_inertia` [kg m²], of the masses that turn with the crank besides its own; 0 where none is needed
+        - `speed` [rad/s] of the crank over theta2, with the drive's torque constant
+        - `fluctuation` [1]: the coefficient that results; smaller than the allowed one where no flywheel is needed
+        - `drive_torque` [N m]: that constant torque, on the crank
+        - `energy_fluctuation` [J]: greatest less least stored energy at constant speed.
 
-    NaN where a revolution is not whole, and where that mean speed cannot be kept: it would stall on the way.
+        NaN where a revolution is not whole, and where the mean speed cannot be kept: the crank would stall on the way.
 
     Raises
     ------
     ValueError
-        For both or neither of fluctuation and inertia, numbers out of bounds, and a crank that stands still or changes
-        its speed.
+        If fluctuation and inertia are both given or both left out, a number is out of bounds, or the crank stands still
+        or changes its speed.
 
     Notes
     -----
@@ -71,8 +76,8 @@ def flywheel(
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.flywheel(ls.example("press"), fluctuation=0.05)
-    >>> found.flywheel_inertia.units, round(float(found.fluctuation), 12)
+    >>> wheel = ls.flywheel(ls.example("press"), fluctuation=0.05)
+    >>> wheel.flywheel_inertia.units, round(float(wheel.fluctuation), 12)
     ('kg m2', 0.05)
     """
     require(one_cylinder(scene), "drives")
@@ -87,20 +92,22 @@ def flywheel(
     J, torque = (cycle[name].broadcast_like(cycle[index]) for name in ("reduced_inertia", "reduced_torque"))
     stored, drive = _work(torque, one.period, index)
     E = stored + 0.5 * mean**2 * J
-    size = _wanted(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
+    size = _inertia(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
     speed = _speed(E, J, size, mean, index)
     spread = (speed.max(index, skipna=False) - speed.min(index, skipna=False)) / mean
-    made = {
+    results = {
         "flywheel_inertia": (size, "kg m2", "moment of inertia of the flywheel about the crank's axis"),
         "speed": (np.sign(one.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
         "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
         "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
         "energy_fluctuation": (
             *(stored.max(index, skipna=False) - stored.min(index, skipna=False), "J"),
-            "most less least work that the drive's constant torque has done ahead of what it takes at constant speed",
+            "greatest less least work of the drive's constant torque ahead of the work needed at constant speed",
         ),
     }
-    variables = {name: xr.DataArray(v).assign_attrs(units=u, long_name=said) for name, (v, u, said) in made.items()}
+    variables = {
+        name: xr.DataArray(v).assign_attrs(units=unit, long_name=text) for name, (v, unit, text) in results.items()
+    }
     attributes = cycle.attrs | {"command": "linksweep.flywheel(scene, ...)"}
     return cycle[["status"]].assign(variables).assign_attrs(attributes)
 
@@ -120,12 +127,12 @@ def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
 
 
 def _too_large(fluctuation: Number) -> list[str]:
-    """With 2, the crank would stand still at its least speed."""
+    """Return the problem of a fluctuation of 2 or more, with which the crank would stand still or turn back."""
     return [f"fluctuation = {quote(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
 
 
 def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """∫ (T_d − T) dθ from the first angle on, at every angle; and T_d. By the periodic cubic spline."""
+    """Return ∫ (T_d − T) dθ from the first angle on, at every angle, and T_d; by the periodic cubic spline."""
     from scipy.interpolate import CubicSpline
 
     torque = torque.transpose(..., index)
@@ -139,8 +146,8 @@ def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray
     return torque.copy(data=stored), torque.isel({index: 0}, drop=True).copy(data=mean)
 
 
-def _wanted(E: xr.DataArray, J: xr.DataArray, mean: Number, fluctuation: Number, index: str) -> xr.DataArray:
-    """J_f of the module's equation, 0 where none is needed."""
+def _inertia(E: xr.DataArray, J: xr.DataArray, mean: Number, fluctuation: Number, index: str) -> xr.DataArray:
+    """Return J_f of the module's equation, 0 where none is needed."""
     fast, slow = mean * (1.0 + 0.5 * fluctuation), mean * (1.0 - 0.5 * fluctuation)
     highest, lowest = (E - 0.5 * J * fast**2).max(index, skipna=False), (E - 0.5 * J * slow**2).min(index, skipna=False)
     size = (highest - lowest) / (fluctuation * mean**2)
@@ -148,7 +155,7 @@ def _wanted(E: xr.DataArray, J: xr.DataArray, mean: Number, fluctuation: Number,
 
 
 def _speed(E: xr.DataArray, J: xr.DataArray, size: xr.DataArray, mean: Number, index: str) -> xr.DataArray:
-    """Speed at every angle whose largest and least have this mean: E0 by bisection, in which that grows."""
+    """Return the speed at every angle whose largest and least have this mean; E0 by bisection."""
     total = size + J
     low = -E.min(index, skipna=False)
     stalls = _middle(E + low, total, index) > mean
@@ -161,5 +168,6 @@ def _speed(E: xr.DataArray, J: xr.DataArray, size: xr.DataArray, mean: Number, i
 
 
 def _middle(energy: xr.DataArray, total: xr.DataArray, index: str) -> xr.DataArray:
+    """Return the mean of largest and least speed."""
     speed = (2.0 * energy.clip(min=0.0) / total) ** 0.5
     return 0.5 * (speed.max(index, skipna=False) + speed.min(index, skipna=False))

@@ -1,4 +1,4 @@
-"""motor_load(scene, motor): what a motor behind a gear must give at every angle, beside what it can."""
+"""Load of a motor behind a gear at every crank angle, beside the motor's curve."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CURVE = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torq
 RATIO = Rule("dimensionless", above=0.0)
 EFFICIENCY = Rule("dimensionless", above=0.0)
 DRIVEN = {"T12": 2, "T13": 3, "T14": 4}
-"""The link that each torque turns."""
+"""Number of the link that each torque turns."""
 
 
 @dataclass(frozen=True)
@@ -32,14 +32,17 @@ class Motor:
 
     Parameters
     ----------
-    speeds : of the curve's points [rad/s], from 0, growing
-    torques : the most that it gives at these speeds [N m]; straight lines between; none beyond the last speed
-    inertia : of its rotor [kg m²]
+    speeds : sequence of float
+        Speeds of the curve's points [rad/s], from 0, growing.
+    torques : sequence of float
+        Largest torques at these speeds [N m]; straight lines between; none beyond the last speed.
+    inertia : float, default 0.0
+        Moment of inertia of its rotor [kg m²].
 
     Raises
     ------
     ValueError
-        For curves that are none.
+        If the points form no curve, or a number is out of bounds.
 
     Examples
     --------
@@ -70,7 +73,18 @@ class Motor:
         refuse(problems)
 
     def torque_at(self, speed: Any) -> Any:
-        """The most torque [N m] that it gives at a speed [rad/s], in either direction."""
+        """Return the largest torque at a speed, in either direction.
+
+        Parameters
+        ----------
+        speed : float or array_like
+            Speed [rad/s].
+
+        Returns
+        -------
+        float or array
+            Torque [N m].
+        """
         at = np.abs(speed)
         torque = np.interp(at, self.speeds, self.torques, right=0.0)
         return float(torque) if np.ndim(torque) == 0 else torque
@@ -79,30 +93,36 @@ class Motor:
 def motor_load(
     scene: Scene, motor: Motor, ratio: Number = 1.0, efficiency: Number = 1.0, theta2: Any = 720
 ) -> xr.Dataset:
-    """Torque–speed points of a motor that drives a machine through a gear.
+    """Compute speed and torque of a motor that drives a machine through a gear, and its margin.
 
     Parameters
     ----------
-    scene : Scene driven by the torque on one of its links
+    scene : Scene
+        Scene driven by the torque on one of its links.
     motor : Motor
-    ratio : of the gear: the motor's speed per that of the driven link; may be a DataArray
-    efficiency : of the gear, in (0, 1]: power lost on the way to the machine, and again on the way back
-    theta2 : as in `sweep`
+        Motor with its curve.
+    ratio : float or DataArray, default 1.0
+        Ratio of the gear: the motor's speed per that of the driven link [1].
+    efficiency : float or DataArray, default 1.0
+        Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree], as in `linksweep.sweep`.
 
     Returns
     -------
-    Dataset over the dims of a sweep (and those of ratio and efficiency).
+    Dataset
+        Results over the dims of a sweep (and those of ratio and efficiency):
 
-    - `motor_speed` [rad/s] and `motor_torque` [N m], which has that for the rotor's own inertia in it
-    - `available_torque` [N m]: the most that the motor gives at that speed
-    - `torque_margin` [N m]: available less |motor_torque|; negative where the motor is too weak
-    - `reflected_inertia` [kg m²]: the rotor's inertia as the driven link feels it, inertia·ratio²
-    - `motor_torque_rms` [N m]: root mean square over time, what heats the motor
+        - `motor_speed` [rad/s] and `motor_torque` [N m], the rotor's own inertia included
+        - `available_torque` [N m]: the largest torque of the motor at that speed
+        - `torque_margin` [N m]: available less |motor_torque|; negative where the motor is too weak
+        - `reflected_inertia` [kg m²]: the rotor's inertia at the driven link, inertia·ratio²
+        - `motor_torque_rms` [N m]: root mean square over time, which heats the motor.
 
     Raises
     ------
     ValueError
-        For a drive that is no torque on a link, and numbers out of bounds.
+        If the drive is no torque on a link, or a number is out of bounds.
 
     Notes
     -----
@@ -114,8 +134,8 @@ def motor_load(
     --------
     >>> import linksweep as ls
     >>> servo = ls.Motor(speeds=(0.0, 300.0, 600.0), torques=(4.0, 4.0, 1.0), inertia=2e-4)
-    >>> found = ls.motor_load(ls.example("press"), servo, ratio=10.0)
-    >>> bool((found.torque_margin > 0.0).all()), round(float(found.reflected_inertia), 9)
+    >>> load = ls.motor_load(ls.example("press"), servo, ratio=10.0)
+    >>> bool((load.torque_margin > 0.0).all()), round(float(load.reflected_inertia), 9)
     (True, 0.02)
     """
     require(scene, "drives")
@@ -130,15 +150,15 @@ def motor_load(
     fed = T * cycle[omega] > 0.0
     needed = xr.where(fed, T / efficiency, T * efficiency) / ratio + motor.inertia * ratio * cycle[alpha]
     available = xr.apply_ufunc(motor.torque_at, speed).where(speed.notnull())
-    made = {
+    results = {
         "motor_speed": (speed, "rad s-1", "angular velocity of the motor"),
-        "motor_torque": (needed, "N m", "torque of the motor, in the direction of the driven link's"),
-        "available_torque": (available, "N m", "the most torque that the motor gives at its speed"),
-        "torque_margin": (available - abs(needed), "N m", "available torque less that needed"),
+        "motor_torque": (needed, "N m", "torque of the motor, in the direction of the torque on the driven link"),
+        "available_torque": (available, "N m", "largest torque of the motor at its speed"),
+        "torque_margin": (available - abs(needed), "N m", "available torque less the magnitude of the motor's"),
         "reflected_inertia": (xr.DataArray(motor.inertia * ratio**2), "kg m2", "rotor inertia at the driven link"),
         "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
     }
-    variables = {name: v.assign_attrs(units=unit, long_name=words) for name, (v, unit, words) in made.items()}
+    variables = {name: v.assign_attrs(units=unit, long_name=words) for name, (v, unit, words) in results.items()}
     attributes = cycle.attrs | {"command": "linksweep.motor_load(scene, ...)"}
     return cycle[["status"]].assign(variables).assign_attrs(attributes)
 
