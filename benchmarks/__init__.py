@@ -1,1 +1,1 @@
-"""How fast linksweep is, as ratios within one run: `python -m benchmarks`."""
+"""Measure the speed of linksweep as ratios within one run: `python -m benchmarks`."""

@@ -1,4 +1,4 @@
-"""The front door: python -m benchmarks [--quick] [--only GROUP] [--json FILE] [--write]."""
+"""Run the benchmarks: python -m benchmarks [--quick] [--only GROUP] [--json FILE] [--write]."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RESULTS = Path(__file__).with_name("RESULTS.md")
 
 
 class Group(NamedTuple):
-    """Rows of one kind; `one_core` where they are timed pinned to one core."""
+    """A group of rows with its title; `one_core` where they are timed pinned to one core."""
 
     title: str
     rows: Callable[[Size], list[Row]]
@@ -36,7 +36,7 @@ GROUPS = {
     "peaks": Group("Peaks of {designs} designs × {turn} angles, one core", peaks.rows),
     "exact": Group("Exact peaks of many designs, one core", exact.rows),
     "missed": Group("Peaks that the search misses, {machines:,} random designs of each kind", missed.rows),
-    "skipping": Group("What is not asked for is not paid for, {angles:,} angles, one core", skipping.rows),
+    "skipping": Group("Quantities that are not requested cost nothing, {angles:,} angles, one core", skipping.rows),
     "mechanisms": Group("Other mechanisms against the four-bar, {angles:,} angles, one core", mechanisms.rows),
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
     "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),
@@ -46,7 +46,7 @@ GROUPS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the benchmarks and print their table; 1 when rivals disagree on a result, never for a time."""
+    """Run the benchmarks and print their table; return 1 where rivals disagree on a result, never for a time."""
     options = _parser().parse_args(arguments)
     size = QUICK if options.quick else FULL
     groups = {}

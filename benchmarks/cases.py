@@ -1,7 +1,6 @@
-"""The job, once for all rivals: one general four-bar and batches of them, as peers.Design and as linksweep scenes.
+"""Define the benchmark's job for all rivals: one general four-bar, and batches, as peers.Design and as scenes.
 
-Nothing about it is special enough to be left out of the work: gravity in both axes, alpha2, centres of gravity off
-the lines of pins.
+No special case can be exploited: gravity in both axes, alpha2, centres of gravity off the lines of pins.
 """
 
 from __future__ import annotations
@@ -33,8 +32,8 @@ ALL = (*LENGTHS, *MASSES, "s", "p", "u", "delta2", "delta3", "delta4", "omega2",
 
 @dataclass(frozen=True)
 class Size:
-    """How much of everything: angles of one long sweep, of one turn, designs, and how often to time; how many angles
-    and random designs are judged in 50 digits; how far growth is followed, and for how many requests."""
+    """Size of a run: angles of one long sweep and of one turn, designs, rounds of timing; angles and random designs
+    checked in 50 digits; how far growth is followed, and for how many requests."""
 
     angles: int = 72_000
     turn: int = 720
@@ -44,7 +43,7 @@ class Size:
     rounds: int = 15
     burst: float = 0.03
     processes: int = 5
-    judged: int = 180
+    checked: int = 180
     population: int = 1000
     largest_angles: int = 10_000_000
     largest_designs: int = 1_000_000
@@ -61,7 +60,7 @@ QUICK = Size(
     rounds=1,
     burst=0.0,
     processes=1,
-    judged=6,
+    checked=6,
     population=4,
     largest_angles=100,
     largest_designs=1,
@@ -70,19 +69,19 @@ QUICK = Size(
 
 
 def few(size: Size) -> Size:
-    """For many rivals: fewer rounds."""
+    """Return the size with fewer rounds, for many rivals."""
     return replace(size, rounds=min(size.rounds, 5))
 
 
 def batch(n_designs: int, *names: str) -> Design:
-    """Designs around the general one: each named number spread at random over 10 %; all remain crank-rockers."""
+    """Return designs around the general one: each named number spread at random over 10 %; all remain crank-rockers."""
     rng = np.random.default_rng(2)
     spread = {name: getattr(GENERAL, name) * (1 + 0.1 * rng.random((n_designs, 1))) for name in names}
     return replace(GENERAL, **spread)
 
 
 def scene(q: Design, loads: tuple[ls.Load, ...] = ()) -> ls.Scene:
-    """The same design as linksweep takes it; columns become DataArrays over `design`."""
+    """Return the scene of a design; columns become DataArrays over `design`."""
     rows = ((q.a, q.m2, q.I2, q.s, q.delta2), (q.b, q.m3, q.I3, q.p, q.delta3), (q.c, q.m4, q.I4, q.u, q.delta4))
     links = (ls.Link(*map(_number, row)) for row in rows)
     mechanism = ls.FourBar(*links, ground=_number(q.d), branch="open" if q.sign > 0 else "crossed")
@@ -95,5 +94,5 @@ def _number(value: Number) -> float | xr.DataArray:
 
 
 def stacked(cycle: xr.Dataset, names: tuple[str, ...] = NINE) -> Array:
-    """Variables of a sweep as one array (names, designs…, angles)."""
+    """Return variables of a sweep as one array (names, designs…, angles)."""
     return np.stack([cycle[name].values for name in names])

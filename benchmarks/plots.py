@@ -1,4 +1,4 @@
-"""Run time against error, drawn: each figure from the rows of one group, with the machine named below."""
+"""Draw run time against error: one figure per group, with the machine named below."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ Axes = Any
 HERE = Path(__file__).parent
 BLACK, GREY, SHADE = "#000000", "#666666", "#EBEBEB"
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-"""Of Okabe and Ito."""
+"""Colours of Okabe and Ito."""
 MACHINE = "{processor}, one core; {system}, Python {Python}, numpy {numpy}, numba {numba}, linksweep {linksweep}"
 STYLE = {"font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "figure.dpi": 160}
 LEAST = 1e-16
-"""What smaller errors are drawn as."""
+"""Smaller errors are drawn as this."""
 PLACES = [((0.0, -14.0), "center"), ((7.0, -3.0), "left"), ((-7.0, -3.0), "right")]
 PLACES += [((0.0, -14.0 - down), "center") for down in (10.0, 20.0, 30.0, 40.0)]
-"""Of a name beside its point [pt]."""
+"""Offsets of a name from its point [pt], in order of preference."""
 SMALL = {"textcoords": "offset points", "ha": "center", "fontsize": 7.5}
 LEGEND = {"loc": "lower right", "frameon": False, "fontsize": 8.0}
 GAP = 2.0
-"""Between names [px]."""
+"""Gap between names [px]."""
 WHITE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5}
 
 
 def draw(name: str, rows: list[Row], folder: Path = HERE) -> None:
-    """The figure of a group, to NAME.png, where it has one."""
+    """Draw the figure of a group, if it has one, to NAME.png."""
     if name not in FIGURES:
         return
     import matplotlib.pyplot as plt
@@ -69,7 +69,7 @@ def _solves(rows: list[Row]) -> Any:
 
 
 def _methods(ax: Axes, rows: list[Row]) -> None:
-    """A point for each, and above it, hollow, what is left near a toggle."""
+    """Draw a point for each method, and above it, hollow, its error near a toggle."""
     for row in rows:
         (x, y), color = _point(row), _color(row)
         ax.plot(x, y, "o", color=color, markersize=6.0, zorder=3)
@@ -88,7 +88,7 @@ def _color(row: Row) -> str:
 
 
 def _names(ax: Axes, rows: list[Row]) -> None:
-    """Below each point, or wherever else no other name or point is."""
+    """Write each name below its point, or at the next place free of other names and points."""
     ax.figure.draw_without_rendering()
     taken = [_around(ax.transData.transform(_point(row))) for row in rows]
     for row in sorted(rows, key=lambda row: row.seconds):
@@ -141,7 +141,7 @@ def _way(row: Row) -> str:
 
 
 def _ladder(ax: Axes, way: str, rows: list[Row]) -> None:
-    """One way's errors, from few samples to many."""
+    """Draw the errors of one way of evaluation, from few samples to many."""
     if not rows:
         return
     color = COLORS[way]
@@ -171,5 +171,5 @@ def _log_axes(ax: Axes, title: str, xlabel: str) -> None:
 COLORS = {"ls.peaks": BLUE, EXACT: BLUE, "limit.c": GREEN, "numpy closed form": ORANGE}
 COLORS["numpy + LAPACK"] = PURPLE
 FASTEST = "limit.c"
-"""Beside it is room for the numbers of samples."""
+"""The way whose points are labelled with numbers of samples, for there is room beside it."""
 FIGURES: dict[str, Callable[[list[Row]], Any]] = {"solves": _solves, "grids": _grids}

@@ -1,4 +1,4 @@
-"""Rows as a Markdown table and as JSON, and the machine that they are of."""
+"""Format rows as a Markdown table and as JSON, with the machine that measured them."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _goal(row: Row) -> str:
 
 
 def _time(seconds: float | None, samples: int | None = None) -> str:
-    """A time, per sample if there are samples."""
+    """Return a time as text, per sample if there are samples."""
     if seconds is None:
         return ""
     seconds /= samples or 1
@@ -74,7 +74,7 @@ def as_json(groups: Groups) -> dict:
 
 
 def machine() -> dict[str, str]:
-    """What the figures depend on; no names of hosts, no paths."""
+    """Return the facts that the figures depend on; no names of hosts, no paths."""
     return {
         "processor": _processor(),
         "cores": str(os.cpu_count()),
@@ -87,15 +87,15 @@ def machine() -> dict[str, str]:
 
 def _processor() -> str:
     try:
-        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        model = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
     except OSError:
-        found = None
-    return found[1] if found else platform.processor() or platform.machine()
+        model = None
+    return model[1] if model else platform.processor() or platform.machine()
 
 
 def _compiler() -> str:
     cc = limit.compiler()
     if cc is None:
         return "none"
-    said = subprocess.run([cc, "--version"], capture_output=True, text=True, check=False).stdout.splitlines()
-    return said[0] if said else Path(cc).name
+    lines = subprocess.run([cc, "--version"], capture_output=True, text=True, check=False).stdout.splitlines()
+    return lines[0] if lines else Path(cc).name

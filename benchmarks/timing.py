@@ -1,4 +1,4 @@
-"""Rivals timed in turn, A B A B …, so that a machine's drift falls on all alike and only their ratios remain."""
+"""Time rivals in turn, A B A B …, so that the machine's drift affects all alike and cancels in their ratios."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ from benchmarks.cases import Size
 Call = Callable[[], object]
 Clock = Callable[[], float]
 FASTER, SHARE, WALL = "times as fast", "of the time", "s"
-"""What a row's figure is: their time over ours, ours over theirs, or ours as it is."""
+"""Kinds of a row's figure: their time over ours, our time over theirs, or our time itself."""
 
 AGREEMENT = 1e-10
-"""The error up to which rivals agree, unless a row allows more."""
+"""Error up to which rivals agree, unless a row allows more."""
 
 OWN = thread_time if get_clock_info("thread_time").resolution < 1e-6 else perf_counter
-"""Time that this thread itself has had: a long call that others interrupt is not made to look slow."""
+"""Clock of this thread's own time, so that interruptions by other processes do not count."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table: a job, its rival, and how they compare. No ratio: not measured, `note` says why.
+    """One line of the table: a job, its rival, and their comparison. Without a ratio it was not measured, and `note`
+    says why.
 
-    `error` is one that is `allowed`, or rivals disagree; `figures` are others, told by their names in the note.
+    Rivals disagree where `error` exceeds `allowed`; `figures` are further errors, listed by name in the note.
     """
 
     job: str
@@ -49,7 +50,7 @@ class Row:
 
     @property
     def met(self) -> bool | None:
-        """Whether the goal is reached; None without a goal or a measurement."""
+        """Return whether the goal is reached; None without a goal or a measurement."""
         if self.goal is None or self.figure is None:
             return None
         return self.figure >= self.goal if self.kind == FASTER else self.figure <= self.goal
@@ -61,13 +62,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Race:
-    """Seconds of each rival, round by round, for the same number of samples (angles × designs)."""
+    """Seconds of each rival, round by round, for one number of samples (angles × designs)."""
 
     seconds: Mapping[str, list[float]]
     samples: int | None = None
 
     def row(self, kind: str, ours: str, theirs: str, goal: float | None = None, **more) -> Row:
-        """Our median time, theirs, and the median over the rounds of their ratio."""
+        """Return a row of our median time, theirs, and the median over the rounds of their ratio."""
         if not {ours, theirs} <= self.seconds.keys():
             return Row(ours, theirs, kind, goal=goal, **more | {"note": "not measured: no C compiler found"})
         rounds = zip(self.seconds[ours], self.seconds[theirs], strict=True)
@@ -77,7 +78,7 @@ class Race:
 
 
 def race(calls: Mapping[str, Call], size: Size, samples: int | None = None, clock: Clock = OWN) -> Race:
-    """Time the calls in turn: in every round each runs for a short burst, and its best counts.
+    """Time the calls in turn: in every round each runs for a short burst, and its best time counts.
 
     A call that starts threads needs perf_counter as its clock.
     """
@@ -96,14 +97,14 @@ def timed(call: Call, clock: Clock = perf_counter) -> float:
 
 
 def _repeats(call: Call, burst: float) -> int:
-    """As many as fill a burst, at least three; one for a burst of 0 s."""
+    """Return the number of calls that fill a burst, at least three; one for a burst of 0 s."""
     call()  # to warm up
     return max(3, round(burst / timed(call))) if burst else 1
 
 
 @contextmanager
 def one_core() -> Iterator[None]:
-    """Keep this thread on one core, where the system can (Linux)."""
+    """Pin this thread to one core, where the system can (Linux)."""
     if not can_pin():
         yield
         return
@@ -120,5 +121,5 @@ def can_pin() -> bool:
 
 
 def cores() -> int:
-    """Cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if can_pin() else os.cpu_count() or 1

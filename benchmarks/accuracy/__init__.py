@@ -1,1 +1,1 @@
-"""Measure errors beside run time, against fifty digits and against dense samples."""
+"""Measure errors against fifty digits and against dense samples."""

@@ -1,8 +1,8 @@
-"""How many last digits are wrong, beside others: python -m benchmarks.accuracy.digits [--designs N] [--write].
+"""Count wrong last digits, compared with other methods: python -m benchmarks.accuracy.digits [--designs N] [--write].
 
 Largest and mean error in ε = 2^-52 of four-bars without loads, by family and quantity: forces relative to the sample's
-largest pin force, the torque to that at the crank's length, angular velocities to the fastest link's. All methods get
-the same designs, and only samples count whose status is ok.
+largest pin force, the torque to that force at the crank's length, angular velocities to the fastest link's. All methods
+solve equal designs, and only samples whose status is ok count.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from benchmarks.stress import families
 from benchmarks.stress.backward import LEAST, values
 from benchmarks.stress.decimals import Array, exactly, fifty_digits
 from benchmarks.stress.designs import FORCES, Designs
+from benchmarks.stress.errors import EPS
 from benchmarks.stress.families import Family, Random, chunks, decades
-from benchmarks.stress.judge import EPS
 
 RESULTS = Path(__file__).parents[1] / "ACCURACY.md"
 AT_ONE_ANGLE = 25
 OMEGAS = ("omega3", "omega4")
 QUANTITIES = {"F": FORCES, "T12": ("drive",), "ω": OMEGAS}
-Found = dict[str, Array]
+Results = dict[str, Array]
 
 
 # ---------------------------------------------------------------------------------------------- families
 
 
 def plain(family: Family) -> Family:
-    """A family's designs with the ground along x and no loads, which is what all rivals can do."""
+    """Return a family's designs with the ground along x and no loads: the case that all rivals can compute."""
 
     def drawn(random: Random, n: int) -> Designs:
         designs = family(random, n)
@@ -52,7 +52,7 @@ def _toggle(nearest: float, farthest: float) -> Family:
 
 
 def _flat(nearest: float, farthest: float) -> Family:
-    """Parallelograms, so far from lying flat."""
+    """Return parallelograms between two distances from lying flat [decades of rad]."""
 
     def drawn(random: Random, n: int) -> Designs:
         angle = float(180.0 * random.integers(0, 2) + np.degrees(decades(random, 1, nearest, farthest)[0]))
@@ -81,23 +81,25 @@ FAMILIES: dict[str, Family] = {
 # ---------------------------------------------------------------------------------------------- methods
 
 
-def _linksweep(designs: Designs, solver: str = "fast") -> Found:
+def _linksweep(designs: Designs, solver: str = "fast") -> Results:
     cycle = ls.sweep(designs.scene(), [designs.theta2], [*FORCES, "T12", *OMEGAS], solver=solver)
     cycle = cycle.rename(T12="drive")
     return {name: values(cycle, name, len(designs)) for name in (*FORCES, "drive", *OMEGAS, "status")}
 
 
-def _peer(solve: Callable[[peers.Design, Array], Array], rates: bool) -> Callable[[Designs], Found]:
-    def method(designs: Designs) -> Found:
+def _peer(solve: Callable[[peers.Design, Array], Array], rates: bool) -> Callable[[Designs], Results]:
+    def method(designs: Designs) -> Results:
         design, theta2 = as_peers(designs), np.array([designs.theta2])
         with np.errstate(all="ignore"):
-            found = dict(zip((*FORCES, "drive"), solve(design, theta2)[..., 0], strict=True))
-            return found | (dict(zip(OMEGAS, peers.numpy_rates(design, theta2)[..., 0], strict=True)) if rates else {})
+            results = dict(zip((*FORCES, "drive"), solve(design, theta2)[..., 0], strict=True))
+            if rates:
+                results |= zip(OMEGAS, peers.numpy_rates(design, theta2)[..., 0], strict=True)
+        return results
 
     return method
 
 
-METHODS: Mapping[str, Callable[[Designs], Found]] = {
+METHODS: Mapping[str, Callable[[Designs], Results]] = {
     "linksweep": _linksweep,
     "linksweep, dense 9×9": lambda designs: _linksweep(designs, "dense"),
     "numpy + LAPACK": _peer(peers.numpy_lapack, rates=True),
@@ -106,7 +108,7 @@ METHODS: Mapping[str, Callable[[Designs], Found]] = {
 
 
 def as_peers(designs: Designs) -> peers.Design:
-    """The same designs as the rivals take them: columns."""
+    """Return the designs as the rivals take them: as columns."""
     x, n = designs.numbers, len(designs)
     names = {"a": "crank_length", "b": "coupler_length", "c": "rocker_length", "d": "ground"}
     for k, role, distance, delta in ((2, "crank", "s", 2), (3, "coupler", "p", 3), (4, "rocker", "u", 4)):
@@ -122,30 +124,30 @@ def as_peers(designs: Designs) -> peers.Design:
 
 
 def errors(family: Family, count: int, seed: int) -> dict[str, dict[str, Array]]:
-    """Errors in ε by method and quantity."""
+    """Return errors in ε by method and quantity."""
     parts: list[dict[str, dict[str, Array]]] = []
     for designs in chunks(family, count, AT_ONE_ANGLE, [seed]):
-        found = {method: run(designs) for method, run in METHODS.items()}
-        ok = found["linksweep"]["status"] == 0
+        results = {method: run(designs) for method, run in METHODS.items()}
+        ok = results["linksweep"]["status"] == 0
         exact, _ = designs.exact()
-        parts.append({method: _of(one, exact, ok, designs) for method, one in found.items()})
+        parts.append({method: _of(one, exact, ok, designs) for method, one in results.items()})
     return {
         method: {name: np.concatenate([part[method][name] for part in parts]) for name in parts[0][method]}
         for method in METHODS
     }
 
 
-def _of(found: Found, exact: Mapping[str, Array], ok: Array, designs: Designs) -> dict[str, Array]:
+def _of(results: Results, exact: Mapping[str, Array], ok: Array, designs: Designs) -> dict[str, Array]:
     force = _largest(exact, FORCES)
     omega = np.maximum(_largest(exact, OMEGAS), np.abs(designs.numbers["omega2"]))
     torque = np.maximum(_largest(exact, ("drive",)), force * designs.numbers["crank_length"])
     sizes = {"F": force, "T12": torque, "ω": omega}
     return {
-        quantity: np.max([_error(found[name], exact[name])[ok] for name in names], axis=0)
+        quantity: np.max([_error(results[name], exact[name])[ok] for name in names], axis=0)
         / np.maximum(sizes[quantity][ok], LEAST)
         / EPS
         for quantity, names in QUANTITIES.items()
-        if names[0] in found
+        if names[0] in results
     }
 
 
@@ -153,18 +155,18 @@ def _largest(exact: Mapping[str, Array], names: Sequence[str]) -> Array:
     return np.max([np.abs(exact[name].astype(float)) for name in names], axis=0)
 
 
-def _error(found: Array, exact: Array) -> Array:
-    """Infinite where there is no number."""
+def _error(results: Array, exact: Array) -> Array:
+    """Return absolute errors, infinite where a method gives no number."""
     with fifty_digits():
-        off = abs(exactly(np.nan_to_num(found)) - exact).astype(float)
-    return np.where(np.isfinite(found), off, np.inf)
+        off = abs(exactly(np.nan_to_num(results)) - exact).astype(float)
+    return np.where(np.isfinite(results), off, np.inf)
 
 
 # ---------------------------------------------------------------------------------------------- the table
 
 
 def table(count: int, seed: int) -> str:
-    """Markdown: families and quantities down, methods across."""
+    """Return a Markdown table: families and quantities down, methods across."""
     lines = [("family", "of", *METHODS), *_lines(count, seed)]
     rows = ["| " + " | ".join(line) + " |" for line in lines]
     return "\n".join([rows[0], "|" + "---|" * len(lines[0]), *rows[1:]])
@@ -172,20 +174,20 @@ def table(count: int, seed: int) -> str:
 
 def _lines(count: int, seed: int) -> Iterator[tuple[str, ...]]:
     for name, family in FAMILIES.items():
-        found = errors(family, count, seed)
+        results = errors(family, count, seed)
         for quantity in QUANTITIES:
-            cells = (_cell(found[method].get(quantity)) for method in METHODS)
+            cells = (_cell(results[method].get(quantity)) for method in METHODS)
             yield (name if quantity == "F" else "", quantity, *cells)
 
 
 def _cell(errors: Array | None) -> str:
-    """Boost.Math's way to say it."""
+    """Return the largest and mean error as text, in the form of Boost.Math."""
     if errors is None:
         return ""
     none = int(np.isinf(errors).sum())
     known = errors[np.isfinite(errors)]
-    said = f"max = {known.max():.3g} ε (mean = {known.mean():.3g} ε)"
-    return f"{said}, {none} without a number" if none else said
+    text = f"max = {known.max():.3g} ε (mean = {known.mean():.3g} ε)"
+    return f"{text}, {none} without a number" if none else text
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -198,7 +200,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(page)
     if options.write:
         command = f"python -m benchmarks.accuracy.digits --designs {options.designs} --seed {options.seed} --write"
-        head = f"# Accuracy\n\nWritten by `{command}`; README.md says what it is of."
+        head = f"# Accuracy\n\nWritten by `{command}`; README.md explains it."
         RESULTS.write_text(f"{head}\n\n{page}\n")
     return 0
 

@@ -1,8 +1,7 @@
-"""Peaks of random crank-rockers, run time against error: the largest of 90 … 5760 samples, by whom it may be evaluated,
-and the exact peaks.
+"""Measure peaks of random crank-rockers, run time against error: exact peaks, and the largest of 90 … 5760 samples.
 
-The error of a design is that of its worst peak, among four pin forces and the torque, against 50 digits. Samples miss
-a peak by as much whoever evaluates them: theirs is measured once, by linksweep.
+The error of a design is that of its worst peak, among four pin forces and the torque, against 50 digits. The error of a
+grid does not depend on who evaluates it: it is measured once, by linksweep.
 """
 
 from __future__ import annotations
@@ -28,10 +27,10 @@ SAMPLES = (90, 180, 360, 720, 1440, 2880, 5760)
 PEAKS = ("F12_peak", "F32_peak", "F43_peak", "F14_peak", "T12_peak")
 MEDIAN, MOST, WORST = "median", "99 %", "worst"
 POPULATIONS = {"transmission angle above 20°": 20.0, "any transmission angle": 0.0}
-"""Least transmission angle [degree], by name."""
+"""Least transmission angle of a population [degree], by name."""
 MANY, LAPACK_DESIGNS, NUMPY_DESIGNS, CACHED = 5, 10, 80, 7200
-"""Compiled code is timed with so many times the designs that are judged, numpy with fewer, as many samples at a time as
-suit its cache."""
+"""Designs timed by compiled code per design checked; designs timed by LAPACK and by numpy, which are slower; samples
+that numpy computes at a time, as suits its cache."""
 
 
 def rows(size: Size) -> list[Row]:
@@ -40,8 +39,8 @@ def rows(size: Size) -> list[Row]:
 
 
 def _rows(population: str, least: float, size: Size) -> list[Row]:
-    judged, many = crank_rockers(size.population, least), crank_rockers(MANY * size.population, least)
-    errors = _errors(_ours(judged), truth.peaks(design(judged)))
+    checked, many = crank_rockers(size.population, least), crank_rockers(MANY * size.population, least)
+    errors = _errors(_ours(checked), truth.peaks(design(checked)))
     calls = _ours(many)
     count = dict.fromkeys(calls, MANY * size.population)
     for n in SAMPLES:
@@ -59,15 +58,15 @@ def _row(each: Race, name: str, population: str, errors: dict[str, float]) -> Ro
 
 
 def _errors(calls: dict[str, Call], exact: Array) -> dict[str, dict[str, float]]:
-    found = {}
+    errors = {}
     for name, call in calls.items():
         short = np.abs(_columns(call()) / exact - 1.0).max(axis=0)
-        found[name] = {MEDIAN: np.median(short), MOST: np.quantile(short, 0.99), WORST: short.max()}
-    return found
+        errors[name] = {MEDIAN: np.median(short), MOST: np.quantile(short, 0.99), WORST: short.max()}
+    return errors
 
 
-def _columns(found: xr.Dataset) -> Array:
-    return np.stack([found[name].values for name in PEAKS])
+def _columns(peaks: xr.Dataset) -> Array:
+    return np.stack([peaks[name].values for name in PEAKS])
 
 
 def _ours(scene: ls.Scene) -> dict[str, Call]:
@@ -76,7 +75,7 @@ def _ours(scene: ls.Scene) -> dict[str, Call]:
 
 
 def _others(q: Design, n: int) -> dict[str, tuple[int, Call]]:
-    """How many designs each call takes, and the call."""
+    """Return each rival's call, with the number of designs it takes."""
     lib = limit.build()
     c = {f"limit.c, {n} samples": (len(q.a), limit.bind_peaks(lib, q, n)[0])} if lib else {}
     return c | {
@@ -90,7 +89,7 @@ def _numpy(nine: Callable[[Design, Array], Array], q: Design, n: int) -> tuple[i
 
 
 def design(scene: ls.Scene) -> Design:
-    """A scene of four-bars as `peers` takes it: numbers are columns."""
+    """Return a scene of four-bars as `peers` takes it: numbers are columns."""
     bars = scene.mechanism
     links = bars.crank, bars.coupler, bars.rocker
     words = {"length": "abc", "mass": ("m2", "m3", "m4"), "inertia": ("I2", "I3", "I4"), "cg_distance": "spu"}

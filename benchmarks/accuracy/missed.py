@@ -1,9 +1,9 @@
-"""Does the search for peaks miss any? Random machines against the largest of many samples, which no search has chosen.
+"""Check that the search misses no peak: random machines against the largest of many samples chosen independently.
 
-The samples are the same for all designs of a kind: a dense even grid, and others graded geometrically about both
-pinches, from a radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than
-`ALLOWED`, relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1
-of their lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
+The samples are equal for all designs of a kind: a dense even grid, and geometric ones about both near-toggles, from a
+radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than `ALLOWED`,
+relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1 of their
+lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from benchmarks.timing import FASTER, Row
 ALLOWED = 1e-10
 CHUNK = 10_000
 FINEST = 1e-9
-"""Of the graded samples, the nearest to a pinch [rad]."""
+"""Distance of the nearest graded sample from a near-toggle [rad]."""
 EVEN, PER_DECADE = 3600, 60
 
 Array = np.ndarray
@@ -30,8 +30,8 @@ Random = np.random.Generator
 
 
 class Missed(NamedTuple):
-    """How many designs have a peak that falls short of a sample, by how much at most, and the one that does so most;
-    with the time that the search takes, and the samples [s]."""
+    """Result of a search: number of designs, number whose peak falls short of a sample, largest shortfall and the
+    design that has it; time of the search and of the samples [s]."""
 
     designs: int
     count: int
@@ -42,24 +42,24 @@ class Missed(NamedTuple):
 
 
 class Family(NamedTuple):
-    """Random scenes of one kind, and the crank angle [degree] of one of their pinches; the other is opposite."""
+    """Random scenes of one kind, and the crank angle [degree] of one of their near-toggles; the other is opposite."""
 
     scene: Callable[[Random, int], ls.Scene]
-    pinch: float = 0.0
+    near_toggle: float = 0.0
 
 
 def rows(size: Size) -> list[Row]:
     return [_row(name, search(family, size.machines)) for name, family in FAMILIES.items()]
 
 
-def _row(name: str, found: Missed) -> Row:
-    note = f"{found.count} of {found.designs:,} missed"
-    times = found.samples_take / found.seconds, found.seconds, found.samples_take
-    return Row(name, f"{len(angles(0.0)):,} samples", FASTER, *times, error=found.shortfall, note=note)
+def _row(name: str, result: Missed) -> Row:
+    note = f"{result.count} of {result.designs:,} missed"
+    times = result.samples_take / result.seconds, result.seconds, result.samples_take
+    return Row(name, f"{len(angles(0.0)):,} samples", FASTER, *times, error=result.shortfall, note=note)
 
 
 def search(family: Family, designs: int, seed: int = 0) -> Missed:
-    """Peaks of so many random designs of a family against the largest samples."""
+    """Compare peaks of random designs of a family with the largest samples."""
     parts = [_part(family, min(CHUNK, designs - k), [seed, k]) for k in range(0, designs, CHUNK)]
     worst = max(parts, key=lambda part: part.shortfall)
     designs, count, seconds, samples_take = (
@@ -71,49 +71,51 @@ def search(family: Family, designs: int, seed: int = 0) -> Missed:
 def _part(family: Family, designs: int, seed: list[int]) -> Missed:
     scene = family.scene(np.random.default_rng(seed), designs)
     start = perf_counter()
-    found = ls.peaks(scene)
+    exact = ls.peaks(scene)
     halfway = perf_counter()
-    dense = ls.peaks(scene, theta2=angles(family.pinch))
+    dense = ls.peaks(scene, theta2=angles(family.near_toggle))
     times = halfway - start, perf_counter() - halfway
-    short = shortfall(found, dense)
+    short = shortfall(exact, dense)
     k = int(short.argmax())
     worst = {path: array.values[k] for path, array in scene.arrays.items()}
     return Missed(designs, int((short > ALLOWED).sum()), float(short[k]), worst, *times)
 
 
-def angles(pinch: float) -> Array:
-    """Crank angles [degree]: even ones, and geometrically graded ones about both pinches."""
+def angles(near_toggle: float) -> Array:
+    """Return crank angles [degree]: even ones, and geometric ones about both near-toggles."""
     steps = np.degrees(np.geomspace(FINEST, 1.0, round(PER_DECADE * -np.log10(FINEST))))
-    graded = [middle + side * steps for middle in (pinch, pinch + 180.0) for side in (-1.0, 1.0)]
+    graded = [middle + side * steps for middle in (near_toggle, near_toggle + 180.0) for side in (-1.0, 1.0)]
     even = (np.arange(EVEN) + 0.3) * (360.0 / EVEN)
-    return np.unique(np.concatenate([even, [pinch, pinch + 180.0], *graded]))
+    return np.unique(np.concatenate([even, [near_toggle, near_toggle + 180.0], *graded]))
 
 
-def shortfall(found: xr.Dataset, dense: xr.Dataset) -> Array:
-    """By how much the largest samples of each design exceed its peaks, relative to the peaks; 0 where by nothing,
+def shortfall(exact: xr.Dataset, dense: xr.Dataset) -> Array:
+    """Return by how much the largest samples of each design exceed its peaks, relative to the peaks; 0 where none does,
     infinite where there are samples and no peak."""
-    return np.max([_short(found, dense, name) for name in _peaks_of(found)], axis=0)
+    return np.max([_short(exact, dense, name) for name in _peaks_of(exact)], axis=0)
 
 
-def _short(found: xr.Dataset, dense: xr.Dataset, name: str) -> Array:
+def _short(exact: xr.Dataset, dense: xr.Dataset, name: str) -> Array:
     sign = -1.0 if name.endswith("_min") else 1.0
-    peak, sample = sign * found[name].values, sign * dense[name].values
-    scale = np.abs(found[f"{name.rsplit('_', 1)[0]}_peak"].values)
+    peak, sample = sign * exact[name].values, sign * dense[name].values
+    scale = np.abs(exact[f"{name.rsplit('_', 1)[0]}_peak"].values)
     with np.errstate(invalid="ignore"):
         short = np.where(sample > peak, (sample - peak) / scale, 0.0)
     return np.where(np.isnan(peak) & ~np.isnan(sample), np.inf, short)
 
 
-def _peaks_of(found: xr.Dataset) -> list[str]:
-    return [name for name in map(str, found.data_vars) if name.endswith(("_peak", "_max", "_min"))]
+def _peaks_of(exact: xr.Dataset) -> list[str]:
+    return [name for name in map(str, exact.data_vars) if name.endswith(("_peak", "_max", "_min"))]
 
 
 # ------------------------------------------------------------------------------------------ random machines
 
 
 def _four_bar(random: Random, n: int) -> ls.Scene:
-    """The crank a turns fully where |b − c| < |d − a| and b + c > d + a: with a shortest, the rocker swings; with the
-    ground d shortest, it turns too."""
+    """Return four-bars whose crank a turns fully: |b − c| < |d − a| and b + c > d + a.
+
+    With a shortest, the rocker swings; with the ground d shortest, it turns too.
+    """
     a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
     difference, total = np.abs(d - a) * (1.0 - _margin(random, n)), (d + a) * (1.0 + _margin(random, n))
     difference *= random.choice([-1.0, 1.0], n)
@@ -125,7 +127,7 @@ def _four_bar(random: Random, n: int) -> ls.Scene:
 
 
 def _any_four_bar(random: Random, n: int) -> ls.Scene:
-    """Any lengths that close."""
+    """Return four-bars of any lengths that close."""
     lengths = np.exp(random.uniform(-1.5, 1.5, (4, n)))
     longest = lengths.max(axis=0)
     lengths = np.minimum(lengths, 0.98 * (lengths.sum(axis=0) - longest))
@@ -153,7 +155,7 @@ def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
 
 
 def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
-    """The crank turns fully where the offset is less than the difference of crank and ground."""
+    """Return machines whose crank turns fully: the offset is less than the difference of crank and ground."""
     a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
     offset = np.abs(d - a) * (1.0 - _margin(random, n)) * random.choice([-1.0, 1.0], n)
     mass, inertia = random.uniform(0.2, 2.0, (2, n))
@@ -166,12 +168,12 @@ def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
 
 
 def _margin(random: Random, n: int) -> Array:
-    """By how much a machine misses a toggle, of its lengths: half of them by anything, half by little."""
+    """Return by how much machines miss a toggle, relative to their lengths: half by anything, half by little."""
     return np.where(random.random(n) < 0.5, random.uniform(0.02, 0.98, n), 10.0 ** random.uniform(-7.0, -1.0, n))
 
 
 def _link(random: Random, length: Array) -> ls.Link:
-    """A link of any mass, its centre of gravity anywhere."""
+    """Return links of any mass, with centres of gravity anywhere."""
     n = len(length)
     mass, reach = random.uniform(0.2, 2.0, n), random.uniform(0.0, 1.2, n)
     inertia = mass * length**2 * random.uniform(0.02, 0.2, n)

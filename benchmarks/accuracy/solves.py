@@ -1,8 +1,8 @@
-"""Run time against error, method by method: the same four-bar's unknowns and rates by linksweep and by others.
+"""Measure run time against error, method by method: unknowns and rates of one four-bar by linksweep and by others.
 
-Errors are against 50 digits, at angles of a revolution, and for methods that take any angle also down to 1e-6 rad from
-a toggle: of each sample's largest force (a torque by the longest link), or of the rate's largest value.
-Speed is constant, for programs that step through time know no other way to come round.
+Errors are against 50 digits: of forces, relative to each sample's largest force (for the torque, at the longest link);
+of rates, to the largest value. They are measured at angles of a revolution, and for methods that take any angle also
+down to 1e-6 rad from a toggle. Speed is constant, as programs that step through time know no other way to come round.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ NEAR = "near a toggle"
 
 STEADY = replace(GENERAL, alpha2=0.0)
 TOGGLE = replace(STEADY, b=STEADY.c + (STEADY.d - STEADY.a) * (1.0 - 1e-12))
-"""Its coupler and rocker lie within 1e-6 rad of one line where the crank lies at 0."""
+"""Four-bar whose coupler and rocker lie within 1e-6 rad of one line where the crank is at 0."""
 NEARBY = np.concatenate([-np.geomspace(10.0, 1e-8, 28), [0.0], np.geomspace(1e-8, 10.0, 28)])
-"""Crank angles about that [degree]."""
+"""Crank angles about that near-toggle [degree]."""
 
 Bind = Callable[[Design, Array], Bound]
 
 
 class Method(NamedTuple):
-    """How to bind it; the error that it may have over a revolution; whether it takes any angle, and so is asked near a
-    toggle; and at most how many angles it is timed with."""
+    """A method: how to bind it, the error allowed over a revolution, whether it takes any angle (then it is tested near
+    a toggle), and the most angles it is timed with."""
 
     bind: Bind
     allowed: float = 1e-10
@@ -49,7 +49,7 @@ class Method(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """A call to be timed, how many angles it does, and its errors."""
+    """A call to be timed, its number of angles, and its errors."""
 
     call: Call
     angles: int
@@ -63,22 +63,22 @@ def rows(size: Size) -> list[Row]:
 
 
 def _rows(methods: dict[str, Method], against: str, size: Size) -> list[Row]:
-    """All against ours, per angle; those that are not there say so."""
-    found: dict[str, Measured | str] = {}
+    """Return a row per method, time per angle against ours; a method that fails says so."""
+    measured: dict[str, Measured | str] = {}
     for name, method in methods.items():
         try:
-            found[name] = _measured(method, size)
-        except Exception as problem:  # whatever another program does: its row tells, the others are measured
+            measured[name] = _measured(method, size)
+        except Exception as problem:  # another program may raise anything: its row states it, the others are measured
             if name in LINKSWEEP:
                 raise
-            found[name] = f"not measured: {str(problem).splitlines()[0]}"
-    there = {name: one for name, one in found.items() if isinstance(one, Measured)}
+            measured[name] = f"not measured: {str(problem).splitlines()[0]}"
+    there = {name: one for name, one in measured.items() if isinstance(one, Measured)}
     raced = race({name: one.call for name, one in there.items()}, few(size), clock=process_time)
     each = Race({name: [s / one.angles for s in raced.seconds[name]] for name, one in there.items()}, samples=1)
     return [
         _row(each, name, against, there[name], method.allowed)
         if name in there
-        else Row(name, against, TIMES, note=str(found[name]))
+        else Row(name, against, TIMES, note=str(measured[name]))
         for name, method in methods.items()
     ]
 
@@ -90,9 +90,9 @@ def _row(each: Race, name: str, against: str, one: Measured, allowed: float) -> 
 
 def _measured(method: Method, size: Size) -> Measured:
     theta2 = peers.grid(min(size.angles, method.most or size.angles))
-    judged = np.linspace(0, len(theta2), size.judged, endpoint=False, dtype=int)
+    checked = np.linspace(0, len(theta2), size.checked, endpoint=False, dtype=int)
     call, read = method.bind(STEADY, theta2)
-    error = _error(STEADY, theta2[judged], read(call())[:, judged])
+    error = _error(STEADY, theta2[checked], read(call())[:, checked])
     return Measured(call, len(theta2), error, _near(method) if method.any_angle else None)
 
 
@@ -101,14 +101,14 @@ def _near(method: Method) -> float:
     return _error(TOGGLE, NEARBY, read(call()))
 
 
-def _error(q: Design, theta2: Array, found: Array) -> float:
-    """The largest of all samples."""
-    if len(found) == len(truth.RATES):
-        return peers.difference(found, truth.rates(q, theta2))
+def _error(q: Design, theta2: Array, values: Array) -> float:
+    """Return the largest error of all samples."""
+    if len(values) == len(truth.RATES):
+        return peers.difference(values, truth.rates(q, theta2))
     exact = truth.unknowns(q, theta2)
     force = np.hypot(exact[0:8:2], exact[1:8:2]).max(axis=0)
     torque = np.maximum(force * max(q.a, q.b, q.c, q.d), np.abs(exact[8]))
-    return float(np.max(np.abs(found - exact) / np.stack([force] * 8 + [torque])))
+    return float(np.max(np.abs(values - exact) / np.stack([force] * 8 + [torque])))
 
 
 # ------------------------------------------------------------------------------------------------ methods
@@ -121,7 +121,7 @@ def _sweep(q: Design, theta2: Array, outputs: tuple[str, ...] = NINE, **how) -> 
 
 
 def _kernel(q: Design, theta2: Array) -> Bound:
-    """The kernel that ls.sweep runs; its answer is that of ls.sweep."""
+    """Bind the kernel that ls.sweep runs; its result is read from ls.sweep."""
     sweep, read = _sweep(q, theta2)
     answer = read(sweep())
     return Bound(kernel_of(sweep).call, lambda _: answer)
@@ -140,7 +140,7 @@ def _numpy(nine: Callable[[Design, Array], Array]) -> Bind:
 
 
 def _single(nine: Callable[[Design, Array], Array]) -> Bind:
-    """The same with numbers of 24 bits."""
+    """Bind a method in single precision (24 bits)."""
 
     def bind(q: Design, theta2: Array) -> Bound:
         halved = Design(**{f.name: np.float32(getattr(q, f.name)) for f in fields(q)})
@@ -150,7 +150,7 @@ def _single(nine: Callable[[Design, Array], Array]) -> Bind:
 
 
 def _rival(module: str) -> Bind:
-    """Imported where it is measured, for its package may be missing."""
+    """Bind a rival, imported only when measured, for its package may be missing."""
     return lambda q, theta2: import_module(f"benchmarks.rivals.{module}").bind(q, theta2)
 
 

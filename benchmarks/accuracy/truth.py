@@ -1,4 +1,4 @@
-"""Unknowns, rates and peaks of four-bars in 50 digits, by the textbook formulas of `stress.machines`."""
+"""Compute unknowns, rates and peaks of four-bars in 50 digits, by the textbook formulas of `stress.machines`."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ RATES = ("omega3", "omega4", "alpha3", "alpha4")
 FORCES = ("F12", "F32", "F43", "F14")
 
 STEP = 1e-6
-"""Of the parabola through a peak in 50 digits [degree]."""
+"""Step of the parabola through a peak in 50 digits [degree]."""
 CANDIDATES, ROUNDS, CHUNK = 3, 45, 20
 
 
 def unknowns(q: Design, theta2: Array) -> Array:
-    """The nine unknowns (9, n) at theta2 [degree], rounded once."""
+    """Return the nine unknowns (9, n) at theta2 [degree], rounded once."""
     return _rounded(_exact(q, theta2), NINE)
 
 
 def rates(q: Design, theta2: Array) -> Array:
-    """omega3, omega4, alpha3 and alpha4 (4, n) at theta2 [degree], rounded once."""
+    """Return omega3, omega4, alpha3 and alpha4 (4, n) at theta2 [degree], rounded once."""
     return _rounded(_exact(q, theta2), RATES)
 
 
 def peaks(q: Design) -> Array:
-    """Largest F12, F32, F43, F14 and |T12| over the revolution of many crank-rockers (5, designs).
+    """Return the largest F12, F32, F43, F14 and |T12| over the revolution of many crank-rockers (5, designs).
 
-    Sought by numpy, at thousands of samples and then between them; the top is that of a parabola in 50 digits.
+    numpy searches thousands of samples, then between them; the top is that of a parabola in 50 digits.
     """
     parts = [_brackets(q[i : i + CHUNK]) for i in range(0, len(q.a), CHUNK)]
     tops = _tops(q, *np.concatenate(parts, axis=2))
@@ -40,7 +40,8 @@ def peaks(q: Design) -> Array:
 
 
 def _exact(q: Design, theta2: Array) -> dict[str, Array]:
-    """All results as arrays of decimals, one for each crank angle; a design's numbers are one, or one for each."""
+    """Return all results as arrays of decimals, one per crank angle; each number of a design is single or one per
+    angle."""
     numbers = {
         "crank_length": q.a, "coupler_length": q.b, "rocker_length": q.c, "ground": q.d, "ground_angle": 0.0,
         "crank_mass": q.m2, "coupler_mass": q.m3, "rocker_mass": q.m4,
@@ -53,12 +54,12 @@ def _exact(q: Design, theta2: Array) -> dict[str, Array]:
     return Designs("four-bar", full, theta2, int(q.sign)).exact()[0]
 
 
-def _rounded(found: dict[str, Array], names: tuple[str, ...]) -> Array:
-    return np.stack([found[name].astype(float) for name in names])
+def _rounded(results: dict[str, Array], names: tuple[str, ...]) -> Array:
+    return np.stack([results[name].astype(float) for name in names])
 
 
 def _parabola(q: Design, signal: int, theta2: Array) -> Array:
-    """The top beside theta2 [degree] of each design, by its squares at three angles."""
+    """Return the top of each design near theta2 [degree], from its squares at three angles."""
     before, here, after = (_square(q, signal, theta2 + step) for step in (-STEP, 0.0, STEP))
     with fifty_digits():
         top = here - (after - before) ** 2 / (8 * (before - 2 * here + after))
@@ -66,18 +67,18 @@ def _parabola(q: Design, signal: int, theta2: Array) -> Array:
 
 
 def _square(q: Design, signal: int, theta2: Array) -> Array:
-    found = _exact(q, theta2)
+    results = _exact(q, theta2)
     with fifty_digits():
         if signal == len(FORCES):
-            return found["drive"] ** 2
-        return found[f"{FORCES[signal]}x"] ** 2 + found[f"{FORCES[signal]}y"] ** 2
+            return results["drive"] ** 2
+        return results[f"{FORCES[signal]}x"] ** 2 + results[f"{FORCES[signal]}y"] ** 2
 
 
 # ------------------------------------------------------------------------- where the peaks are, by numpy
 
 
 def _brackets(q: Design) -> Array:
-    """The neighbours [degree] of each design's highest samples that exceed theirs (2, 5, designs, candidates)."""
+    """Return the neighbours [degree] of each design's highest local maxima of samples (2, 5, designs, candidates)."""
     theta2 = missed.angles(0.0)
     around = np.concatenate([theta2[-1:] - 360.0, theta2, theta2[:1] + 360.0])
     highest = np.stack([_highest(samples) for samples in _squares(peers.numpy_closed_form(q, theta2))])
@@ -86,15 +87,15 @@ def _brackets(q: Design) -> Array:
 
 def _highest(samples: Array) -> Array:
     rises = (samples >= np.roll(samples, 1, axis=1)) & (samples >= np.roll(samples, -1, axis=1))
-    left, found = np.where(rises, samples, -1.0), []
+    left, places = np.where(rises, samples, -1.0), []
     for _ in range(CANDIDATES):
-        found.append(left.argmax(axis=1))
-        left[np.arange(len(left)), found[-1]] = -1.0
-    return np.stack(found, axis=1)
+        places.append(left.argmax(axis=1))
+        left[np.arange(len(left)), places[-1]] = -1.0
+    return np.stack(places, axis=1)
 
 
 def _tops(q: Design, low: Array, high: Array) -> Array:
-    """Where each peak is the largest of all that lies between low and high, by thirds; to half of its digits."""
+    """Return where each signal is largest between low and high, by ternary search; precise to half the digits."""
 
     def square(theta2: Array) -> Array:
         return np.stack([_squares(peers.numpy_closed_form(q, theta2[k]))[k] for k in range(len(theta2))])
@@ -103,8 +104,8 @@ def _tops(q: Design, low: Array, high: Array) -> Array:
         third = (high - low) / 3.0
         rises = square(low + third) < square(high - third)
         low, high = np.where(rises, low + third, low), np.where(rises, high, high - third)
-    found = (low + high) / 2.0
-    return np.take_along_axis(found, square(found).argmax(axis=-1)[..., None], axis=-1)[..., 0]
+    places = (low + high) / 2.0
+    return np.take_along_axis(places, square(places).argmax(axis=-1)[..., None], axis=-1)[..., 0]
 
 
 def _squares(nine: Array) -> Array:

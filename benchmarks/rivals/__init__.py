@@ -1,7 +1,7 @@
-"""Other programs that do the job, or part of it; each module needs one package, and is a missing row without it.
+"""Other programs that do the job, or part of it; each module needs one package, without which its row is missing.
 
-Every module has `bind(q, theta2)`: a design and crank angles [degree] to a `Bound`, whose `call` is timed and whose
-`read` makes rows of what the call gave.
+Every module has `bind(q, theta2)`, which returns for a design and crank angles [degree] a `Bound`: its `call` is timed,
+and its `read` makes rows of the call's result.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from benchmarks.rivals.peers import Array
 
 
 class Bound(NamedTuple):
-    """A call, ready to be timed, and how its answer is read: rows (quantities, angles)."""
+    """A call, ready to be timed, and a function that reads its result as rows (quantities, angles)."""
 
     call: Callable[[], Any]
     read: Callable[[Any], Array] = np.asarray

@@ -1,4 +1,4 @@
-"""exudyn: the same machine as a multibody system, stepped in time through a turn at constant speed.
+"""exudyn: the four-bar as a multibody system, stepped in time through a turn at constant speed.
 
 Its forces need an eighth of a turn to settle, which is stepped too.
 """
@@ -11,7 +11,7 @@ from benchmarks.rivals import Bound, peers
 from benchmarks.rivals.peers import Array, Design
 
 SETTLING = 8
-"""Steps before the turn: so much of those in it."""
+"""Steps of a turn per step before it, for settling."""
 
 
 def bind(q: Design, theta2: Array) -> Bound:
@@ -28,7 +28,7 @@ def bind(q: Design, theta2: Array) -> Bound:
 
 
 def _nine(data: tuple, before: int) -> Array:
-    """Rows of exudyn's are time and values, the start first."""
+    """Return the nine unknowns; exudyn's rows are time and values, the start first."""
     A, B, C, D, drive = (rows[before:-1, 1:3].T for rows in data)
     return np.concatenate([-A, B, C, -D, -drive[:1]])
 
@@ -48,7 +48,7 @@ def _settings(q: Design, steps: int, steps_a_turn: int):
 
 
 def _system(q: Design, t2: float):
-    """The machine at theta2 [rad], assembled and moving, and the sensors of its pin forces and its drive."""
+    """Return the machine at theta2 [rad], assembled and moving, and the sensors of its pin forces and its drive."""
     import exudyn
     from exudyn import itemInterface as item
 
@@ -74,8 +74,8 @@ def _system(q: Design, t2: float):
 
 
 def _links(q: Design, t2: float):
-    """Of crank, coupler and rocker: first pin and its velocity, angle and rate, mass and inertia, centre of gravity in
-    the link, length; vectors as complex numbers."""
+    """Yield for crank, coupler and rocker: first pin and its velocity, angle and rate, mass and inertia, centre of
+    gravity in the link, length; vectors as complex numbers."""
     t3, t4 = peers.position(q, t2)
     w3, w4 = peers.rates(q, t2, t3, t4)
     B = q.a * np.exp(1j * t2)
@@ -85,7 +85,7 @@ def _links(q: Design, t2: float):
 
 
 def _body(mbs, item, q: Design, pin, pin_velocity, angle, rate, mass, inertia, cg, length):
-    """A rigid body: its node, and the markers of its two pins."""
+    """Add a rigid body; return its node, and the markers of its two pins."""
     arm = cg * np.exp(1j * angle)
     G, v = pin + arm, pin_velocity + 1j * rate * arm
     start = {"initialCoordinates": [G.real, G.imag, angle], "initialVelocities": [v.real, v.imag, rate]}

@@ -18,7 +18,7 @@ def bind(q: Design, theta2: Array) -> Bound:
 
 
 def _nine(q: Design, t2):
-    """The unknowns at one angle [rad]; vectors are complex numbers."""
+    """Return the unknowns at one angle [rad]; vectors are complex numbers."""
     import jax.numpy as jnp
 
     def turned(distance, angle, by):

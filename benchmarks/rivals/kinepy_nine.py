@@ -1,6 +1,6 @@
-"""KinePy: forces in plane mechanisms, accelerations by central differences over evenly spaced samples of a turn.
+"""KinePy: forces in plane mechanisms, with accelerations by central differences over even samples of a turn.
 
-A sample more at either end gives the turn's own ends their differences.
+One more sample at either end gives the ends of the turn their differences.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from benchmarks.rivals.peers import Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:
-    with contextlib.redirect_stdout(io.StringIO()):  # it tells what it compiles
+    with contextlib.redirect_stdout(io.StringIO()):  # it prints what it compiles
         system, pins = _system(q)
     step = 2 * np.pi / len(theta2)
     angles = np.radians(theta2[0]) + step * np.arange(-1, len(theta2) + 1)

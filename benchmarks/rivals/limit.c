@@ -1,14 +1,14 @@
-/* The limit to chase: the four-bar's fused formulas as a C compiler does them at its best.
+/* The speed limit: the four-bar's fused formulas as a C compiler compiles them at its best.
  *
  * Links are 2 crank, 3 coupler, 4 rocker; r = D - B, u = C - B, v = C - D, det = u x v / 2, idet = 1 / (u x v).
- * All that belongs to a design alone is worked out once, in Constants. low, high and f2 = |r|^2 are carried as
- * quarters, so that no factor 2 is left in the loop, and one division serves both 1 / f2 and 1 / det.
- * Angles that cannot be assembled come out NaN.
+ * Numbers of a design alone are computed once, in Constants. low, high and f2 = |r|^2 are stored as quarters, so that
+ * no factor 2 is left in the loop, and one division serves both 1 / f2 and 1 / det.
+ * Angles that cannot be assembled give NaN.
  */
 #include <math.h>
 #include <stdint.h>
 
-/* As limit.py packs it: centres of gravity (x, y) along and across the link from its first pin. */
+/* A design as limit.py packs it: centres of gravity (x, y) along and across the link from its first pin. */
 typedef struct {
     double a, b, c, d, m2, m3, m4, I2, I3, I4, x2, y2, x3, y3, x4, y4, omega2, alpha2, gx, gy, sign;
 } Design;
@@ -16,7 +16,7 @@ typedef struct {
 typedef struct {
     double a, d, ad, low0, high0, gap, along_u, along_v, sign;   /* closing the loop */
     double omega2, radial, tangential, gx, gy;                   /* rates and accelerations */
-    double P2x, P2y, P2r, P2t, M2, M2c, M2s;                     /* crank: force and moment asked of its pins */
+    double P2x, P2y, P2r, P2t, M2, M2c, M2s;                     /* crank: force and moment that its pins supply */
     double m3, k3, l3, J3, m4gx, m4gy, k4, l4, J4;               /* coupler, rocker */
 } Constants;
 

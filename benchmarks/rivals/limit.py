@@ -1,7 +1,7 @@
-"""The limit to chase: limit.c, built for this machine where there is a C compiler, and called through ctypes.
+"""The speed limit: limit.c, compiled for this machine where there is a C compiler, and called through ctypes.
 
-`build()` is None without a compiler. `store` and `peaks` answer as `peers.numpy_lapack` and
-`peers.numpy_lapack_peaks` do; `bind_store` and `bind_peaks` prepare a call without arguments, to time.
+`build()` is None without a compiler. `store` and `peaks` return what `peers.numpy_lapack` and
+`peers.numpy_lapack_peaks` return; `bind_store` and `bind_peaks` prepare a call without arguments, to time.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ LANES = 16  # as in limit.c
 
 
 def compiler() -> str | None:
-    """The first C compiler found, or None."""
+    """Return the first C compiler on the path, or None."""
     return next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
 
 
 @cache
 def build(cc: str | None = None, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL | None:
-    """limit.c as a loaded library, or None where no compiler is."""
+    """Return limit.c as a loaded library, or None without a compiler."""
     cc = cc or compiler()
     if cc is None:
         return None
@@ -43,16 +43,16 @@ def build(cc: str | None = None, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL 
 
 
 def bind_store(lib: ctypes.CDLL, design: Design, theta2: Array) -> tuple[Callable[[], object], Array]:
-    """A call that computes the nine unknowns at theta2 [degree], and the array (9, n) it fills."""
+    """Return a call that computes the nine unknowns at theta2 [degree], and the array (9, n) that it fills."""
     out = np.empty((9, len(theta2)))
     return _bind(lib.store, [len(theta2)], [*_tables(theta2), _pack(design), out]), out
 
 
 def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callable[[], object], tuple[Array, Array]]:
-    """A call that computes the grid peaks of many designs, and the two arrays (n_designs, 6) it fills.
+    """Return a call that computes the grid peaks of many designs, and the two arrays (n_designs, 6) that it fills.
 
-    Columns: largest F12, F32, F43, F14, largest T12, smallest T12; the second array holds the samples
-    they are at, as floats; -1 where there is none, and the value is NaN.
+    Columns: largest F12, F32, F43, F14, largest T12, smallest T12; the second array holds their samples, as floats; −1
+    where there is none, and the value is NaN.
     """
     if n_angles < LANES:
         raise ValueError(f"n_angles = {n_angles}: must be at least {LANES}, the lanes of limit.c")
@@ -63,14 +63,14 @@ def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callab
 
 
 def store(lib: ctypes.CDLL, design: Design, theta2: Array) -> Array:
-    """The nine unknowns (9, n) at theta2 [degree]."""
+    """Return the nine unknowns (9, n) at theta2 [degree]."""
     call, out = bind_store(lib, design, theta2)
     call()
     return out
 
 
 def peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Array, Array]:
-    """Grid peaks of many designs and the samples they are at."""
+    """Return grid peaks of many designs and their samples."""
     call, out = bind_peaks(lib, designs, n_angles)
     call()
     return out
@@ -83,13 +83,13 @@ def _bind(function: Callable, counts: list[int], arrays: list[Array]) -> Callabl
 
 
 def _tables(theta2: Array) -> list[Array]:
-    """cos and sin of theta2, sin2 and cos2 of its half."""
+    """Return cos and sin of theta2, and sin² and cos² of its half."""
     t2 = np.radians(np.asarray(theta2, dtype=float))
     return [np.cos(t2), np.sin(t2), np.sin(t2 / 2) ** 2, np.cos(t2 / 2) ** 2]
 
 
 def _pack(q: Design) -> Array:
-    """Rows of limit.c's Design: centres of gravity as x, y in the link."""
+    """Return rows of limit.c's Design: centres of gravity as x, y in the link."""
     columns = [q.a, q.b, q.c, q.d, q.m2, q.m3, q.m4, q.I2, q.I3, q.I4]
     for distance, delta in ((q.s, q.delta2), (q.p, q.delta3), (q.u, q.delta4)):
         columns += [distance * np.cos(np.radians(delta)), distance * np.sin(np.radians(delta))]

@@ -1,8 +1,8 @@
-"""What an engineer writes today for the nine unknowns of a four-bar: numpy, no linksweep.
+"""Solve the nine unknowns of a four-bar as an engineer does today: numpy, without linksweep.
 
-The notation is that of document 2, ME 470 Final Project, with weights: links 2 crank, 3 coupler, 4 rocker,
-lengths a, b, c and ground d, centres of gravity at (s, delta2), (p, delta3), (u, delta4).
-Fij is the force of link i on link j. In order: F12x F12y F32x F32y F43x F43y F14x F14y [N], T12 [N m].
+The notation is that of document 2, ME 470 Final Project, with weights: links 2 crank, 3 coupler, 4 rocker, lengths a,
+b, c and ground d, centres of gravity at (s, delta2), (p, delta3), (u, delta4). Fij is the force of link i on link j. In
+order: F12x F12y F32x F32y F43x F43y F14x F14y [N], T12 [N m].
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ class Design:
     sign: Number = 1.0  # +1 open (C left of B->D), -1 crossed
 
     def __getitem__(self, rows: slice) -> Design:
-        """Some designs of many, as columns."""
+        """Return some of the designs, as columns."""
         columns = {f.name: getattr(self, f.name) for f in fields(self)}
         return Design(**{name: v[rows] if np.ndim(v) else v for name, v in columns.items()})
 
 
 def grid(n_angles: int) -> Array:
-    """One revolution [degree]; 360 is not repeated."""
+    """Return crank angles of one revolution [degree]; 360 is not repeated."""
     return np.arange(n_angles) * (360.0 / n_angles)
 
 
@@ -64,7 +64,7 @@ def _polar(radius: Number, angle: Array) -> tuple[Array, Array]:
 
 
 def position(q: Design, t2: Array) -> tuple[Array, Array]:
-    """theta3 and theta4 [rad]; arctan2 instead of document 2's quotient, whose denominators can vanish."""
+    """Return theta3 and theta4 [rad]; arctan2 instead of document 2's quotient, whose denominators can vanish."""
     cos2, sin2 = np.cos(t2), np.sin(t2)
     k1, k2, k4 = q.d / q.a, q.d / q.c, q.d / q.b
     k3 = (q.a**2 - q.b**2 + q.c**2 + q.d**2) / (2 * q.a * q.c)
@@ -77,14 +77,14 @@ def position(q: Design, t2: Array) -> tuple[Array, Array]:
 
 
 def rates(q: Design, t2: Array, t3: Array, t4: Array) -> tuple[Array, Array]:
-    """omega3 and omega4 [rad/s]."""
+    """Return omega3 and omega4 [rad/s]."""
     omega3 = q.a * q.omega2 * np.sin(t4 - t2) / (q.b * np.sin(t3 - t4))
     omega4 = q.a * q.omega2 * np.sin(t2 - t3) / (q.c * np.sin(t4 - t3))
     return omega3, omega4
 
 
 def _system(q: Design, t2: Array) -> tuple[Array, Array]:
-    """Document 2 from theta2 [rad] to the matrix (..., 9, 9) and right-hand side (..., 9)."""
+    """Return document 2's matrix (..., 9, 9) and right-hand side (..., 9) at theta2 [rad]."""
     t3, t4 = position(q, t2)
     w2, al2 = q.omega2, q.alpha2
     w3, w4 = rates(q, t2, t3, t4)
@@ -120,13 +120,13 @@ def _system(q: Design, t2: Array) -> tuple[Array, Array]:
 
 
 def numpy_rates(design: Design, theta2: Array) -> Array:
-    """omega3 and omega4 [rad/s] (2, n) at theta2 [degree]."""
+    """Return omega3 and omega4 [rad/s] (2, n) at theta2 [degree]."""
     t2 = np.radians(theta2)
     return np.stack(rates(design, t2, *position(design, t2)))
 
 
 def numpy_lapack(design: Design, theta2: Array) -> Array:
-    """The nine unknowns (9, n) at theta2 [degree]: every 9x9 built, then one batched np.linalg.solve."""
+    """Return the nine unknowns (9, n) at theta2 [degree]: every 9×9 built, then one batched np.linalg.solve."""
     matrix, rhs = _system(design, np.radians(theta2))
     return np.moveaxis(np.linalg.solve(matrix, rhs[..., None])[..., 0], -1, 0)
 
@@ -134,9 +134,9 @@ def numpy_lapack(design: Design, theta2: Array) -> Array:
 def numpy_peaks(
     designs: Design, n_angles: int, nine: Callable[[Design, Array], Array], chunk: int = 10
 ) -> tuple[Array, Array]:
-    """Largest F12, F32, F43, F14, largest and smallest T12 over the grid, and the samples they are at.
+    """Return the largest F12, F32, F43, F14, largest and smallest T12 over the grid, and their samples.
 
-    Both results are (n_designs, 6). A few designs at a time: all matrices at once would not fit the memory.
+    Both results are (n_designs, 6). A few designs are done at a time: all matrices at once would not fit the memory.
     """
     theta2 = grid(n_angles)
     chunks = (designs[i : i + chunk] for i in range(0, len(designs.a), chunk))
@@ -145,7 +145,7 @@ def numpy_peaks(
 
 
 def numpy_lapack_peaks(designs: Design, n_angles: int, chunk: int = 10) -> tuple[Array, Array]:
-    """The same by dense solves."""
+    """Return grid peaks by dense solves."""
     return numpy_peaks(designs, n_angles, numpy_lapack, chunk)
 
 
@@ -156,13 +156,13 @@ def _grid_peaks(nine: Array) -> tuple[Array, Array]:
     return np.take_along_axis(signals, at[..., None], axis=-1)[..., 0], at
 
 
-def difference(found: Array, expected: Array) -> float:
-    """Largest difference of two arrays (..., angles), relative to the largest of its own row."""
-    return float(np.max(np.abs(found - expected).max(axis=-1) / np.abs(expected).max(axis=-1)))
+def difference(values: Array, expected: Array) -> float:
+    """Return the largest difference of two arrays (..., angles), relative to the largest of its own row."""
+    return float(np.max(np.abs(values - expected).max(axis=-1) / np.abs(expected).max(axis=-1)))
 
 
 def numpy_closed_form(design: Design, theta2: Array) -> Array:
-    """The nine unknowns (9, n) at theta2 [degree] by the formulas of limit.c, as numpy expressions."""
+    """Return the nine unknowns (9, n) at theta2 [degree] by the formulas of limit.c, as numpy expressions."""
     q, t2 = design, np.radians(theta2)
     cos2, sin2, half = np.cos(t2), np.sin(t2), np.sin(t2 / 2) ** 2
     Bx, By = q.a * cos2, q.a * sin2
@@ -192,7 +192,7 @@ def numpy_closed_form(design: Design, theta2: Array) -> Array:
 
 
 def _effective(m, inertia, distance, delta, length, ex, ey, w_squared, alpha, gx, gy) -> tuple[Array, Array, Array]:
-    """d'Alembert force of a link with pin vector (ex, ey), and its moment about the first pin."""
+    """Return the d'Alembert force of a link with pin vector (ex, ey), and its moment about the first pin."""
     k, j = _polar(m * distance / length, np.radians(delta))
     hx, hy = k * ex - j * ey, k * ey + j * ex
     moment = hx * gy - hy * gx - (inertia + m * distance**2) * alpha

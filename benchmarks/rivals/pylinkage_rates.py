@@ -9,7 +9,7 @@ from benchmarks.rivals.peers import Array, Design
 
 
 def bind(q: Design, theta2: Array) -> Bound:
-    """Evenly spaced crank angles, of one turn."""
+    """Bind the rates at evenly spaced crank angles of one turn."""
     from pylinkage.actuators import Crank
     from pylinkage.components import Ground
     from pylinkage.dyads import RRRDyad
@@ -21,14 +21,14 @@ def bind(q: Design, theta2: Array) -> Bound:
     crank = Crank(anchor=A, radius=q.a, angular_velocity=step)
     linkage = Linkage([A, D, crank, RRRDyad(anchor1=crank.output, anchor2=D, distance1=q.b, distance2=q.c)])
     linkage.set_input_velocity(crank, omega=q.omega2, alpha=q.alpha2)
-    before = theta2[0] / 360.0 * 2 * np.pi - step  # it turns the crank before it answers
+    before = theta2[0] / 360.0 * 2 * np.pi - step  # it turns the crank by a step first
     start = [(0.0, 0.0), (q.d, 0.0), _pair(q.a * np.exp(1j * before)), _pair(_C(q, before))]
 
     def call() -> tuple:
         linkage.set_coords(start)
         return linkage.step_fast_with_kinematics(n)
 
-    return Bound(call, lambda found: _rates(q, *found))
+    return Bound(call, lambda rows: _rates(q, *rows))
 
 
 def _C(q: Design, t2: float) -> complex:

@@ -1,1 +1,1 @@
-"""Time linksweep against its peers, as ratios within one run."""
+"""Time linksweep against its rivals, as ratios within one run."""

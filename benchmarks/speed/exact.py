@@ -1,4 +1,4 @@
-"""Exact peaks of many designs, against grids of samples and against what users write today."""
+"""Time exact peaks of many designs against grids of samples and against numpy + LAPACK."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def rows(size: Size) -> list[Row]:
 
 
 def crank_rockers(count: int, least_transmission_angle: float, seed: int = 1) -> ls.Scene:
-    """Random crank-rockers, every number of every design its own, that transmit at least so well [degree]."""
+    """Return random crank-rockers, each number different in each design, above a transmission angle [degree]."""
     rng = np.random.default_rng(seed)
     a, b, c, d = np.concatenate(list(_lengths(rng, count, least_transmission_angle)), axis=1)[:, :count]
     links = [_link(rng, length) for length in (a, b, c)]
@@ -44,28 +44,28 @@ def crank_rockers(count: int, least_transmission_angle: float, seed: int = 1) ->
 
 
 def _lengths(rng: np.random.Generator, count: int, least: float) -> Iterator[np.ndarray]:
-    found = 0
-    while found < count:
+    accepted = 0
+    while accepted < count:
         lengths = np.sort(rng.uniform(0.05, 1.0, (4 * count, 4)), axis=1)
         a, longest = lengths[:, 0], lengths[:, 3]
         b, c, d = rng.permuted(lengths[:, 1:], axis=1).T
         grashof = a + longest < lengths[:, 1] + lengths[:, 2]
         good = grashof & (np.minimum(_transmission(b, c, d - a), _transmission(b, c, d + a)) > least)
-        found += good.sum()
+        accepted += good.sum()
         yield np.stack([a, b, c, d])[:, good]
 
 
 def _transmission(b: np.ndarray, c: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Acute angle between coupler and rocker [degree], by the cosine rule."""
+    """Return the acute angle between coupler and rocker [degree], by the cosine rule."""
     angle = np.degrees(np.arccos(np.clip((b * b + c * c - diagonal**2) / (2.0 * b * c), -1.0, 1.0)))
     return np.minimum(angle, 180.0 - angle)
 
 
 def _link(rng: np.random.Generator, length: np.ndarray) -> ls.Link:
     n = len(length)
-    mass, share = rng.uniform(0.2, 3.0, n), rng.uniform(0.05, 0.2, n)
+    mass, fraction = rng.uniform(0.2, 3.0, n), rng.uniform(0.05, 0.2, n)
     distance, angle = length * rng.uniform(0.0, 1.0, n), rng.uniform(-60.0, 60.0, n)
-    return ls.Link(*map(_designs, (length, mass, mass * length**2 * share, distance, angle)))
+    return ls.Link(*map(_designs, (length, mass, mass * length**2 * fraction, distance, angle)))
 
 
 def _designs(values: np.ndarray) -> xr.DataArray:
@@ -73,21 +73,23 @@ def _designs(values: np.ndarray) -> xr.DataArray:
 
 
 def _grids(size: Size, least: float, goals: dict[int, float]) -> list[Row]:
-    """Exact peaks against the largest of so many samples; the error is how far the samples stay below."""
+    """Time exact peaks against the largest of n samples; the note states how far samples fall short."""
     designs = crank_rockers(100 * size.designs, least)
-    said = f"transmission angle above {least:g}°" if least else "all crank-rockers"
+    population = f"transmission angle above {least:g}°" if least else "all crank-rockers"
     calls = {EXACT: partial(ls.peaks, designs, threads=1)}
     calls |= {_grid(n): partial(ls.peaks, designs, theta2=n, threads=1) for n in goals}
     exact = calls[EXACT]()
     timed = race(calls, size)
     return [
-        timed.row(SHARE, EXACT, _grid(n), goal, note=f"{said}; the grid errs by {_shortfall(calls[_grid(n)](), exact)}")
+        timed.row(
+            SHARE, EXACT, _grid(n), goal, note=f"{population}; the grid errs by {_shortfall(calls[_grid(n)](), exact)}"
+        )
         for n, goal in goals.items()
     ]
 
 
 def _over_angle(size: Size) -> Row:
-    """Exact peaks where a load over the angle is given: along the way, at 720 angles of a turn and more."""
+    """Time exact peaks with a load over the angle: searched along paths, at 720 angles per turn and more."""
     angles = np.arange(0.0, 360.0, 5.0)
     push = xr.DataArray(-300.0 * np.exp(-(((angles - 180.0) / 40.0) ** 2)), {"theta2": angles}, "theta2")
     designs = replace(crank_rockers(size.designs, 20.0), loads=(ls.Load("rocker", torque=push),))
@@ -106,7 +108,7 @@ def _shortfall(grid: xr.Dataset, exact: xr.Dataset) -> str:
 
 
 def _lapack(size: Size) -> Row:
-    """Per design: ours of a hundred times as many, for theirs would take a minute a round."""
+    """Time per design; ours with a hundred times as many, for theirs would take a minute per round."""
     lapack = "numpy + LAPACK, 720 samples"
     calls = {
         EXACT: partial(ls.peaks, scene(batch(100 * size.designs, *ALL)), threads=1),
@@ -118,8 +120,10 @@ def _lapack(size: Size) -> Row:
 
 
 def _shared(size: Size) -> list[Row]:
-    """A thousand masses, or speeds, of one geometry against a thousand geometries: exact peaks, which share the
-    kinematics of the samples; and the largest of samples, by sums of a few cycles."""
+    """Time a thousand masses, or speeds, of one geometry against a thousand geometries.
+
+    Exact peaks share the kinematics of the samples; the largest of samples is computed as sums of a few cycles.
+    """
     jobs = {name: scene(batch(size.designs, *numbers)) for name, numbers in SHARED.items()}
     exact = {f"{size.designs} {name}": partial(ls.peaks, job, threads=1) for name, job in jobs.items()}
     sums = {
@@ -134,7 +138,7 @@ def _shared(size: Size) -> list[Row]:
 
 
 SHARED = {"geometries": LENGTHS, "masses": ("m3",), "speeds": ("omega2",)}
-"""What is different in each design."""
+"""Numbers that differ between designs."""
 
 
 def _against_first(timed: Race, goals: Iterable[float | None]) -> list[Row]:
@@ -153,7 +157,7 @@ print(growth.peak_memory())
 
 
 def _memory(size: Size) -> Row:
-    """Largest memory of a fresh process that finds the peaks of a million designs [GB]."""
+    """Measure the largest memory of a fresh process that computes the peaks of a million designs [GB]."""
     designs = 1000 * size.designs
     made = subprocess.run(
         [sys.executable, "-c", MILLION.format(designs=designs)], capture_output=True, text=True, check=True

@@ -1,6 +1,5 @@
-"""How cost grows: with angles and designs, by one thread and two, in time and memory, each size in a fresh process; and
-with what is asked, in the time to compile its kernel. `first` has the start-up times.
-"""
+"""Measure how cost grows: with angles and designs, by one thread and two, in time and memory, each size in a fresh
+process; and with the request, in the time to compile its kernel. `first` has the start-up times."""
 
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ from benchmarks.speed.kernel import way
 from benchmarks.timing import FASTER, WALL, Call, Row, timed
 
 MANY = 1_000_000
-"""So many are timed twice: at first they wait for memory."""
+"""Number of designs or angles from which a job is timed only twice; the first time it waits for memory."""
 JOBS = {"angle": "ls.sweep, {:,} angle", "design": "ls.peaks, {:,} design"}
 
 
@@ -36,7 +35,7 @@ def _decades(least: int, largest: int) -> list[int]:
 
 
 def _fresh(call: str) -> str:
-    """What a function of this module prints in a fresh process."""
+    """Return the output of a function of this module in a fresh process."""
     command = [sys.executable, "-c", f"from {__package__} import growth; growth.{call}"]
     return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
 
@@ -45,16 +44,16 @@ def _fresh(call: str) -> str:
 
 
 def _grown(job: str, count: int, rounds: int) -> Row:
-    """One size of a job in a process of its own: two threads against one, per angle or design; and its memory."""
+    """Measure one size of a job in its own process: two threads against one, per angle or design; and its memory."""
     one, two, memory = json.loads(_fresh(f"measure({job!r}, {count}, {rounds})"))
     name = JOBS[job].format(count) + ("s" if count > 1 else "")
     return Row(f"{name}, 2 threads", "1 thread", FASTER, one / two, two, one, count, note=f"{memory:.2f} GB in all")
 
 
 def measure(job: str, count: int, rounds: int) -> None:
-    """Print the times of one thread and of two [s], and the most memory that this process has had [GB]."""
+    """Print the times of one thread and of two [s], and the peak memory of this process [GB]."""
     with way("compiled"):
-        _call(job, 100)()  # reads the kernel
+        _call(job, 100)()  # loads the kernel
         call = _call(job, count)
         again = rounds + 1 if count < MANY else 2
         times = [min(timed(partial(call, threads=n)) for _ in range(again)) for n in (1, 2)]
@@ -68,7 +67,8 @@ def _call(job: str, count: int) -> Call:
 
 
 def peak_memory() -> float:
-    """The most that this process has had [GB]. On Linux getrusage counts what its parent had before it, too."""
+    """Return the peak memory of this process [GB], from /proc where it exists: getrusage includes the parent's on
+    Linux."""
     status = Path("/proc/self/status")
     if status.exists():
         return int(re.search(r"VmHWM:\s*(\d+) kB", status.read_text())[1]) / 1e6
@@ -87,7 +87,7 @@ REQUESTS = {
 
 
 def _first(name: str) -> Row:
-    """The first call in a process, its kernel compiled, or read from the user's cache; numba is awake."""
+    """Time the first call in a process with numba loaded: its kernel compiled, or read from the user's cache."""
     empty = TemporaryDirectory(ignore_cleanup_errors=True)
     with empty as folder, mock.patch.dict(os.environ, {"LINKSWEEP_CACHE_DIR": folder}):
         compiled, read = (float(_fresh(f"first_call({name!r})")) for _ in range(2))

@@ -1,4 +1,4 @@
-"""linksweep's two ways to run, chosen, and its compiled kernel without the Python around it."""
+"""Select linksweep's way to run (interpreted or compiled); extract a compiled kernel without the Python around it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linksweep.engine.peaks import find_peaks
 
 
 class Kernel(NamedTuple):
-    """A compiled kernel: its sources, as engine.compile takes them, and a call bound to all its arguments."""
+    """A compiled kernel: its sources, as `engine.kernel.compile` takes them, and a call bound to all its arguments."""
 
     sources: tuple[str, str]
     call: Call
@@ -23,24 +23,24 @@ class Kernel(NamedTuple):
 
 @contextmanager
 def way(name: str) -> Iterator[None]:
-    """All requests "compiled" from their first sample, or "interpreted" for ever."""
+    """Run all requests "compiled" from their first sample, or "interpreted" always."""
     most = {"compiled": -1, "interpreted": math.inf}[name]
     with mock.patch.object(run, "COMPILE_AFTER", most), mock.patch.object(find_peaks, "INTERPRETED_DESIGNS", most):
         yield
 
 
 def kernel_of(call: Call) -> Kernel:
-    """The largest kernel that a call runs, with the arguments it was given: same inputs, same buffers, no labels."""
-    found: list[Kernel] = []
+    """Return the largest kernel that a call runs, bound to its arguments: equal inputs, equal buffers, no labels."""
+    kernels: list[Kernel] = []
     compiled = run.compiled
 
     def recording(*sources: str) -> Callable:
         def kernel(*arguments) -> None:
-            found.append(Kernel(sources, partial(compiled(*sources), *arguments)))
-            found[-1].call()
+            kernels.append(Kernel(sources, partial(compiled(*sources), *arguments)))
+            kernels[-1].call()
 
         return kernel
 
     with mock.patch.object(run, "compiled", recording), way("compiled"):
         call()
-    return max(found, key=lambda kernel: len(kernel.sources[0]))
+    return max(kernels, key=lambda kernel: len(kernel.sources[0]))

@@ -1,4 +1,4 @@
-"""What a person waits for: one warm call, and the first minutes in fresh processes."""
+"""Time the waits of a user: one warm call, and the first minutes in fresh processes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def warm_calls(size: Size) -> list[Row]:
 
 
 def _warm(name: str, size: Size) -> list[Row]:
-    """One revolution of one design: kinematics and unknowns, or peaks. The press carries a load."""
+    """Time one revolution of one design: kinematics and unknowns, or peaks. The press carries a load."""
     machine, press = scene(GENERAL), ls.example("press")
     jobs = {
         f"ls.sweep, {name}": partial(ls.sweep, machine, size.turn),
@@ -52,15 +52,15 @@ def _warm(name: str, size: Size) -> list[Row]:
     goals = (1e-3, 1e-3, None, None)
     with way(name):
         errors = _errors(size.turn, *(call() for call in jobs.values()))
-        found = race(jobs | {LAPACK: partial(peers.numpy_lapack, GENERAL, peers.grid(size.turn))}, size)
+        timings = race(jobs | {LAPACK: partial(peers.numpy_lapack, GENERAL, peers.grid(size.turn))}, size)
     return [
-        found.row(WALL, job, LAPACK, goal, error=error) for job, goal, error in zip(jobs, goals, errors, strict=True)
+        timings.row(WALL, job, LAPACK, goal, error=error) for job, goal, error in zip(jobs, goals, errors, strict=True)
     ]
 
 
 def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
-    """Each warm job's result against a dense solve; that of the press, which is loaded, against linksweep's own."""
-    sweep, press, anew, found = results
+    """Return each warm job's error against a dense solve; the press, which carries a load, by linksweep's own."""
+    sweep, press, anew, peaks_ds = results
     nine = peers.numpy_lapack(GENERAL, peers.grid(n_angles))
     dense_press = ls.sweep(ls.example("press"), n_angles, NINE, solver="dense")
     alone = replace(GENERAL, a=np.full((1, 1), GENERAL.a))
@@ -68,23 +68,23 @@ def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
         peers.difference(stacked(sweep), nine),
         peers.difference(stacked(press), stacked(dense_press)),
         peers.difference(stacked(anew), nine),
-        peaks.difference(peaks.columns(found)[None], peers.numpy_lapack_peaks(alone, n_angles)[0]),
+        peaks.difference(peaks.columns(peaks_ds)[None], peers.numpy_lapack_peaks(alone, n_angles)[0]),
     ]
 
 
 def first_minutes(size: Size) -> list[Row]:
     rounds = [_first_round() for _ in range(size.processes)]
-    found = Race({job: [seconds[job] for seconds in rounds] for job in rounds[0]})
+    timings = Race({job: [seconds[job] for seconds in rounds] for job in rounds[0]})
     return [
-        found.row(WALL, "import linksweep", "import xarray", 1.0),
-        found.row(WALL, "linksweep demo, second", "linksweep demo, first", 3.0),
-        found.row(WALL, "first compiled ls.sweep, kernel from disk", "first compiled ls.sweep"),
-        found.row(WALL, "one kernel from disk, numba awake", "one kernel compiled, numba awake"),
+        timings.row(WALL, "import linksweep", "import xarray", 1.0),
+        timings.row(WALL, "linksweep demo, second", "linksweep demo, first", 3.0),
+        timings.row(WALL, "first compiled ls.sweep, kernel from disk", "first compiled ls.sweep"),
+        timings.row(WALL, "one kernel from disk, numba awake", "one kernel compiled, numba awake"),
     ]
 
 
 def _first_round() -> dict[str, float]:
-    """Every job once, from empty caches of linksweep and matplotlib."""
+    """Run every job once, from empty caches of linksweep and matplotlib."""
     kernel = kernel_of(partial(ls.sweep, scene(GENERAL), 72, NINE, threads=1))
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         caches = {"LINKSWEEP_CACHE_DIR": f"{folder}/kernels", "MPLCONFIGDIR": f"{folder}/matplotlib"}
@@ -103,6 +103,6 @@ def _first_round() -> dict[str, float]:
 
 
 def _python(folder: Path, *arguments: str) -> str:
-    """What a fresh Python prints."""
+    """Return the output of a fresh Python."""
     command = [sys.executable, *arguments]
     return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout

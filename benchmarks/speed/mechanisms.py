@@ -1,4 +1,4 @@
-"""The other mechanisms against the four-bar: all unknowns of each, by its own kernel."""
+"""Time the other mechanisms against the four-bar: all unknowns of each, by its own kernel."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FOUR_BAR = "four-bar"
 
 
 def slider_crank(friction: float) -> ls.Scene:
-    """The general four-bar's crank and coupler, its rocker's mass sliding on an offset guide that is turned."""
+    """Return a slider-crank of GENERAL's crank and coupler, with the rocker's mass on an offset, turned guide."""
     bars = scene(GENERAL).mechanism
     guide = {"slider_mass": GENERAL.m4, "offset": 0.02, "slide_angle": 10.0}
     mechanism = ls.SliderCrank(bars.crank, bars.coupler, friction=friction, **guide)
@@ -23,7 +23,7 @@ def slider_crank(friction: float) -> ls.Scene:
 
 
 def inverted_slider_crank() -> ls.Scene:
-    """The same crank, its pin in a block that slides along an offset rocker."""
+    """Return an inverted slider-crank of that crank, its pin in a block that slides along an offset rocker."""
     bars = scene(GENERAL).mechanism
     mechanism = ls.InvertedSliderCrank(bars.crank, bars.rocker, GENERAL.d, GENERAL.m3, GENERAL.I3, offset=0.02)
     return ls.Scene(mechanism, GENERAL.omega2, GENERAL.alpha2, (GENERAL.gx, GENERAL.gy))

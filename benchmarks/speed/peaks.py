@@ -1,4 +1,4 @@
-"""Peaks of many designs, every number of every design its own: four pin forces, largest and smallest torque."""
+"""Time peaks of many designs, each number different in each: four pin forces, largest and smallest torque."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ def rows(size: Size) -> list[Row]:
     ]
 
 
-def columns(found: xr.Dataset) -> Array:
-    """A result of ls.peaks as limit.c and peers.py have theirs: (designs, 6)."""
-    return np.stack([found[name].values for name in NAMES], axis=-1)
+def columns(peaks_ds: xr.Dataset) -> Array:
+    """Return a result of ls.peaks in the form of limit.c and peers.py: (designs, 6)."""
+    return np.stack([peaks_ds[name].values for name in NAMES], axis=-1)
 
 
-def difference(found: Array, expected: Array) -> float:
-    """Largest difference of peaks: a force relative to itself, a torque to the largest of its design."""
+def difference(values: Array, expected: Array) -> float:
+    """Return the largest difference of peaks: a force relative to itself, a torque to the largest of its design."""
     scale = np.abs(expected)
     scale[:, 4:] = scale[:, 4:].max(axis=1, keepdims=True)
-    return float(np.max(np.abs(found - expected) / scale))
+    return float(np.max(np.abs(values - expected) / scale))

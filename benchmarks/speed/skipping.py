@@ -1,4 +1,4 @@
-"""What is not asked for, or is not there, is not paid for: kernels and calls against the full job."""
+"""Time requests that leave quantities or effects out, kernels and calls, against the full job."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ EXTRA = {
     "nine, velocity ratio, mechanical advantage": ("velocity_ratio", "mechanical_advantage"),
     "nine, rotation of pins B, C, loads in link axes": ("omega_B", "omega_C", "F32x_link2", "F32y_link2"),
 }
-"""What a designer asks besides, by the kernel that computes it too."""
+"""Further requests of a designer, computed in one kernel with the nine."""
 HALF = replace(GENERAL, s=GENERAL.a / 2, p=GENERAL.b / 2, u=GENERAL.c / 2, delta2=0.0, delta3=0.0, delta4=0.0)
 
 ALL = (*KINEMATICS, *NINE)
@@ -40,14 +40,14 @@ REQUESTS = {
     "balanced crank": (replace(GENERAL, s=0.0), ALL, LOADS),
     "centres of gravity mid-link": (HALF, ALL, LOADS),
 }
-"""Calls of ls.sweep by what is asked of them: design, names, loads."""
+"""Calls of ls.sweep by the request: design, names, loads."""
 KERNELS = {
     ALL_NINE: (GENERAL, NINE, ()),
     "omega3, omega4": (GENERAL, ("omega3", "omega4"), ()),
     "T12, no loads": (GENERAL, ("T12",), ()),
     **{name: (GENERAL, (*NINE, *extra), ()) for name, extra in EXTRA.items()},
 }
-"""Kernels, in the same way."""
+"""Kernels by the request: design, names, loads."""
 
 ROWS = (
     ("omega3, omega4", ALL_NINE, 0.35),
@@ -67,14 +67,14 @@ def rows(size: Size) -> list[Row]:
 
 
 def _compared(jobs: Mapping, compared: Iterable[tuple], to_time: Callable[[Call], Call], size: Size) -> list[Row]:
-    """The jobs against each other, by their calls of ls.sweep or what `to_time` makes of those."""
+    """Time the jobs against each other, by their calls of ls.sweep, or as `to_time` transforms those."""
     calls, error, work = {}, {}, {}
     with way("compiled"):
         for name, (design, names, loads) in jobs.items():
             machine = scene(design, loads)
             sweep = partial(ls.sweep, machine, size.angles, names, threads=1)
             calls[name] = to_time(sweep)
-            error[name] = peers.difference(stacked(sweep(), names), _judge(machine, design, names, size.angles))
+            error[name] = peers.difference(stacked(sweep(), names), _reference(machine, design, names, size.angles))
             work[name] = plan(machine.table, names, machine.inputs.forms).operations("theta2").total()
         timed = race(calls, size, size.angles)
     return [
@@ -84,7 +84,7 @@ def _compared(jobs: Mapping, compared: Iterable[tuple], to_time: Callable[[Call]
 
 
 def _friction(size: Size) -> Row:
-    """All unknowns of a slider-crank on a guide without friction against one with it."""
+    """Time all unknowns of a slider-crank on a guide without friction against one with it."""
     machines = {"zero friction": slider_crank(friction=0.0), FRICTION: slider_crank(friction=0.1)}
     calls, error, work = {}, {}, {}
     with way("compiled"):
@@ -99,8 +99,8 @@ def _friction(size: Size) -> Row:
     return timed.row(SHARE, ours, theirs, error=error[ours], note=f"{work[ours]} of {work[theirs]} operations")
 
 
-def _judge(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:
-    """The same by numpy; where loads act, or more than forces is asked, by linksweep's own dense solver, LAPACK too."""
+def _reference(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:
+    """Return the variables by numpy; with loads, or if more than forces is requested, by linksweep's dense solver."""
     if machine.loads or not {*names} <= {*NINE, "omega3", "omega4"}:
         return stacked(ls.sweep(machine, n_angles, names, solver="dense"), names)
     if names == ("omega3", "omega4"):
@@ -109,7 +109,7 @@ def _judge(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_an
 
 
 def _batches(size: Size) -> list[Row]:
-    """Many masses, or speeds, on one geometry against as many geometries: kinematics and unknowns, all stored."""
+    """Time many masses, or speeds, on one geometry against as many geometries: kinematics and unknowns, all stored."""
     designs = {
         "masses, one geometry": batch(size.batch, *MASSES),
         "speeds, one geometry": batch(size.batch, "omega2"),

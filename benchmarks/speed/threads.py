@@ -1,4 +1,4 @@
-"""One thread and two: the same bits, sooner."""
+"""Time two threads against one; their bits are equal."""
 
 from __future__ import annotations
 
@@ -37,6 +37,6 @@ def _row(job: str, call: Call, size: Size, samples: int | None = None, goal: flo
         return race(calls, size, samples, perf_counter).row(FASTER, both, alone, goal, error=error)
 
 
-def _difference(found: xr.Dataset, expected: xr.Dataset) -> float:
-    """Largest difference of any variable; 0 when they agree bit for bit."""
-    return max(float(np.max(np.abs(found[name].values - expected[name].values))) for name in expected.data_vars)
+def _difference(values: xr.Dataset, expected: xr.Dataset) -> float:
+    """Return the largest difference of any variable; 0 where they agree bit for bit."""
+    return max(float(np.max(np.abs(values[name].values - expected[name].values))) for name in expected.data_vars)

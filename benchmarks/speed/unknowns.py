@@ -1,4 +1,4 @@
-"""All nine unknowns of one general four-bar at many crank angles."""
+"""Time all nine unknowns of one general four-bar at many crank angles."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def rows(size: Size) -> list[Row]:
         BLOCKS: lambda: [peers.numpy_lapack(GENERAL, block) for block in np.split(theta2, 10)],
     }
     with way("compiled"):
-        found = {name: stacked(call()) for name, call in sweeps.items()} | {CLOSED: calls[CLOSED]()}
-        found[KERNEL] = found[SWEEP]  # the kernel is the one that ls.sweep runs
+        results = {name: stacked(call()) for name, call in sweeps.items()} | {CLOSED: calls[CLOSED]()}
+        results[KERNEL] = results[SWEEP]  # the kernel is the one that ls.sweep runs
         if lib := limit.build():
-            calls[C], found[C] = limit.bind_store(lib, GENERAL, theta2)
+            calls[C], results[C] = limit.bind_store(lib, GENERAL, theta2)
             calls[C]()
-        dense, found[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
-        error = {name: peers.difference(nine, dense) for name, nine in found.items()}
+        dense, results[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
+        error = {name: peers.difference(nine, dense) for name, nine in results.items()}
         timed = race(calls, size, size.angles)
 
     def row(kind: str, ours: str, theirs: str, goal: float | None = None) -> Row:

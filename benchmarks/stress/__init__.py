@@ -1,1 +1,1 @@
-"""Random and hard mechanisms, judged in 50 digits by formulas of their own: python -m benchmarks.stress."""
+"""Check random and hard mechanisms against formulas of their own in 50 digits: python -m benchmarks.stress."""

@@ -1,4 +1,4 @@
-"""python -m benchmarks.stress [--mechanisms N] [--seed S] [--only WORD] [--minutes M] [--write]."""
+"""Stress test: python -m benchmarks.stress [--mechanisms N] [--seed S] [--only WORD] [--minutes M] [--write]."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.stress import bits, conservative
+from benchmarks.stress.errors import errors_of
 from benchmarks.stress.families import FAMILIES, Family, chunks
-from benchmarks.stress.judge import verdict
 from benchmarks.stress.tally import Tally, table
 
 RESULTS = Path(__file__).parents[1] / "STRESS.md"
@@ -21,14 +21,14 @@ AT_ONE_ANGLE = 500
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Judge random mechanisms of every family and print their figures; 1 where a goal is missed."""
+    """Check random mechanisms of every family and print their figures; return 1 where a goal is missed."""
     options = _parser().parse_args(arguments)
     families = {name: family for name, family in FAMILIES.items() if options.only in name}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         changed = unchanged(families, min(options.mechanisms // len(families), AT_ONE_ANGLE), options.seed)
         mean = conservative.means(max(min(options.mechanisms // 100, 1000), 50), options.seed)
-        tallies = judged(families, options.mechanisms, options.seed, options.minutes)
+        tallies = tallied(families, options.mechanisms, options.seed, options.minutes)
     missed = sum(tallies.values(), Tally()).missed() + [f"another bit by {name}" for name, n in changed.items() if n]
     page = "\n\n".join(
         [
@@ -44,8 +44,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return int(bool(missed))
 
 
-def judged(families: dict[str, Family], mechanisms: int, seed: int, minutes: float = np.inf) -> dict[str, Tally]:
-    """Tallies of so many designs in all, the families in turn, so that each has its share when time is up."""
+def tallied(families: dict[str, Family], mechanisms: int, seed: int, minutes: float = np.inf) -> dict[str, Tally]:
+    """Return tallies of `mechanisms` designs in all, the families in turn, so that each is covered when time is up."""
     until = perf_counter() + 60.0 * minutes
     each = -(-mechanisms // len(families))
     size = min(AT_ONE_ANGLE, each)
@@ -53,17 +53,17 @@ def judged(families: dict[str, Family], mechanisms: int, seed: int, minutes: flo
     for name, designs in _in_turn(families, each, size, seed):
         if perf_counter() > until and tallies[name].samples:
             break
-        tallies[name].add(verdict(designs))
+        tallies[name].add(errors_of(designs))
     return tallies
 
 
 def unchanged(families: dict[str, Family], designs: int, seed: int) -> dict[str, int]:
-    """How many designs of all families have another bit, by what was done to them."""
-    found: dict[str, int] = {}
+    """Count designs of all families whose bits change, by the transformation applied."""
+    counts: dict[str, int] = {}
     for family in families.values():
         for what, count in bits.changed(next(chunks(family, designs, designs, [seed]))).items():
-            found[what] = found.get(what, 0) + count
-    return found
+            counts[what] = counts.get(what, 0) + count
+    return counts
 
 
 def _in_turn(families: dict[str, Family], each: int, size: int, seed: int) -> Iterator[tuple]:
@@ -76,7 +76,7 @@ def _in_turn(families: dict[str, Family], each: int, size: int, seed: int) -> It
 def _head(options: argparse.Namespace) -> str:
     limit = f" --minutes {options.minutes:g}" if np.isfinite(options.minutes) else ""
     command = f"python -m benchmarks.stress --mechanisms {options.mechanisms} --seed {options.seed}{limit} --write"
-    return f"# Stress\n\nWritten by `{command}`; README.md says what each column is."
+    return f"# Stress\n\nWritten by `{command}`; README.md explains the columns."
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,13 +1,13 @@
-"""Backward errors of the nine unknowns: by how much, relatively, the numbers of the 9×9 must change for the answers to
-solve it exactly; residuals are computed in extended precision.
+"""Compute backward errors of the nine unknowns: the relative change of the 9×9's numbers after which the results solve
+it exactly; residuals are computed in extended precision.
 
 Componentwise (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405) each number may change by itself,
 
-    max |Ax − b| / (sizes of A's terms · |x| + sizes of b's terms)    over the rows,
+    max |Ax − b| / (sizes of A's terms · |x| + sizes of b's terms)    over the rows.
 
-where arms from a centre of gravity and right sides are sums that may cancel: their terms may change, which are what
-rounding is relative to. Normwise, which is what LAPACK's tests bound by 30 ε, all numbers of the balanced matrix may
-change by as much as the largest does:  max |Ax − b| / (max |A| · Σ|x| + max sizes of b's terms).
+Arms from a centre of gravity and right sides are sums that may cancel: there the terms may change, to which rounding is
+relative. Normwise, as LAPACK's tests bound it by 30 ε, all numbers of the balanced matrix may change by as much as the
+largest does:  max |Ax − b| / (max |A| · Σ|x| + max sizes of b's terms).
 """
 
 from __future__ import annotations
@@ -25,37 +25,37 @@ from linksweep.scene.grid import crank_grid
 LEAST = 2.0**-1022
 NUMBER = {"crank": 2, "coupler": 3, "rod": 3, "rocker": 4}
 SECOND_PIN = {2: ((2, 0, -1), (3, 1, -1)), 3: ((4, 2, 1), (5, 3, 1)), 4: ((4, 6, 1), (5, 7, 1))}
-"""Of each link: columns of the force at a second pin, of that at the other, and the sign that makes arms of pins."""
+"""For each link: columns of the force at the second pin and at the first, and the sign that makes arms of pins."""
 
 
 def backward_errors(designs: Designs, cycle: xr.Dataset) -> tuple[Array, Array]:
-    """Componentwise and normwise, of each design; 0 where the nine unknowns are not eight pin forces and a torque."""
+    """Return componentwise and normwise errors of each design; 0 unless its unknowns are those of a 9×9."""
     n = len(designs)
     if designs.machine == "inverted slider-crank":
         return np.zeros(n), np.zeros(n)
     page = ls.system(designs.scene(), [designs.theta2]).isel(theta2=0)
     A, b = (np.broadcast_to(page[name].values, (n, *shape)) for name, shape in (("matrix", (9, 9)), ("rhs", (9,))))
     x = np.stack([values(cycle, name, n) for name in (*FORCES, "drive")], axis=-1).astype(np.longdouble)
-    rest = np.abs((A.astype(np.longdouble) * x[:, None, :]).sum(axis=-1) - b)
+    residual = np.abs((A.astype(np.longdouble) * x[:, None, :]).sum(axis=-1) - b)
     matrix, right_side = sizes(designs, A, b)
     size = (matrix * np.abs(x)[:, None, :]).sum(axis=-1) + right_side
-    componentwise = (rest / np.maximum(size, LEAST)).max(axis=-1)
-    return componentwise.astype(float), _normwise(A, right_side, x, rest)
+    componentwise = (residual / np.maximum(size, LEAST)).max(axis=-1)
+    return componentwise.astype(float), _normwise(A, right_side, x, residual)
 
 
-def _normwise(A: Array, b: Array, x: Array, rest: Array) -> Array:
+def _normwise(A: Array, b: Array, x: Array, residual: Array) -> Array:
     names = (*FORCES, "T")
     finite = np.isfinite(A).all(axis=(-2, -1), keepdims=True)
     balanced, rows, columns = equilibrated(np.where(finite, A, np.eye(9)), names)
-    rest, b, x = np.ldexp(rest, -rows), np.ldexp(b, -rows), np.ldexp(np.abs(x), columns)
+    residual, b, x = np.ldexp(residual, -rows), np.ldexp(b, -rows), np.ldexp(np.abs(x), columns)
     size = np.abs(balanced).max(axis=(-2, -1)) * x.sum(axis=-1) + b.max(axis=-1)
-    return (rest.max(axis=-1) / np.maximum(size, LEAST)).astype(float)
+    return (residual.max(axis=-1) / np.maximum(size, LEAST)).astype(float)
 
 
 def sizes(designs: Designs, A: Array, b: Array) -> tuple[Array, Array]:
-    """What the entries of matrix and right side are sums of, added up by magnitude."""
+    """Return matrix and right side with each entry as the sum of the magnitudes of its terms."""
     matrix, right_side = np.abs(A), np.abs(b)
-    found = _made_of(designs)
+    terms = _made_of(designs)
     for role in LINKS[designs.machine]:
         k = NUMBER[role]
         row = 3 * (k - 2)
@@ -64,27 +64,27 @@ def sizes(designs: Designs, A: Array, b: Array) -> tuple[Array, Array]:
             matrix[:, row + 2, column] = np.abs(first) + np.abs(arm + sign * first)
         mass, inertia = designs.numbers[f"{role}_mass"], designs.numbers[f"{role}_inertia"]
         for j, axis in enumerate("xy"):
-            pull = np.abs(found[f"aG{k}{axis}"]) + np.abs(designs.numbers[f"gravity_{axis}"])
-            right_side[:, row + j] = mass * pull + np.abs(found[f"P{k}{axis}"])
-        turning = np.abs(found[f"rG{k}x"] * found[f"P{k}y"]) + np.abs(found[f"rG{k}y"] * found[f"P{k}x"])
-        right_side[:, row + 2] = inertia * np.abs(found[f"alpha{k}"]) + np.abs(found[f"M{k}"]) + turning
+            pull = np.abs(terms[f"aG{k}{axis}"]) + np.abs(designs.numbers[f"gravity_{axis}"])
+            right_side[:, row + j] = mass * pull + np.abs(terms[f"P{k}{axis}"])
+        turning = np.abs(terms[f"rG{k}x"] * terms[f"P{k}y"]) + np.abs(terms[f"rG{k}y"] * terms[f"P{k}x"])
+        right_side[:, row + 2] = inertia * np.abs(terms[f"alpha{k}"]) + np.abs(terms[f"M{k}"]) + turning
     if designs.machine == "slider-crank":
-        _slider(designs, found, matrix, right_side)
+        _slider(designs, terms, matrix, right_side)
     return matrix, right_side
 
 
-def _slider(designs: Designs, found: dict[str, Array], matrix: Array, right_side: Array) -> None:
-    """The slider's two equations, and that of friction."""
+def _slider(designs: Designs, terms: dict[str, Array], matrix: Array, right_side: Array) -> None:
+    """Fill in the slider's two equations, and the friction equation."""
     x = designs.numbers
     for j, axis in enumerate("xy"):
-        pull = np.abs(found[f"aG4{axis}"]) + np.abs(x[f"gravity_{axis}"])
-        right_side[:, 6 + j] = x["slider_mass"] * pull + np.abs(found[f"P4{axis}"])
+        pull = np.abs(terms[f"aG4{axis}"]) + np.abs(x[f"gravity_{axis}"])
+        right_side[:, 6 + j] = x["slider_mass"] * pull + np.abs(terms[f"P4{axis}"])
     cos, sin = (np.abs(turn(np.radians(x["slide_angle"]))) for turn in (np.cos, np.sin))
     matrix[:, 8, 6], matrix[:, 8, 7] = cos + x["friction"] * sin, sin + x["friction"] * cos
 
 
 def _made_of(designs: Designs) -> dict[str, Array]:
-    """Numbers on the way to the 9×9, by the names that the plan has for them."""
+    """Return intermediate numbers of the 9×9, by their names in the plan."""
     stems = ("rG{}x", "rG{}y", "aG{}x", "aG{}y", "P{}x", "P{}y", "M{}", "alpha{}")
     names = tuple(stem.format(k) for stem in stems for k in (2, 3, 4))
     scene = designs.scene()
@@ -95,6 +95,6 @@ def _made_of(designs: Designs) -> dict[str, Array]:
 
 
 def values(cycle: xr.Dataset, name: str, n: int) -> Array:
-    """A variable at the one angle, for each of n designs."""
+    """Return a variable at the one angle, for each of n designs."""
     array = cycle[name]
     return np.broadcast_to((array.isel(theta2=0) if "theta2" in array.dims else array).values, n)

@@ -1,4 +1,4 @@
-"""What must not change a single bit: a mirror, time reversed, units by powers of two, chunks, threads, batches."""
+"""Check transformations that must not change a bit: mirror, time reversal, units by powers of two, chunks, threads."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ import xarray as xr
 from benchmarks.stress.backward import values
 from benchmarks.stress.decimals import Array
 from benchmarks.stress.designs import FORCES, Designs
+from benchmarks.stress.errors import answers
 from benchmarks.stress.families import scaled
-from benchmarks.stress.judge import answers
 from linksweep.engine import run
 
 TURNED = ("_angle", "_y", "_torque", "omega2", "alpha2", "offset")
-"""Numbers that change their sign in a mirror along x."""
+"""Ends of the names of numbers that change sign in a mirror along x."""
 UNITS = (2.0**-7, 2.0**11, 2.0**5)
-"""Of length, mass and rate."""
+"""Units of length, mass and rate."""
 ALONE = 3
-"""So many designs are also swept alone."""
+"""Number of designs that are also swept alone."""
 
 
 def changed(designs: Designs) -> dict[str, int]:
-    """How many designs have another bit, by what was done to them."""
+    """Count designs whose bits change, by the transformation applied."""
     plain = _results(designs, answers(designs))
     return {what: int(np.any(plain != other, axis=0)[where].sum()) for what, other, where in _others(designs, plain)}
 
@@ -56,13 +56,14 @@ def _others(designs: Designs, plain: Array) -> Iterator[tuple[str, Array, slice]
 
 
 def mirrored(designs: Designs, branch: int) -> Designs:
-    """The same machines seen in a mirror that lies along x: a four-bar's C is then on the other side of B→D."""
+    """Return the machines mirrored at the x axis: a four-bar's C is then on the other side of B→D."""
     numbers = {name: -np.asarray(x) if name.endswith(TURNED) else x for name, x in designs.numbers.items()}
     return replace(designs, numbers=numbers, theta2=-designs.theta2, branch=branch * designs.branch)
 
 
 def _goes_through(designs: Designs) -> Array:
-    """Parallelograms and kites change sides at their folds, and keep their branch in a mirror."""
+    """Return which designs are parallelograms or kites: they change sides at their folds, and keep their branch in a
+    mirror."""
     if designs.machine != "four-bar":
         return np.zeros(len(designs), dtype=bool)
     a, b, c, d = (designs.numbers[name] for name in ("crank_length", "coupler_length", "rocker_length", "ground"))
@@ -70,6 +71,6 @@ def _goes_through(designs: Designs) -> Array:
 
 
 def _results(designs: Designs, cycle: xr.Dataset) -> Array:
-    """Forces, the drive and the status, one row each; 0 for what has no value."""
-    found = np.stack([values(cycle, name, len(designs)).astype(float) for name in (*FORCES, "drive", "status")])
-    return np.nan_to_num(found, nan=0.0)
+    """Return forces, drive and status, one row each, with 0 for NaN."""
+    rows = np.stack([values(cycle, name, len(designs)).astype(float) for name in (*FORCES, "drive", "status")])
+    return np.nan_to_num(rows, nan=0.0)

@@ -1,4 +1,5 @@
-"""Machines that no energy leaves: at constant speed, under weight alone, the drive's torque has no mean over a turn."""
+"""Check machines without dissipation: at constant speed, under weight alone, the drive's mean torque over a turn is
+zero."""
 
 from __future__ import annotations
 
@@ -7,23 +8,23 @@ import numpy as np
 import linksweep as ls
 from benchmarks.stress.decimals import Array
 from benchmarks.stress.designs import Designs
+from benchmarks.stress.errors import EPS
 from benchmarks.stress.families import Random, decades, four_bar_of, slider_crank_of
-from benchmarks.stress.judge import EPS
 
 ANGLES = 1440
-"""Samples a turn: the mean over them is that over the turn, to less than rounding, for machines far from toggles."""
+"""Samples per turn; their mean is that over the turn, within rounding, for machines far from toggles."""
 BATCH = 50
 
 
 def means(machines: int, seed: int) -> Array:
-    """|mean torque| of random machines in ε of the largest torque of each."""
-    found = []
+    """Return |mean torque| of random machines in ε of the largest torque of each."""
+    parts = []
     for k in range(0, machines, BATCH):
         random = np.random.default_rng([seed, k])
         for designs in (_crank_rocker(random, BATCH // 2), _engine(random, BATCH // 2)):
             torque = ls.sweep(designs.scene(), ANGLES, ["T12"]).T12.transpose("design", "theta2").values
-            found.append(np.abs(torque.mean(axis=1)) / np.abs(torque).max(axis=1) / EPS)
-    return np.concatenate(found)
+            parts.append(np.abs(torque.mean(axis=1)) / np.abs(torque).max(axis=1) / EPS)
+    return np.concatenate(parts)
 
 
 def _conservative(designs: Designs) -> Designs:
@@ -32,7 +33,7 @@ def _conservative(designs: Designs) -> Designs:
 
 
 def _crank_rocker(random: Random, n: int) -> Designs:
-    """The crank turns with a margin of a tenth of the lengths and more."""
+    """Return crank-rockers whose crank turns with a margin of at least a tenth of the lengths."""
     a, d = np.ones(n), 1.0 + decades(random, n, -0.3, 0.5)
     difference, total = (d - a) * random.uniform(-0.7, 0.7, n), (d + a) * random.uniform(1.2, 2.0, n)
     lengths = a, 0.5 * (total + difference), 0.5 * (total - difference), d

@@ -1,7 +1,7 @@
 """Numbers to 50 digits in numpy's object arrays, and vectors of them; cosines and sines of angles in degrees.
 
-The decimals are those of Python's standard library. What is written with + - * / and `root` runs on them, and on the
-first-order numbers of `spread` as well.
+Decimals are those of Python's standard library. Formulas in + - * / and `root` run on them, and on the first-order
+numbers of `spread`.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ Array = np.ndarray
 
 DIGITS = 50
 RADIAN = Decimal("0.0174532925199432957692369076848861271344287188854172545609719144")
-"""A degree."""
+"""A degree [rad]."""
 
 
 @contextmanager
 def fifty_digits() -> Iterator[None]:
-    """Every operation rounds to 50 digits; what has no value is NaN."""
+    """Round every operation to 50 digits; undefined results are NaN."""
     with localcontext(Context(prec=DIGITS, Emax=999_999, Emin=-999_999, traps=[])):
         yield
 
 
 exactly = np.frompyfunc(Decimal, 1, 1)
-"""Floats as the decimals they are."""
+"""Convert floats to decimals without rounding."""
 
 
 def root(x: Number) -> Number:
@@ -38,7 +38,7 @@ def root(x: Number) -> Number:
 
 
 def sign(x: Number) -> Array:
-    """±1, 0 of nothing."""
+    """Return ±1, or 0 for 0."""
     values = x if isinstance(x, np.ndarray) else x.value
     return (values > 0) * 1 - (values < 0) * 1
 
@@ -64,31 +64,31 @@ class Vector(NamedTuple):
 
     @property
     def left(self) -> Vector:
-        """Turned by 90°."""
+        """The vector rotated by 90°."""
         return Vector(-self.y, self.x)
 
     def turned(self, direction: Vector) -> Vector:
-        """Turned by the angle of a unit vector."""
+        """Return the vector rotated by the angle of a unit vector."""
         return direction * self.x + direction.left * self.y
 
 
 def directions(degrees: Array) -> Vector:
-    """Unit vectors at angles [degree]."""
+    """Return unit vectors at angles [degree]."""
     return Vector(*_direction(degrees))
 
 
 @lru_cache(maxsize=10_000)
 def _cos_sin(degrees: float) -> tuple[Decimal, Decimal]:
-    """A whole degree from the table, and the rest by Taylor's series."""
+    """Return cosine and sine: of the whole degree from the table, of the remainder by Taylor's series."""
     angle = Decimal(degrees) % 360
     whole = int(angle.to_integral_value())
     cos, sin = _table()[whole % 360]
-    rest = (angle - whole) * RADIAN
-    if not rest:
+    remainder = (angle - whole) * RADIAN
+    if not remainder:
         return +cos, +sin
-    c, s, term = Decimal(1), rest, rest
+    c, s, term = Decimal(1), remainder, remainder
     for k in range(2, 20):
-        term = term * rest / k
+        term = term * remainder / k
         if k % 2:
             s += term if k % 4 == 1 else -term
         else:
@@ -101,7 +101,7 @@ _direction = np.frompyfunc(_cos_sin, 1, 2)
 
 @lru_cache(maxsize=1)
 def _table() -> list[tuple[Decimal, Decimal]]:
-    """Cosine and sine of every whole degree: of the first by Taylor's series, then step by step."""
+    """Return cosine and sine of every whole degree: of the first by Taylor's series, then step by step."""
     with localcontext(Context(prec=DIGITS + 14)):
         terms = [Decimal(1)]
         for k in range(1, 30):

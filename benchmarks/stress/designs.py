@@ -1,4 +1,4 @@
-"""Many designs of one machine at one crank angle: as a scene of the product, in 50 digits, and to first order."""
+"""Many designs of one machine at one crank angle: as a scene of linksweep, in 50 digits, and to first order."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ FORCES = tuple(f"{pin}{axis}" for pin in ("F12", "F32", "F43", "F14") for axis i
 
 @dataclass(frozen=True)
 class Designs:
-    """`numbers` are arrays over the designs, or single numbers, by the words of a scene; `branch` is 1 open, −1
-    crossed; `sides` are those of B→D that C is on, where not the branch's."""
+    """Designs of one machine. `numbers` are arrays over the designs, or single numbers, by the words of a scene;
+    `branch` is 1 open, −1 crossed; `sides` are the sides of B→D that C is on, where they differ from the branch's."""
 
     machine: str
     numbers: Mapping[str, Any]
@@ -45,7 +45,7 @@ class Designs:
         return replace(self, numbers=numbers, sides=None if self.sides is None else self.sides[which])
 
     def one(self, k: int) -> Designs:
-        """A single design, its numbers without dimensions."""
+        """Return a single design, its numbers without dims."""
         numbers = {name: float(values[k]) if np.ndim(values) else values for name, values in self.numbers.items()}
         return replace(self, numbers=numbers, sides=None if self.sides is None else self.sides[k : k + 1])
 
@@ -61,7 +61,7 @@ class Designs:
         )
 
     def exact(self) -> tuple[dict[str, Array], list[Array]]:
-        """Results in 50 digits, and the square roots met on the way."""
+        """Return results in 50 digits, and the square roots computed on the way."""
         roots: list[Array] = []
 
         def recorded(radicand: Array) -> Array:
@@ -69,16 +69,16 @@ class Designs:
             return roots[-1]
 
         with fifty_digits():
-            found = MACHINES[self.machine](self._exact_numbers(), recorded)
-            found["mu"] = np.minimum(abs(found["mu"]), abs(found.pop("grip", found["mu"])))
-        return found, roots
+            results = MACHINES[self.machine](self._exact_numbers(), recorded)
+            results["mu"] = np.minimum(abs(results["mu"]), abs(results.pop("grip", results["mu"])))
+        return results, roots
 
     def spreads(self, roots: list[Array]) -> dict[str, Array]:
-        """What the results change by with the last digits of all inputs."""
+        """Return the change of the results with the last digits of all inputs."""
         known: Iterator[Array] = iter([values.astype(float) for values in roots])
-        with np.errstate(all="ignore"):  # of designs that do not close
-            found = MACHINES[self.machine](self._first_order_numbers(), lambda radicand: radicand.root(next(known)))
-            return {name: value.spread for name, value in found.items()}
+        with np.errstate(all="ignore"):  # some designs do not close
+            results = MACHINES[self.machine](self._first_order_numbers(), lambda radicand: radicand.root(next(known)))
+            return {name: value.spread for name, value in results.items()}
 
     def _exact_numbers(self) -> dict[str, Any]:
         return self._vectors(

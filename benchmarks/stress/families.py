@@ -1,4 +1,4 @@
-"""Random designs by family: general ones, and those that are hard on formulas."""
+"""Random designs by family: general ones, and families that are numerically hard."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Family = Callable[[Random, int], Designs]
 
 
 def decades(random: Random, n: int, low: float, high: float) -> Array:
-    """Numbers from 10^low to 10^high, every decade as likely as the next."""
+    """Return numbers from 10^low to 10^high, each decade equally likely."""
     return 10.0 ** random.uniform(low, high, n)
 
 
@@ -23,7 +23,7 @@ def decades(random: Random, n: int, low: float, high: float) -> Array:
 
 
 def _link(random: Random, role: str, length: Array) -> dict[str, Array]:
-    """Any mass, its centre of gravity anywhere; angles in eighths of a degree."""
+    """Return links of any mass, with centres of gravity anywhere; angles in eighths of a degree."""
     n = len(length)
     mass = decades(random, n, -1.0, 1.0)
     return {
@@ -36,7 +36,7 @@ def _link(random: Random, role: str, length: Array) -> dict[str, Array]:
 
 
 def _motion(random: Random, n: int, size: Array) -> dict[str, Array]:
-    """Any speed; α2 and gravity comparable with ω2², or the Earth's."""
+    """Return any speed, with α2 and gravity comparable with ω2², or the Earth's gravity."""
     omega2 = decades(random, n, -1.0, 3.0) * random.choice([-1.0, 1.0], n)
     pull = omega2**2 * size * decades(random, n, -1.0, 1.0)
     direction = random.uniform(0.0, 2.0 * np.pi, n)
@@ -50,14 +50,14 @@ def _motion(random: Random, n: int, size: Array) -> dict[str, Array]:
 
 
 def _angles(random: Random, n: int) -> tuple[float, Array | float, Array]:
-    """The crank's angle, the frame's (0 for half of the calls), and the angle between them, from the frame."""
+    """Return the crank's angle, the frame's (0 for half of the calls), and the angle from the frame to the crank."""
     theta2 = float(random.choice([random.uniform(-360.0, 720.0), random.integers(-48, 48) * 15.0 + 7.5]))
     turned: Array | float = random.uniform(-180.0, 180.0, n) if random.random() < 0.5 else 0.0
     return theta2, turned, np.radians(np.broadcast_to(theta2 - turned, n))
 
 
 def four_bar_of(random: Random, lengths: tuple[Array, ...], theta2: float, turned: Array | float) -> Designs:
-    """Of crank, coupler, rocker and ground; loads comparable with the inertia of its links."""
+    """Return four-bars of these lengths (crank, coupler, rocker, ground), with loads comparable to links' inertia."""
     a, b, c, d = lengths
     n = len(a)
     numbers = _link(random, "crank", a) | _link(random, "coupler", b) | _link(random, "rocker", c)
@@ -71,12 +71,12 @@ def four_bar_of(random: Random, lengths: tuple[Array, ...], theta2: float, turne
 
 
 def _diagonal(a: Array, d: Array, psi: Array) -> Array:
-    """|BD| with the crank at ψ from the frame line."""
+    """Return |BD| with the crank at ψ from the frame line."""
     return np.sqrt((d - a) ** 2 + 4.0 * a * d * np.sin(0.5 * psi) ** 2)
 
 
 def _spread_lengths(random: Random, n: int, f: Array, stretch: Array) -> tuple[Array, Array]:
-    """Coupler and rocker that close over the diagonal f, together (1 + stretch)·f."""
+    """Return coupler and rocker that close over the diagonal f, with the sum (1 + stretch)·f."""
     total, difference = f * (1.0 + stretch), f * random.uniform(-0.95, 0.95, n)
     return 0.5 * (total + difference), 0.5 * (total - difference)
 
@@ -92,7 +92,7 @@ def general(random: Random, n: int, low: float = -0.5, high: float = 0.5, stretc
 
 
 def toggle(random: Random, n: int, nearest: float = -12.0, farthest: float = -1.0) -> Designs:
-    """10^farthest to 10^nearest rad from a toggle: b + c or |b − c| is the diagonal of an angle so near."""
+    """Return four-bars 10^farthest to 10^nearest rad from a toggle: b + c or |b − c| is the diagonal at that angle."""
     theta2, turned, psi = _angles(random, n)
     a, d = decades(random, n, -0.5, 0.5), decades(random, n, -0.5, 0.5)
     away, growing = decades(random, n, nearest, farthest), np.where(np.sin(psi) > 0.0, 1.0, -1.0)
@@ -106,7 +106,7 @@ def toggle(random: Random, n: int, nearest: float = -12.0, farthest: float = -1.
 
 
 def _flat(random: Random, n: int) -> tuple[float, Array, Array]:
-    """Angles of crank and frame so that the crank lies 1e-7 to 1 rad from the frame line, or its continuation."""
+    """Return angles of crank and frame with the crank 1e-7 to 1 rad from the frame line, or its continuation."""
     theta2 = float(random.uniform(-360.0, 720.0))
     away = np.degrees(decades(random, n, -6.9, 0.0)) * random.choice([-1.0, 1.0], n)
     turned = theta2 - away - 180.0 * random.integers(0, 2, n)
@@ -114,7 +114,7 @@ def _flat(random: Random, n: int) -> tuple[float, Array, Array]:
 
 
 def change_point(random: Random, n: int) -> Designs:
-    """Parallelogram, kite, a + d = b + c and a + b = c + d (in 1/1024, so that it holds to the last bit), near flat."""
+    """Return parallelograms, kites, a + d = b + c and a + b = c + d (in 1/1024, to hold exactly), near flat."""
     theta2, turned, psi_sin = _flat(random, n)
     p, q, r = (random.integers(200, 2000, n) / 1024.0 for _ in range(3))
     q = np.where(p == q, q + 0.25, q)
@@ -129,14 +129,14 @@ def change_point(random: Random, n: int) -> Designs:
 
 
 def near_change_point(random: Random, n: int) -> Designs:
-    """The same, missed by 1e-12 to 1e-2 of a length."""
+    """Return designs that miss a change point by 1e-12 to 1e-2 of a length."""
     designs = change_point(random, n)
     miss = 1.0 + decades(random, n, -12.0, -2.0) * random.choice([-1.0, 1.0], n)
     return replace(designs.changed(coupler_length=designs.numbers["coupler_length"] * miss), sides=None)
 
 
 def dead_centre(random: Random, n: int) -> Designs:
-    """The rocker drives, and stands nearly still: crank and coupler 1e-12 to 0.1 rad from lying in one line."""
+    """Return four-bars driven at a nearly still rocker: crank and coupler 1e-12 to 0.1 rad from lying in one line."""
     theta2, turned = float(random.uniform(-360.0, 720.0)), 0.0
     a, b, d = (decades(random, n, -0.5, 0.5) for _ in range(3))
     away = decades(random, n, -12.0, -1.0) * random.choice([-1.0, 1.0], n) + np.pi * random.integers(0, 2, n)
@@ -151,7 +151,7 @@ def dead_centre(random: Random, n: int) -> Designs:
 
 
 def barely_long_enough(random: Random, n: int) -> Designs:
-    """Coupler and rocker reach the far side with 1e-15 to 1e-2 to spare."""
+    """Return four-bars whose coupler and rocker reach the far side with 1e-15 to 1e-2 to spare."""
     theta2 = float(random.uniform(-360.0, 720.0))
     turned = theta2 - 180.0 + np.degrees(decades(random, n, -6.0, 0.0)) * random.choice([-1.0, 1.0], n)
     a, d = decades(random, n, -0.5, 0.5), decades(random, n, -0.5, 0.5)
@@ -164,7 +164,7 @@ def length_ratios(random: Random, n: int) -> Designs:
 
 
 def scaled(designs: Designs, length: Array, mass: Array, rate: Array) -> Designs:
-    """The same in other units."""
+    """Return the designs in other units."""
     force = mass * length * rate**2
     units = {"_length": length, "_cg_distance": length, "_at_distance": length, "_mass": mass}
     units |= {"_inertia": mass * length**2, "_force_x": force, "_force_y": force, "_torque": force * length}
@@ -185,13 +185,13 @@ def scales(random: Random, n: int) -> Designs:
 
 
 def speeds(random: Random, n: int) -> Designs:
-    """ω2 from 1e-6 to 1e6 rad/s beside the Earth's gravity and unchanged loads."""
+    """Return designs with ω2 from 1e-6 to 1e6 rad/s, beside the Earth's gravity and unchanged loads."""
     omega2 = decades(random, n, -6.0, 6.0) * random.choice([-1.0, 1.0], n)
     return general(random, n).changed(omega2=omega2, alpha2=omega2**2 * random.uniform(-2.0, 2.0, n))
 
 
 def masses(random: Random, n: int) -> Designs:
-    """None, or from 1e-9 to 1e9 kg, in one machine."""
+    """Return designs with masses of zero, or from 1e-9 to 1e9 kg, in one machine."""
     designs = general(random, n)
     changes = {}
     for role in ("crank", "coupler", "rocker"):
@@ -201,7 +201,7 @@ def masses(random: Random, n: int) -> Designs:
 
 
 def cancelling_loads(random: Random, n: int) -> Designs:
-    """A heavy coupler, whose weight a load at its centre of gravity carries but for 1e-12 to 1e-1."""
+    """Return designs with a heavy coupler, whose weight a load at its centre carries but for 1e-12 to 1e-1."""
     designs = general(random, n)
     x = designs.numbers
     heavy, miss = x["coupler_mass"] * decades(random, n, 0.0, 6.0), 1.0 + decades(random, n, -12.0, -1.0)
@@ -217,7 +217,7 @@ def million_turns(random: Random, n: int) -> Designs:
 
 
 def denormals(random: Random, n: int) -> Designs:
-    """Some of masses, loads, rates and gravity far below the least normal number."""
+    """Return designs with some masses, loads, rates and gravity far below the least normal number."""
     designs = general(random, n)
     names = ("crank_mass", "coupler_inertia", "rocker_mass", "omega2", "alpha2", "gravity_x", "coupler_force_y")
     tiny = {name: designs.numbers[name] * np.where(random.random(n) < 0.4, 1e-310, 1.0) for name in names}
@@ -238,7 +238,7 @@ def cg_on_pins(random: Random, n: int) -> Designs:
 
 
 def slider_crank_of(random: Random, a: Array, b: Array, e: Array, psi: Array, theta2: float, friction: bool) -> Designs:
-    """ψ is the crank's angle from the guide's left normal."""
+    """Return slider-cranks with the crank at ψ from the guide's left normal."""
     n = len(a)
     numbers = _link(random, "crank", a) | _link(random, "rod", b) | _motion(random, n, a)
     mass = decades(random, n, -1.0, 1.0)
@@ -267,7 +267,7 @@ def slider_with_friction(random: Random, n: int) -> Designs:
 
 
 def slider_toggle(random: Random, n: int) -> Designs:
-    """1e-12 to 0.1 rad from the rod's square to the guide."""
+    """Return slider-cranks with the rod 1e-12 to 0.1 rad from perpendicular to the guide."""
     theta2, psi, a, e = _slider_parts(random, n)
     b = np.abs(e - a * np.cos(psi))
     growing = np.where((e - a * np.cos(psi)) * np.sin(psi) > 0.0, 1.0, -1.0)
@@ -276,7 +276,7 @@ def slider_toggle(random: Random, n: int) -> Designs:
 
 
 def slider_barely(random: Random, n: int) -> Designs:
-    """The rod is 1e-15 to 1e-2 longer than crank and offset, or as long as the crank, near where it stands square."""
+    """Return slider-cranks whose rod is 1e-15 to 1e-2 longer than crank and offset, or equals it, near toggles."""
     theta2, _, a, e = _slider_parts(random, n)
     psi = decades(random, n, -6.0, 0.0) * random.choice([-1.0, 1.0], n) + np.where(e > 0.0, np.pi, 0.0)
     b = (a + np.abs(e)) * (1.0 + decades(random, n, -15.0, -2.0) * random.integers(0, 2, n))
@@ -284,7 +284,7 @@ def slider_barely(random: Random, n: int) -> Designs:
 
 
 def slider_dead_centre(random: Random, n: int) -> Designs:
-    """The rod drives, and stands nearly still: the crank 1e-12 to 0.1 rad from square to the guide."""
+    """Return slider-cranks driven at a nearly still rod: the crank 1e-12 to 0.1 rad from perpendicular to the guide."""
     theta2, _, a, e = _slider_parts(random, n)
     psi = decades(random, n, -12.0, -1.0) * random.choice([-1.0, 1.0], n) + np.pi * random.integers(0, 2, n)
     b = (a + np.abs(e)) * (1.0 + decades(random, n, -1.5, 0.5))
@@ -315,7 +315,7 @@ def inverted(random: Random, n: int) -> Designs:
 
 
 def inverted_toggle(random: Random, n: int) -> Designs:
-    """1e-12 to 0.1 rad from where D→B is square to the line."""
+    """Return inverted slider-cranks 1e-12 to 0.1 rad from where D→B is perpendicular to the line."""
     theta2, psi, a, d = _inverted_parts(random, n)
     growing = np.where(np.sin(psi) > 0.0, 1.0, -1.0)
     e = _diagonal(a, d, psi - growing * decades(random, n, -12.0, -1.0))
@@ -323,7 +323,7 @@ def inverted_toggle(random: Random, n: int) -> Designs:
 
 
 def inverted_close(random: Random, n: int) -> Designs:
-    """B passes D at 1e-9 to 0.1 of the lengths."""
+    """Return inverted slider-cranks whose B passes D at 1e-9 to 0.1 of the lengths."""
     theta2, _, a, _ = _inverted_parts(random, n)
     psi = decades(random, n, -6.9, -1.0) * random.choice([-1.0, 1.0], n)
     d = a * (1.0 + decades(random, n, -9.0, -1.0) * random.choice([-1.0, 1.0], n))
@@ -357,6 +357,6 @@ FAMILIES: dict[str, Family] = {
 
 
 def chunks(family: Family, count: int, size: int, seed: list[int]) -> Iterator[Designs]:
-    """So many designs of a family, `size` at one crank angle."""
+    """Yield `count` designs of a family, `size` at one crank angle."""
     for k in range(0, count, size):
         yield family(np.random.default_rng([*seed, k]), min(size, count - k))

@@ -1,10 +1,10 @@
-"""Four-bar, slider-crank and inverted slider-crank by the textbook's way: circles that intersect, velocities and
+"""Solve four-bar, slider-crank and inverted slider-crank by textbook formulas: circles that intersect, velocities and
 accelerations from the loop, forces from Newton's and Euler's equations about each link's centre of gravity.
 
-Nothing here knows the product, nor its tricks: 50 digits need none. `x` holds a scene's numbers by name, angles as unit
-vectors; what is found goes by the product's names, and `mu`, `grip` are the sines (or shares of the lengths) that
-vanish at a toggle and where the drive has no hold. With q = m(a_G − g) − P the force that a link's pins must give, and
-K the moment about its first pin that they must:
+Independent of linksweep and its numerical tricks: 50 digits need none. `x` holds a scene's numbers by name, angles as
+unit vectors; results have linksweep's names, and `mu`, `grip` are the sines (or fractions of the lengths) that vanish
+at a toggle and at a dead centre of the drive. With q = m(a_G − g) − P the force that a link's pins must supply, and K
+the moment about its first pin that they must supply:
 
     F12 + F32 = q2    r2 × F32 (+ T12) = K2
     F43 − F32 = q3    r3 × F43 (+ T13) = K3
@@ -46,13 +46,13 @@ def four_bar(x: Numbers, root: Root = root) -> Results:
     lever = p.cross(q)
     F43 = Vector(*((q.x * p_moment - p.x * q_moment) / lever, (q.y * p_moment - p.y * q_moment) / lever))
     drive = driven_K - driven.cross(F43)
-    found = {"omega3": omega3, "omega4": omega4, "alpha3": alpha3, "alpha4": alpha4}
-    found |= {
+    results = {"omega3": omega3, "omega4": omega4, "alpha3": alpha3, "alpha4": alpha4}
+    results |= {
         "drive": -drive if x["drive"] == "rocker" else drive,
         "mu": det / (b * c),
         "grip": lever / (p_length * q_length),
     }
-    return found | _pins(F43, q2, q3, q4)
+    return results | _pins(F43, q2, q3, q4)
 
 
 def slider_crank(x: Numbers, root: Root = root) -> Results:
@@ -78,9 +78,9 @@ def slider_crank(x: Numbers, root: Root = root) -> Results:
     N = right_side / (p.cross(across) - k * p.cross(guide))
     F14 = across * N - guide * (k * N)
     F43 = F14 - q4
-    found = {"omega3": omega3, "alpha3": alpha3, "v_slider": speed, "a_slider": acceleration}
-    found |= {"drive": driven_K - driven.cross(F43), "mu": q / (a + b), "grip": p.cross(across) / length}
-    return found | _pins(F43, q2, q3, q4)
+    results = {"omega3": omega3, "alpha3": alpha3, "v_slider": speed, "a_slider": acceleration}
+    results |= {"drive": driven_K - driven.cross(F43), "mu": q / (a + b), "grip": p.cross(across) / length}
+    return results | _pins(F43, q2, q3, q4)
 
 
 def inverted_slider_crank(x: Numbers, root: Root = root) -> Results:
@@ -98,21 +98,21 @@ def inverted_slider_crank(x: Numbers, root: Root = root) -> Results:
     q4, K4 = _balance(x, "rocker", u, omega4, alpha4, r2 * 0)
     T43 = x["block_inertia"] * alpha4
     F43 = u.left * (-(K4 + T43) / slide)
-    found = {"omega4": omega4, "alpha4": alpha4, "slide_velocity": speed}
-    found |= {"drive": K2 - r2.cross(F43 - q3), "mu": slide / (a + d)}
-    return found | _pins(F43, q2, q3, q4)
+    results = {"omega4": omega4, "alpha4": alpha4, "slide_velocity": speed}
+    results |= {"drive": K2 - r2.cross(F43 - q3), "mu": slide / (a + d)}
+    return results | _pins(F43, q2, q3, q4)
 
 
 MACHINES = {"four-bar": four_bar, "slider-crank": slider_crank, "inverted slider-crank": inverted_slider_crank}
 
 
 def _crank_pin(x: Numbers, r2: Vector) -> tuple[Vector, Vector]:
-    """Velocity and acceleration of B."""
+    """Return velocity and acceleration of B."""
     return r2.left * x["omega2"], r2.left * x["alpha2"] - r2 * (x["omega2"] * x["omega2"])
 
 
 def _balance(x: Numbers, role: str, line: Vector, omega: Number, alpha: Number, pin: Vector) -> tuple[Vector, Number]:
-    """q and K of a link, from the direction of its line of pins, its rates and the acceleration of its first pin."""
+    """Return q and K of a link, from the direction of its line of pins, its rates and its first pin's acceleration."""
     rG = (x[f"{role}_cg_angle"] * x[f"{role}_cg_distance"]).turned(line)
     q = (pin + rG.left * alpha - rG * (omega * omega) - x["gravity"]) * x[f"{role}_mass"]
     K = rG.cross(q) + x[f"{role}_inertia"] * alpha

@@ -1,9 +1,9 @@
-"""What the tests are worth: slips planted one at a time in a copy of the package, each of which they must catch.
+"""Test the tests: slips planted one at a time in a copy of the package, each of which they must catch.
 
 ``python -m benchmarks.stress.mutants`` runs all of `mutants.toml`, in some minutes, and prints which test caught which;
-``--only WORDS`` those whose description has these words. The exit code is 1 where a mutant survives.
+``--only WORDS`` runs those whose description contains the words. The exit code is 1 where a mutant survives.
 
-Tests that fail without any mutant are named first and then left out: what they catch would say nothing.
+Tests that fail without any mutant are listed first and then excluded: their failures would prove nothing.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 LIST = Path(__file__).with_suffix(".toml")
 TAKEN = ("linksweep", "tests", "benchmarks", "pyproject.toml")
-"""What the tests need of the project."""
+"""Files of the project that the tests need."""
 ALL_IN_TURN = ("-p", "no:cacheprovider", "-n", "0", "-m", "")
-"""Options of pytest: long tests too, and one after the other, so that -x names the first that fails."""
+"""Options of pytest: long tests too, and one after the other, so that -x names the first failure."""
 FOREVER = 600.0
 """Seconds after which tests that do not end count as failed."""
 NO_TESTS = 5
-"""What pytest ends with where all tests are left out: nothing then catches anything."""
+"""Exit code of pytest where all tests are deselected: then nothing catches anything."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A slip: in this file of the package, `old` becomes `new`; these files of tests should notice."""
+    """A slip: in this file of the package, `old` becomes `new`; these test files should notice."""
 
     what: str
     file: str
@@ -44,7 +44,9 @@ class Mutant:
     tests: tuple[str, ...]
 
     def planted(self, text: str) -> str:
-        """The text of the file with the slip. Raises ValueError where `old` does not stand there exactly once."""
+        """Return the text of the file with the slip; ValueError where `old` does not occur exactly once.
+        -: what it changes stands {count} times in
+        +: its `old` occurs {count} times in"""
         if (count := text.count(self.old)) != 1:
             raise ValueError(f'"{self.what}": what it changes stands {count} times in linksweep/{self.file}, not once')
         return text.replace(self.old, self.new)
@@ -52,13 +54,13 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Copy:
-    """A copy of the project to spoil; `red` are tests that fail in it as it stands."""
+    """A copy of the project to spoil; `red` are tests that fail in it unchanged."""
 
     folder: Path
     red: tuple[str, ...] = ()
 
     def failures(self, tests: Iterable[str], *options: str) -> list[str]:
-        """Tests of these files that fail."""
+        """Return the tests of these files that fail."""
         left_out = [f"--deselect={name}" for name in self.red]
         command = [sys.executable, "-m", "pytest", *ALL_IN_TURN, "--tb=no", "-rfE", *options, *left_out]
         # no .pyc: a source planted and restored within a second would be taken for the same
@@ -89,20 +91,20 @@ class Copy:
             path.write_text(sound, encoding="utf-8")
 
     def catcher(self, mutant: Mutant) -> str | None:
-        """The test that catches a mutant, or None where it survives."""
+        """Return the test that catches a mutant, or None where it survives."""
         with self.planted(mutant):
             return next(iter(self.failures(mutant.tests, "-x")), None)
 
 
 def mutants(path: Path = LIST) -> list[Mutant]:
-    """The list."""
+    """Return the mutants of the list."""
     listed = tomllib.loads(path.read_text(encoding="utf-8"))["mutants"]
     return [Mutant(**{**words, "tests": tuple(words["tests"])}) for words in listed]
 
 
 @contextmanager
 def copied() -> Iterator[Copy]:
-    """A copy of the project in a temporary folder."""
+    """Yield a copy of the project in a temporary folder."""
     with tempfile.TemporaryDirectory(prefix="linksweep-mutants-") as folder:
         for name in TAKEN:
             source, target = ROOT / name, Path(folder) / name
@@ -114,9 +116,9 @@ def copied() -> Iterator[Copy]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Plant the mutants one by one and print what becomes of them; 1 where one survives, or a test fails without."""
+    """Plant the mutants one by one and print the results; return 1 where one survives, or a test fails without any."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.stress.mutants", description="What the tests are worth."
+        prog="python -m benchmarks.stress.mutants", description="Test the tests: planted slips."
     )
     parser.add_argument("--only", metavar="WORDS", default="", help="mutants whose description has these words")
     only = parser.parse_args(arguments).only

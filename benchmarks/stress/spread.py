@@ -1,8 +1,8 @@
-"""How far the exact answer moves when inputs move by their last digit, to first order: Σ |∂/∂x| ulp(x).
+"""Propagate the last digits of the inputs to the results, to first order: Σ |∂/∂x| ulp(x).
 
-That is half the width of what answers there are to questions nobody can tell apart. Errors in units of it, and of the
-last digit of the answer itself, are mixed forward-backward errors (N. J. Higham, Accuracy and Stability, section 1.5):
-of a nearly right answer to a nearly right question. They stay O(1) where a problem is nearly singular.
+This is half the width of the set of results for inputs that cannot be told apart. Errors in units of it plus the
+result's own last digit are mixed forward-backward errors (N. J. Higham, Accuracy and Stability, section 1.5): of a
+nearly right answer to a nearly right question. They stay O(1) where a problem is nearly singular.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from benchmarks.stress.decimals import Array
 
 
 class FirstOrder:
-    """A number of each design, and what it changes by with the last digit of each input: (n,) and (inputs, n)."""
+    """A number of each design, and its change with the last digit of each input: (n,) and (inputs, n)."""
 
     __slots__ = ("parts", "value")
     __array_ufunc__ = None
@@ -42,7 +42,7 @@ class FirstOrder:
         return FirstOrder(value, (self.parts - value * other.parts) / other.value)
 
     def root(self, value: Array | None = None) -> FirstOrder:
-        """Square root, whose value may be known better than this arithmetic does."""
+        """Return the square root, with a value that may be known more precisely."""
         value = np.sqrt(self.value) if value is None else value
         return FirstOrder(value, self.parts / (2.0 * value))
 

@@ -1,4 +1,4 @@
-"""Figures of many calls by family, against the goals, as a table."""
+"""Tally the errors of many sweeps by family, against the goals, as a table."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.stress.decimals import Array
-from benchmarks.stress.judge import Verdict
+from benchmarks.stress.errors import Errors
 
 
 class Goal(NamedTuple):
-    """The largest figure allowed, and the largest of 99 in 100 samples."""
+    """The largest figure allowed, and the largest allowed in 99 of 100 samples."""
 
     most: float
     nearly_all: float | None = None
@@ -30,7 +30,7 @@ GOALS = {
     "bound": Goal(1.0),
 }
 NEAR = 1e-3
-"""Of an error bound, what nine errors in ten exceed."""
+"""Fraction of its bound that an error exceeds in nine of ten samples."""
 HEADER = (
     "family", "designs", "ok", "mixed: 99 %, max", "of the torque", "9×9: normwise, max", "componentwise: 99 %, max",
     "force, μ³", "torque, μ³", "power, μ", "error / bound, max", "bound within 1000×", "wrong",
@@ -43,9 +43,9 @@ class Tally:
     wrong: int = 0
     parts: list[dict[str, Array]] = field(default_factory=list)
 
-    def add(self, verdict: Verdict) -> None:
-        self.samples, self.wrong = self.samples + verdict.samples, self.wrong + verdict.wrong
-        self.parts.append({name: figure.astype(np.float32) for name, figure in verdict.figures.items()})
+    def add(self, errors: Errors) -> None:
+        self.samples, self.wrong = self.samples + errors.samples, self.wrong + errors.wrong
+        self.parts.append({name: figure.astype(np.float32) for name, figure in errors.figures.items()})
 
     def __add__(self, other: Tally) -> Tally:
         return Tally(self.samples + other.samples, self.wrong + other.wrong, self.parts + other.parts)
@@ -54,19 +54,19 @@ class Tally:
         return np.concatenate([part[name] for part in self.parts])
 
     def missed(self) -> list[str]:
-        """Goals that are not reached."""
-        found = ["samples are judged wrongly"] if self.wrong else []
+        """Return the goals that are missed."""
+        problems = ["samples have a wrong status or value"] if self.wrong else []
         for name, goal in GOALS.items():
             values = self.figure(name)
             if not values.max() <= goal.most:
                 beyond = int((values > goal.most).sum())
-                found.append(f"{name}: {values.max():.3g} > {goal.most:g}, in {beyond} of {len(values):,}")
+                problems.append(f"{name}: {values.max():.3g} > {goal.most:g}, in {beyond} of {len(values):,}")
             if goal.nearly_all is not None and not np.quantile(values, 0.99) <= goal.nearly_all:
-                found.append(f"{name}: 99 % {np.quantile(values, 0.99):.3g} > {goal.nearly_all:g}")
-        return found + ([] if self.near() >= 0.9 else [f"bound: {self.near():.1%} within 1000 times the error"])
+                problems.append(f"{name}: 99 % {np.quantile(values, 0.99):.3g} > {goal.nearly_all:g}")
+        return problems + ([] if self.near() >= 0.9 else [f"bound: {self.near():.1%} within 1000 times the error"])
 
     def near(self) -> float:
-        """Share of samples whose bound is within a thousand times the error, or half a last digit."""
+        """Return the fraction of samples whose bound is within a thousand times the error, or half a last digit."""
         return float((self.figure("bound") >= NEAR).mean())
 
     def cells(self, family: str) -> tuple[str, ...]:
@@ -80,7 +80,7 @@ class Tally:
 
 
 def table(tallies: Mapping[str, Tally]) -> str:
-    """Markdown, a family a row, and all of them together."""
+    """Return a Markdown table with a row per family, and one of all."""
     total = sum(tallies.values(), Tally())
     lines = [HEADER, *(tally.cells(name) for name, tally in tallies.items()), total.cells("**all**")]
     rows = ["| " + " | ".join(line) + " |" for line in lines]

@@ -16,10 +16,10 @@ from long import long_but
 from benchmarks.accuracy import digits as accuracy
 from benchmarks.speed.kernel import way
 from benchmarks.stress import __main__ as front_door
-from benchmarks.stress import conservative, judge
+from benchmarks.stress import conservative, errors
 from benchmarks.stress.designs import FORCES, LINKS, Designs
+from benchmarks.stress.errors import errors_of
 from benchmarks.stress.families import FAMILIES, chunks
-from benchmarks.stress.judge import verdict
 from benchmarks.stress.tally import Tally
 
 
@@ -39,7 +39,7 @@ def drawn(family: str, count: int, seed: int = 7) -> Designs:
 
 @pytest.mark.parametrize("count", long_but([1_000, 10_000], 1_000))
 def test_mechanisms_reach_the_goals(count):
-    tallies = front_door.judged(FAMILIES, count, seed=2026)
+    tallies = front_door.tallied(FAMILIES, count, seed=2026)
     assert {name: tally.wrong for name, tally in tallies.items()} == dict.fromkeys(FAMILIES, 0)
     every = sum(tallies.values(), Tally())
     assert every.samples >= count
@@ -54,7 +54,7 @@ def test_mechanisms_reach_the_goals(count):
 )
 def test_torque_and_pin_forces_agree_near_a_dead_centre(family, seed):
     """Torque from virtual work alone left backward errors of 34 and 62 ε in the norm, 431 and 177 ε by number."""
-    figures = verdict(drawn(family, 500, seed)).figures
+    figures = errors_of(drawn(family, 500, seed)).figures
     assert figures["normwise"].max() < 1.0
     assert figures["backward"].max() < 10.0
 
@@ -145,15 +145,15 @@ def differences(designs: Designs, number: str, values: np.ndarray, exact: dict) 
 @pytest.mark.parametrize("wrong_by", [1e-13, -1e-13])
 def test_a_last_digit_too_many_is_seen(monkeypatch, wrong_by):
     """The suite is no formality: forces that are off by 450 ε reach no goal."""
-    answers = judge.answers
+    answers = errors.answers
 
     def slightly_wrong(designs, threads=None):
         cycle = answers(designs, threads)
         return cycle.assign({name: cycle[name] * (1.0 + wrong_by) for name in FORCES})
 
-    monkeypatch.setattr(judge, "answers", slightly_wrong)
+    monkeypatch.setattr(errors, "answers", slightly_wrong)
     tally = Tally()
-    tally.add(verdict(drawn("general", 200)))
+    tally.add(errors_of(drawn("general", 200)))
     missed = " ".join(tally.missed())
     assert all(name in missed for name in ("mixed", "force", "bound", "backward"))
     assert "torque" not in missed
@@ -161,14 +161,14 @@ def test_a_last_digit_too_many_is_seen(monkeypatch, wrong_by):
 
 def test_a_status_against_reason_is_seen(monkeypatch):
     """An answer where nothing closes, and none where all is well."""
-    answers = judge.answers
+    answers = errors.answers
 
     def contrary(designs, threads=None):
         cycle = answers(designs, threads)
         return cycle.assign(status=(cycle.status == 0).astype("int8"))
 
-    monkeypatch.setattr(judge, "answers", contrary)
-    assert verdict(drawn("general", 20)).wrong == 20
+    monkeypatch.setattr(errors, "answers", contrary)
+    assert errors_of(drawn("general", 20)).wrong == 20
 
 
 def test_the_command_prints_a_row_for_each_family(capsys):

@@ -1,8 +1,8 @@
-"""Attacks: what was tried to break linksweep, each a module that can be run for a second or for an hour.
+"""Attacks: attempts to break linksweep, each a module that can be run for a second or for an hour.
 
-A module has ``TITLE`` (what is tried), ``ROUNDS`` (of a long run), ``SMALL`` (of the test that runs with every
-change; 0 where even one takes long) and ``attack(random, rounds) -> Outcome``. Every module of this folder is found
-by itself.
+A module has ``TITLE`` (a sentence), ``ROUNDS`` (of a long run), ``SMALL`` (rounds of the test that runs with every
+change; 0 where even one takes long) and ``attack(random, rounds) -> Outcome``. Every module of this folder is
+registered automatically.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 
 
 class Outcome(NamedTuple):
-    """How many things were tried, and a sentence about each that went wrong."""
+    """Number of attempts, and a sentence about each failure."""
 
     tried: int
     failures: list[str]
 
 
 class Attack(NamedTuple):
-    """A module of this folder."""
+    """An attack: a module of this folder."""
 
     name: str
     title: str

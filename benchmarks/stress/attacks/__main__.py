@@ -1,4 +1,4 @@
-"""python -m benchmarks.stress.attacks [--only WORD] [--rounds N] [--small] [--seed S] [--write]."""
+"""Run the attacks: python -m benchmarks.stress.attacks [--only WORD] [--rounds N] [--small] [--seed S] [--write]."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ RESULTS = Path(__file__).parents[2] / "ATTACKS.md"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the attacks and print what they tried and what went wrong; return 1 where anything did."""
+    """Run the attacks and print attempts and failures; return 1 where any failed."""
     options = _parser().parse_args(arguments)
     chosen = [attack for attack in attacks() if options.only in attack.name and _rounds(attack, options)]
     outcomes = []
     for attack in chosen:
         outcomes.append(attack.run(np.random.default_rng(options.seed), _rounds(attack, options)))
         print(_row(attack, outcomes[-1]), flush=True)
-        print(*(f"  {failure}" for failure in outcomes[-1].failures), sep="\n", end="\n" * bool(outcomes[-1].failures))
+        for failure in outcomes[-1].failures:
+            print(f"  {failure}")
     if options.write:
         rows = [_row(attack, outcome) for attack, outcome in zip(chosen, outcomes, strict=True)]
         RESULTS.write_text("\n".join([_head(options), "", "| attack | tried | failed |", "|---|---|---|", *rows, ""]))
@@ -39,9 +40,9 @@ def _row(attack: Attack, outcome: Outcome) -> str:
 
 def _head(options: argparse.Namespace) -> str:
     words = (
-        f" --only {options.only}" * bool(options.only)
-        + f" --rounds {options.rounds}" * bool(options.rounds)
-        + " --small" * options.small
+        (f" --only {options.only}" if options.only else "")
+        + (f" --rounds {options.rounds}" if options.rounds else "")
+        + (" --small" if options.small else "")
     )
     return f"# Attacks\n\nWritten by `python -m benchmarks.stress.attacks --seed {options.seed}{words} --write`."
 

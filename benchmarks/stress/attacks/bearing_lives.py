@@ -1,4 +1,4 @@
-"""Random machines, near toggles too: is the life of each bearing that of a sum over very many samples, or none?"""
+"""Compare the life of each bearing of random machines, near toggles too, with a sum over very many samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Random = np.random.Generator
 FEW, MANY = 7, 30_000
 EXPONENT = 3.0
 OF_JUMPS, ROUNDING = 1e-5, 1e-9
-"""Of a load: what samples tell of it where forces jump between two of them, and at best."""
+"""Relative error of a load from samples: where forces jump between two of them, and at best."""
 
 
 def attack(random: Random, rounds: int) -> Outcome:
@@ -29,15 +29,15 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def wrong_lives(scene: ls.Scene) -> Iterator[str]:
-    """Yield a sentence about each pin whose life is not that of many samples."""
+    """Yield a sentence about each pin whose life differs from that of many samples."""
     pins = scene.mechanism.pins
     forces = {pin: f"F{i}{j}" for pin, (i, j) in pins.items()}
-    found = ls.bearings(scene, dict.fromkeys(pins, ls.Bearing(capacity=1e4)), theta2=FEW)
+    bearings_ds = ls.bearings(scene, dict.fromkeys(pins, ls.Bearing(capacity=1e4)), theta2=FEW)
     worst, half, whole = ls.peaks(scene, list(forces.values())), *(_loads(scene, forces, n) for n in (MANY, 2 * MANY))
     for pin, force in forces.items():
         status, load, peak = (
-            int(found.life_status.sel(pin=pin)),
-            found.equivalent_load.sel(pin=pin),
+            int(bearings_ds.life_status.sel(pin=pin)),
+            bearings_ds.equivalent_load.sel(pin=pin),
             worst[f"{force}_peak"],
         )
         if (status == 3) != bool(np.isinf(peak)):
@@ -48,7 +48,7 @@ def wrong_lives(scene: ls.Scene) -> Iterator[str]:
 
 
 def _loads(scene: ls.Scene, forces: dict[str, str], count: int) -> dict[str, float]:
-    """Equivalent load of each pin by so many samples."""
+    """Return the equivalent load of each pin from `count` samples."""
     angles = (np.arange(count) + 0.5) * (scene.period / count)
     cycle = ls.sweep(scene, angles, [*forces.values(), *(f"omega_{pin}" for pin in forces)])
     loads = {}
@@ -59,7 +59,7 @@ def _loads(scene: ls.Scene, forces: dict[str, str], count: int) -> dict[str, flo
 
 
 def _four_bar(random: Random) -> ls.Scene:
-    """Of any class; every third one near a change from one class to another."""
+    """Return a four-bar of any class; every third one is near a change from one class to another."""
     a, b, c = random.uniform(0.05, 0.3, 3)
     closest = np.array([b + c - a, a + abs(b - c), a + b - c, a + c - b])
     grounds = closest[closest > 0.02] + random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-6.0, -2.0)

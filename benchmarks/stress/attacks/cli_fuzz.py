@@ -1,4 +1,4 @@
-"""Random commands with random options and bad numbers: exit code 0 or 2, one clean message, never a traceback."""
+"""Run random commands with random options and bad numbers: exit code 0 or 2, one clean message, never a traceback."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ OPTIONS: dict[str, tuple[tuple[str, str, Sequence[str]], ...]] = {
     "flywheel": (("--fluctuation", "0.02", NUMBERS),),
     "nothing": (),
 }
-"""Of each command its options: how they begin, a good value, and others."""
+"""Options of each command: the flag, a good value, and others."""
 NEEDED = ("-o", "--radius", "--theta2", "")
 COMMANDS = [*OPTIONS]
 
@@ -79,7 +79,7 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 
 
 def _furnish() -> None:
-    """Make the files that the commands are given."""
+    """Create the files that the commands read."""
     for name in names():
         text = (files("linksweep.scene.examples") / f"{name}.toml").read_text(encoding="utf-8")
         for path in (f"{name}.toml", "b\udcff.toml"):
@@ -105,15 +105,15 @@ def _one_of(values: Sequence[str], random: np.random.Generator) -> str:
 
 
 def _problems(words: list[str]) -> list[str]:
-    out, told = io.StringIO(), io.StringIO()
+    out, errors = io.StringIO(), io.StringIO()
     try:
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(told), warnings.catch_warnings():
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors), warnings.catch_warnings():
             warnings.simplefilter("error")
             code = main(words)
     except SystemExit as ended:  # argparse
         code = ended.code
     except BaseException as error:
         return [f"{type(error).__name__}: {error} {traceback.extract_tb(error.__traceback__)[-1]}"]
-    message = told.getvalue()
+    message = errors.getvalue()
     clean = "Traceback" not in message and max(map(len, message.split("\n"))) < 10_000 and bool(message) == bool(code)
     return [] if code in (0, 2) and clean else [f"exit code {code}, {message[:300]!a}"]

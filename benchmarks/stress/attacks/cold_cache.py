@@ -1,4 +1,4 @@
-"""Six processes at once that find no compiled kernels and all make them: equal results, nothing left half written."""
+"""Start six processes with an empty cache that all compile kernels: equal results, nothing left half written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A kept kernel that is damaged, or not the user's alone: it is compiled afresh, kept again, and gives its number."""
+"""Damage a cached kernel, or let others write it: it is compiled afresh, cached again, and gives its number."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _problems(damage: Callable[[Path, np.random.Generator], None], random: np.ra
 
 
 def _root_of_two() -> float:
-    """Compile a kernel, or fetch it from the cache, as a new process would."""
+    """Compile a kernel, or load it from the cache, as a new process would."""
     x = np.array([2.0])
     kernels.compiled.__wrapped__(SOURCE, "", "void(f8[::1])")(x)
     return float(x[0])

@@ -1,4 +1,4 @@
-"""Workers of a cluster killed while they compute a study: it ends as the same file, nothing left behind."""
+"""Kill workers of a cluster while they compute a study: it ends as an equal file, with nothing left behind."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ ROUNDS, SMALL = 60, 0
 
 CHUNK, DESIGNS = 4, 40
 KILLS = 2
-"""Of one study: the scheduler gives a chunk up that three workers died of."""
+"""Most kills in one study: the scheduler gives up a chunk on which three workers died."""
 PAUSE = 0.02
-"""Seconds that each chunk takes longer, so that workers are killed at work."""
+"""Seconds added to each chunk, so that workers are killed while computing."""
 
 
 def attack(random: np.random.Generator, rounds: int) -> Outcome:
@@ -58,7 +58,7 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 
 
 def _kill(cluster: Any, pauses: np.ndarray, places: np.ndarray) -> None:
-    """Kill a worker after each pause, if it is there; its nanny starts another."""
+    """Kill a worker after each pause, if it runs; its nanny starts another."""
     for pause, place in zip(pauses, places, strict=True):
         time.sleep(float(pause))
         with contextlib.suppress(ProcessLookupError):

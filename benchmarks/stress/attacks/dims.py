@@ -1,4 +1,4 @@
-"""Designs along up to thirty dims, laid out over several parameters: do they get the numbers that each gets alone?"""
+"""Spread designs along up to thirty dims over several parameters: each must get the numbers that it gets alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SMALL = 5
 Random = np.random.Generator
 DIMS = [f"d{k}" for k in range(30)]
 LONG = 3
-"""Dims of more than one design, at most."""
+"""Most dims with more than one design."""
 OF = ["F32", "T12"]
 
 
@@ -33,7 +33,7 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def _scene(random: Random) -> ls.Scene:
-    """A press with speed, mass and gravity over some dims each, which they may share."""
+    """Return a press with speed, mass and gravity over some dims each, which they may share."""
     sizes = dict.fromkeys(DIMS, 1) | dict.fromkeys(map(str, random.choice(DIMS, LONG)), 2)
     press = ls.example("press")
     coupler = ls.Link(0.22, _over(random, sizes, 0.5, 1.0), 2e-3, 0.11)

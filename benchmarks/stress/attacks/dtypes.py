@@ -1,4 +1,4 @@
-"""Numbers of every dtype in every place: is the scene that of the same values in float64, to the bit?"""
+"""Pass numbers of every dtype in every place: the scene must equal that of the values in float64, to the bit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def _in_dtypes(random: Random, scene: ls.Scene) -> tuple[ls.Scene, ls.Scene]:
-    """Return a scene of numbers drawn, in float64, and the same numbers each in a dtype of its own."""
+    """Return a scene of random numbers in float64, and one of the numbers each in a dtype of its own."""
     expected, other = {}, {}
     for path, (value, _) in free(scene).items():
         if isinstance(value, float):

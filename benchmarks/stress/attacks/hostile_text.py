@@ -1,4 +1,4 @@
-"""Scene files and CSV columns cut, flipped, stuffed with odd and huge values: a scene, or a clean ValueError, soon."""
+"""Cut, flip and stuff scene files and CSV columns with odd and huge values: a scene, or a clean ValueError, soon."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROUNDS, SMALL = 5000, 40
 SOON = 20
 """Seconds that reading a file and one short sweep may take."""
 LONGEST = 500
-"""Characters that a line of a message may have; there is one for each thing that is wrong."""
+"""Most characters in a line of a message; there is one line per problem."""
 EXAMPLES = [(files("linksweep.scene.examples") / f"{name}.toml").read_text() for name in ("press", "engine", "loop")]
 COLUMN = "theta2,P\n" + "".join(f"{angle},{angle % 70}\n" for angle in range(0, 360, 15))
 LOAD = '\n[[loads]]\nlink = "coupler"\ninterpolation = "linear"\ntorque = {csv = "a.csv", unit = "N m"}\n'
@@ -66,14 +66,14 @@ def twice(text: str, random: np.random.Generator) -> str:
 
 
 def odd_value(text: str, random: np.random.Generator) -> str:
-    """Put another value behind one of the equals signs."""
+    """Replace the value behind one of the equals signs."""
     lines = text.split("\n")
     at = int(random.choice([k for k, line in enumerate(lines) if "=" in line]))
     return "\n".join([*lines[:at], f"{lines[at].split('=')[0]}= {ODD[random.integers(len(ODD))]}", *lines[at + 1 :]])
 
 
 def odd_cell(text: str, random: np.random.Generator) -> str:
-    """Put another cell into one of the lines of a CSV file."""
+    """Replace a cell in one of the lines of a CSV file."""
     lines = text.split("\n")
     at, cell = int(random.integers(len(lines))), CELLS[random.integers(len(CELLS))]
     cells = lines[at].split(",")

@@ -1,4 +1,4 @@
-"""Processes killed while they save, or study: the file is one of the whole ones, a study ends as the same file."""
+"""Kill processes that save, or study: the file is one of the whole ones, a study ends as an equal file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROUNDS, SMALL = 400, 6
 
 CHUNK = 4
 LONGEST = 0.3
-"""Seconds after which a process is killed at the latest."""
+"""Longest time before a process is killed [s]."""
 
 
 def attack(random: np.random.Generator, rounds: int) -> Outcome:
@@ -48,7 +48,7 @@ def _saves(folder: Path, random: np.random.Generator, kills: int) -> list[str]:
 
 
 def _studies(folder: Path, random: np.random.Generator, kills: int) -> list[str]:
-    """Kill a study again and again; each that ends is compared, and another begun."""
+    """Kill a study again and again; compare each that ends, and begin another."""
     _study(folder / "reference.nc")
     reference, problems, number = (folder / "reference.nc").read_bytes(), [], 0
     while kills > 0:

@@ -1,4 +1,4 @@
-"""Odd names of dims and odd labels: either the scene refuses them, or every kind of file gives them back."""
+"""Use odd names of dims and odd labels: either the scene refuses them, or every kind of file restores them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _name(random: Random) -> str:
 
 
 def _labels(random: Random) -> Any:
-    """Return two labels: of one dtype, of anything, texts of odd signs, or an index of pandas."""
+    """Return two labels: of one dtype, of any kind, texts of odd signs, or an index of pandas."""
     kind = random.integers(4)
     if kind == 0:
         return random.integers(0, 100, 2).astype(str(random.choice(DTYPES)))
@@ -62,10 +62,10 @@ def _labels(random: Random) -> Any:
 
 
 def _kept(name: str, labels: Any) -> Iterator[str]:
-    """Yield what goes wrong with a scene over a dim of this name and these labels, if anything does."""
+    """Yield the problems of a scene over a dim of this name and these labels."""
     try:
         omega2 = xr.DataArray([10.0, 20.0], {name: (name, labels)}, name)
-    except Exception:  # xarray itself takes none of it
+    except Exception:  # xarray itself refuses it
         return
     try:
         scene = replace(ls.example("press"), omega2=omega2)

@@ -1,6 +1,6 @@
-"""Loads that turn over within a fraction of a degree: ends that pass close by, and narrow pulses.
+"""Apply loads that reverse within a fraction of a degree: ends that pass closely, and narrow pulses.
 
-What is found is held against brute force: samples every 1e-4 degree, and others that close in on the narrow place.
+Peaks are compared with brute force: samples every 1e-4 degree, and others that close in on the narrow place.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from benchmarks.stress.attacks import Outcome
 TITLE = "springs and dampers whose ends pass close by, and narrow functions"
 ROUNDS, SMALL = 400, 8
 DESIGNS = 4
-"""Of one scene: they share its form."""
+"""Designs of one scene: they share its form."""
 LEAST = 60
 """Rounds from which brute force has its finest step."""
 ALLOWED = 1e-9
@@ -25,7 +25,7 @@ ALLOWED = 1e-9
 Array = np.ndarray
 Random = np.random.Generator
 Made = tuple[ls.Scene, float]
-"""A scene, and where its loads are narrow [degree]."""
+"""A scene, and the angle where its loads are narrow [degree]."""
 
 
 def attack(random: Random, rounds: int) -> Outcome:
@@ -40,14 +40,14 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def _missed(scene: ls.Scene, place: float, step: float) -> Iterator[str]:
-    """Peaks that fall short of a sample, or whose bound does."""
+    """Yield peaks that fall short of a sample, or whose bound does."""
     names = [name for name in scene.mechanism.peak_quantities(scene.drive) if "_" not in name]
-    found = ls.peaks(scene, of=[*names, *(f"{name}_bound" for name in names)])
+    peaks_ds = ls.peaks(scene, of=[*names, *(f"{name}_bound" for name in names)])
     brute = ls.peaks(scene, of=names, theta2=_angles(scene.period, place, step))
     for name in names:
-        peak, most = found[f"{name}_peak"].values, brute[f"{name}_peak"].values
+        peak, most = peaks_ds[f"{name}_peak"].values, brute[f"{name}_peak"].values
         short = np.broadcast_to((most - peak) / most, (DESIGNS,))
-        beyond = np.broadcast_to(most - peak - found[f"{name}_bound"].values, (DESIGNS,))
+        beyond = np.broadcast_to(most - peak - peaks_ds[f"{name}_bound"].values, (DESIGNS,))
         for k in np.flatnonzero((short > ALLOWED) | (beyond > 1e-12 * most)):
             yield f"{name} of design {k} is short by {short[k]:.2g} near {place:.6f}: {scene.at_one_angle.loads}"
 
@@ -98,7 +98,7 @@ def _link(random: Random, length: float) -> ls.Link:
 
 
 def _passing(random: Random) -> Made:
-    """A spring or damper whose ends pass at 1e-9 to 1e-2 m in the course of the revolution."""
+    """Return a machine with a spring or damper whose ends pass at 1e-9 to 1e-2 m in the course of the revolution."""
     machine, place = _machine(random), float(random.uniform(0.0, 360.0))
     first, second = random.permutation(["ground", *_links(machine)])[:2]
     near = 10.0 ** random.uniform(-9.0, -2.0, DESIGNS) * np.exp(2j * np.pi * random.random(DESIGNS))
@@ -116,16 +116,16 @@ def _links(machine: Any) -> tuple[str, ...]:
 
 
 def _axes(machine: Any, link: str, place: float) -> tuple[complex, complex]:
-    """First pin and direction of a link."""
+    """Return first pin and direction of a link."""
     if link == "ground":
         return 0.0, 1.0
     end = ls.Spring(("ground", 0.0, 0.0), (link, 0.0, 0.0), rate=0.0, free_length=0.0)
-    found = [_to(machine, end, place), _to(machine, ls.Spring(end.from_, (link, 1.0, 0.0), 0.0, 0.0), place)]
-    return found[0], found[1] - found[0]
+    points = [_to(machine, end, place), _to(machine, ls.Spring(end.from_, (link, 1.0, 0.0), 0.0, 0.0), place)]
+    return points[0], points[1] - points[0]
 
 
 def _to(machine: Any, spring: ls.Spring, place: float) -> complex:
-    """Where a spring from the origin ends, by its distances from three points."""
+    """Return the end of a spring from the origin, by its distances from three points."""
     lengths = []
     for x, y in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
         shifted = ls.Spring(("ground", x, y), spring.to, 0.0, 0.0)
@@ -140,7 +140,7 @@ def _point(machine: Any, link: str, local: complex, place: float) -> complex:
 
 
 def _end(machine: Any, link: str, point: Array, place: float) -> tuple[str, Any, Any]:
-    """The point of a link that is at these places then."""
+    """Return the point of a link that is at these places at this angle."""
     pin, axis = _axes(machine, link, place)
     local = (point - pin) / axis
     first, second = (local.real, local.imag) if link == "ground" else (np.abs(local), np.degrees(np.angle(local)))
@@ -155,13 +155,14 @@ def _designs(values: Array) -> xr.DataArray:
 
 
 def _pulsing(random: Random) -> Made:
-    """A Gaussian pulse of half-width 0.02 to 0.2 degrees, or of 1e-6 with a break that says where, on a smooth load."""
+    """Return a machine with a Gaussian pulse of half-width 0.02 to 0.2 degrees, or of 1e-6 with a break that marks it,
+    on a smooth load."""
     machine, place = _machine(random), float(random.uniform(0.0, 360.0))
-    told = random.random() < 0.3
-    width = 10.0 ** (random.uniform(-6.0, -2.0) if told else random.uniform(np.log10(0.02), np.log10(0.2)))
+    breaks = random.random() < 0.3
+    width = 10.0 ** (random.uniform(-6.0, -2.0) if breaks else random.uniform(np.log10(0.02), np.log10(0.2)))
     smooth, height = _smooth(random), random.normal() * 20.0
     torque = _pulse(smooth, height, place, width)
-    load = ls.Load(_links(machine)[0 if random.random() < 0.5 else -1], torque=torque, breaks=[place] if told else [])
+    load = ls.Load(_links(machine)[0 if random.random() < 0.5 else -1], torque=torque, breaks=[place] if breaks else [])
     if load.link == "slider":
         load = ls.Load("slider", force=torque, breaks=load.breaks)
     omega2 = _designs(random.uniform(2.0, 40.0, DESIGNS))

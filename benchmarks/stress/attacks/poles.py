@@ -1,4 +1,4 @@
-"""Machines of all drives and frames at their dead centres: what is unbounded is inf, and nothing else is."""
+"""Search peaks of machines of all drives and frames at dead centres: unbounded forces are inf, and no others."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ SMALL = 10
 Random = np.random.Generator
 UNBOUNDED = 3
 SAMPLES = np.arange(0.0437, 360.0, 0.1)
-"""Off the round angles at which a rate may be 0 itself [degree]."""
+"""Sampled angles [degree], away from round ones, at which a rate may itself be 0."""
 ROUNDING = 0.2
-"""Of a force that is 0/0 at a dead centre: it is known to ε over the distance, down to where the status is not ok."""
+"""Relative error of a force that is 0/0 at a dead centre: ε over the distance, down to where the status is not ok."""
 DRIVEN = {
     ("FourBar", "coupler"): "omega3",
     ("FourBar", "rocker"): "omega4",
@@ -27,7 +27,7 @@ DRIVEN = {
     ("InvertedSliderCrank", "rocker"): "omega4",
     ("InvertedSliderCrank", "cylinder"): "slide_velocity",
 }
-"""The rate of what drives: a machine has a dead centre where it changes sign."""
+"""Rate of the driven link, by drive: a machine has a dead centre where it changes sign."""
 KINDS = tuple(DRIVEN)
 
 
@@ -45,11 +45,11 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def _scene(random: Random, kind: str, drive: str) -> ls.Scene:
-    """Whatever turns or swings, in any frame, loaded so that no force vanishes at a dead centre by chance."""
+    """Return a machine that turns or swings, in any frame, loaded so that no force vanishes at a dead centre."""
     while True:
         try:
             mechanism = MECHANISMS[kind](random)
-        except ValueError:  # closes nowhere
+        except ValueError:  # it closes nowhere
             continue
         break
     steady, push = random.normal(0.0, 5.0), random.normal(0.0, 30.0, 2)
@@ -107,12 +107,14 @@ def _unbounded(scene: ls.Scene) -> Iterator[str]:
     rate = DRIVEN[type(scene.mechanism).__name__, scene.drive]
     speed = ls.sweep(ls.Scene(scene.mechanism, 1.0), SAMPLES, [rate])[rate].values
     passes = bool((speed * np.roll(speed, 1) < 0.0).any())
-    found = ls.peaks(scene)
-    peaks = {name: float(values) for name, values in found.items() if name.startswith("F") and name.endswith("_peak")}
+    peaks_ds = ls.peaks(scene)
+    peaks = {
+        name: float(values) for name, values in peaks_ds.items() if name.startswith("F") and name.endswith("_peak")
+    }
     if passes:
         yield from (f"{name} = {peak} past a dead centre" for name, peak in peaks.items() if peak < math.inf)
-        if int(found.status) != UNBOUNDED:
-            yield f"status {int(found.status)} past a dead centre"
+        if int(peaks_ds.status) != UNBOUNDED:
+            yield f"status {int(peaks_ds.status)} past a dead centre"
     elif np.isfinite(speed).all():
         yield from (f"{name} is infinite without a dead centre" for name, peak in peaks.items() if peak == math.inf)
 
@@ -121,8 +123,8 @@ def _unbounded(scene: ls.Scene) -> Iterator[str]:
 
 
 def _with_a_limit(random: Random) -> Iterator[str]:
-    """Yield a sentence about each wrong force where dead centres do no harm: of a crank that hangs straight down, or
-    stands, at both of them, its other links massless.
+    """Yield a sentence about each wrong force where forces have a finite limit at dead centres: for a crank that hangs
+    straight down, or is fixed, at both of them, with massless other links.
 
     Its moment m·g·r·sin ψ vanishes with the arm a·sin ψ of the force on its pin.
     """

@@ -1,4 +1,4 @@
-"""Random scenes with every kind of load go through every kind of file, and come back equal with equal peaks."""
+"""Save random scenes with every kind of load to every kind of file, and load them: equal scenes, equal peaks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Random = np.random.Generator
 
 
 def attack(random: Random, rounds: int) -> Outcome:
-    """Save and load so many scenes, each in every kind of file."""
+    """Save and load random scenes, each in every kind of file."""
     failures: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
         for k in range(rounds):
@@ -34,15 +34,17 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def _problems(scene: ls.Scene, folder: Path) -> list[str]:
-    expected, found = ls.peaks(scene, of=OF), []
+    expected, problems = ls.peaks(scene, of=OF), []
     for name, write in WAYS.items():
         path = folder / name
         path.unlink(missing_ok=True)
         write(scene, expected, path)
         again = ls.load_scene(path)
-        found += [] if again == scene else [f"{name}: another scene"]
-        found += [] if ls.peaks(again, of=OF).drop_attrs().equals(expected.drop_attrs()) else [f"{name}: other peaks"]
-    return found
+        if again != scene:
+            problems.append(f"{name}: another scene")
+        if not ls.peaks(again, of=OF).drop_attrs().equals(expected.drop_attrs()):
+            problems.append(f"{name}: other peaks")
+    return problems
 
 
 WAYS: dict[str, Callable] = {
@@ -55,7 +57,7 @@ WAYS: dict[str, Callable] = {
 
 
 def _scene(random: Random) -> tuple[ls.Scene, str]:
-    """An example with another load, some number over designs; and what it is."""
+    """Return an example with another load, some number over designs, and its description."""
     name = str(random.choice(["press", "engine", "quick-return"]))
     base = ls.example(name)
     kind = str(random.choice([kind for kind in LOADS if kind != "stroke" or name == "engine"]))

@@ -20,7 +20,7 @@ from benchmarks.stress.attacks import Outcome
 TITLE = "loads over a slider's position, by random tables and ways"
 ROUNDS, SMALL = 300, 4
 STEP, FINE = 0.25, 0.02
-"""Degrees between samples: of a small run, and of a long one."""
+"""Degrees between samples in a small run, and in a long one."""
 LONG = 60
 """Rounds from which a run is a long one."""
 
@@ -65,7 +65,8 @@ class _Case:
         return force * (self.way is None or self.closing(theta2) == (self.way == "closing"))
 
     def closing(self, theta2: Array) -> Array:
-        """Whether the slider goes outwards, along with crank and rod: its derivative to the angle, in closed form."""
+        """Return whether the slider moves outwards, away from the crank: by its derivative to the angle, in closed
+        form."""
         turned = np.radians(theta2 - self.guide)
         across = self.e - self.a * np.sin(turned)
         slope = across * np.cos(turned) / np.sqrt(self.b**2 - across**2) - self.sign * np.sin(turned)
@@ -91,10 +92,10 @@ def _wrong(case: _Case, step: float) -> Iterator[str]:
         return
     sides = _sides(case, angles)
     reference = ls.peaks(case.scene(force=case.force), ["F32", "T12"], theta2=np.append(angles, sides))
-    found = ls.peaks(scene, ["F32", "T12"])
+    peaks_ds = ls.peaks(scene, ["F32", "T12"])
     for name in ("F32_peak", "T12_max", "T12_min"):
-        short = (1.0 if name != "T12_min" else -1.0) * float(reference[name] - found[name])
-        most = abs(float(found["T12_peak" if name.startswith("T12") else name]))
+        short = (1.0 if name != "T12_min" else -1.0) * float(reference[name] - peaks_ds[name])
+        most = abs(float(peaks_ds["T12_peak" if name.startswith("T12") else name]))
         if short > 1e-9 * most:
             yield f"{name} is short by {short / most:.3g} of {most:.6g}: {case}"
         elif short < -(1e-4 if step > FINE else 1e-6) * most:
@@ -102,7 +103,7 @@ def _wrong(case: _Case, step: float) -> Iterator[str]:
 
 
 def _sides(case: _Case, angles: Array) -> Array:
-    """Angles just before and just after the slider passes a place of the table, or turns round."""
+    """Return angles just before and just after the slider passes a place of the table, or reverses."""
     passing = [partial(_beyond, case, place) for place in case.places] + [case.closing]
     before = [low for passed in passing for low in _changes(passed, angles)]
     return np.concatenate([np.array(before) - 1e-9, np.array(before) + 1e-9])
@@ -113,7 +114,7 @@ def _beyond(case: _Case, place: float, theta2: Array) -> Array:
 
 
 def _changes(passed: Callable[[Array], Array], angles: Array) -> Array:
-    """Angles at which a condition changes, by bisection between two of these."""
+    """Return angles at which a condition changes, by bisection between adjacent angles."""
     there = passed(angles)
     low, high = (angles[np.flatnonzero(there[1:] != there[:-1]) + k] for k in (0, 1))
     first = passed(low)

@@ -19,10 +19,10 @@ TITLE = "a study of three million designs: bounded memory, and rows equal to des
 ROUNDS, SMALL = 3_000_000, 40
 
 MOST_MEMORY = 1.5e9
-"""Bytes of a process that computes a study, whatever the count of its designs."""
+"""Most bytes of a process that computes a study of any size."""
 ROWS = 40
 CHUNKS = 4
-"""Of a small study, at least; a large one goes in those of its own."""
+"""Designs per chunk of a small study, at least; a large one has chunks of the default size."""
 OF = ("F32", "T12")
 SPREAD = {"crank.length": (0.03, 0.06), "coupler.length": (0.2, 0.3), "rocker.length": (0.18, 0.26)}
 CHILD = "import sys; from benchmarks.stress.attacks.studies import run; run(sys.argv[1], *map(int, sys.argv[2:]))"
@@ -43,8 +43,8 @@ def attack(random: np.random.Generator, rounds: int) -> Outcome:
 
 
 def run(path: str, designs: int, seed: int) -> None:
-    """Compute the study, and print the most memory that this process has taken [byte]."""
-    import resource  # there is none on Windows
+    """Compute the study, and print the peak memory of this process [byte]."""
+    import resource  # not available on Windows
 
     scene = ls.sample(ls.example("press"), SPREAD, designs, seed=seed)
     ls.study(scene, path, OF, chunk=max(1, designs // CHUNKS) if designs < 1000 else None).close()
@@ -53,7 +53,7 @@ def run(path: str, designs: int, seed: int) -> None:
 
 
 def _different(study: xr.Dataset, row: int) -> Iterator[str]:
-    """Yield a sentence about each number of a row that is not that of its design alone."""
+    """Yield a sentence about each number of a row that differs from its design's alone."""
     alone = ls.peaks(ls.scene_at(study, design=row), OF)
     for name, number in alone.data_vars.items():
         there = study[name].isel(design=row).values

@@ -1,4 +1,4 @@
-"""Results written to what is no file, by links, under the longest names: files alone are replaced, nothing is left."""
+"""Write results to targets that are no files, by links, under the longest names: only files are replaced."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ WRITERS: tuple[tuple[str, Callable[[Path], object]], ...] = (
     (".nc", lambda path: ls.save(PEAKS, path)),
     (".csv", PEAKS.linksweep.to_csv),
 )
-"""Each with the ending of the names that it takes."""
+"""Writers, each with the ending of the names that it takes."""
 FILES: tuple[Callable[[Path], None], ...] = (Path.touch, lambda path: None)
 OTHERS: tuple[Callable[[Path], None], ...] = (Path.mkdir, pipe, bound, *((device,) if os.geteuid() == 0 else ()))
 

@@ -1,4 +1,4 @@
-"""Symmetric machines, whose maxima tie: is each force at its `_peak_at` the peak?"""
+"""Check symmetric machines, whose maxima tie: each force at its `_peak_at` must be the peak."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SMALL = 24
 
 Random = np.random.Generator
 BESIDE = (-1e-9, 0.0, 1e-9)
-"""A peak at a jump is on one of its sides [degree]."""
+"""Distance of a sample on either side of a jump, where a peak is one-sided [degree]."""
 
 
 def attack(random: Random, rounds: int) -> Outcome:
@@ -28,11 +28,11 @@ def attack(random: Random, rounds: int) -> Outcome:
 
 
 def misplaced(scene: ls.Scene) -> Iterator[str]:
-    """Yield a sentence about each finite peak of a scene that is not where it is told to be."""
-    found = ls.peaks(scene)
-    for place in map(str, found.data_vars):
-        if place.endswith("_at") and math.isfinite(peak := float(found[place.removesuffix("_at")])):
-            name, at = place.rsplit("_", 2)[0], float(found[place])
+    """Yield a sentence about each finite peak of a scene that is not at its stated angle."""
+    peaks_ds = ls.peaks(scene)
+    for place in map(str, peaks_ds.data_vars):
+        if place.endswith("_at") and math.isfinite(peak := float(peaks_ds[place.removesuffix("_at")])):
+            name, at = place.rsplit("_", 2)[0], float(peaks_ds[place])
             there = ls.sweep(scene, [at + away for away in BESIDE], [name])[name].values
             error = np.fmin.reduce(np.abs(there - peak))
             if not (0.0 <= at < scene.period and error <= 1e-7 * abs(peak) + 1e-12):
@@ -40,7 +40,7 @@ def misplaced(scene: ls.Scene) -> Iterator[str]:
 
 
 def _slider_crank(random: Random) -> ls.Scene:
-    """No offset, the load along the guide; friction in every other one."""
+    """Return a slider-crank without offset, the load along the guide; friction in every other one."""
     crank, angle = random.uniform(0.02, 0.1), _frame(random)
     mechanism = ls.SliderCrank(
         _bar(random, crank),
@@ -55,7 +55,7 @@ def _slider_crank(random: Random) -> ls.Scene:
 
 
 def _four_bar(random: Random) -> ls.Scene:
-    """With coupler and rocker alike; a torque on the crank in every other one."""
+    """Return a four-bar with equal coupler and rocker; a torque on the crank in every other one."""
     crank, others = random.uniform(0.02, 0.1), random.uniform(0.15, 0.3)
     coupler = _bar(random, others)
     ground = crank * random.uniform(1.1, 1.6)
@@ -65,7 +65,7 @@ def _four_bar(random: Random) -> ls.Scene:
 
 
 def _inverted_slider_crank(random: Random) -> ls.Scene:
-    """No offset."""
+    """Return an inverted slider-crank without offset."""
     crank = random.uniform(0.02, 0.1)
     mechanism = ls.InvertedSliderCrank(
         _bar(random, crank),
@@ -79,7 +79,7 @@ def _inverted_slider_crank(random: Random) -> ls.Scene:
 
 
 def _bar(random: Random, length: float) -> ls.Link:
-    """A link with its centre of gravity on the line of its pins."""
+    """Return a link with its centre of gravity on the line of its pins."""
     mass = float(random.choice([0.0, random.uniform(0.1, 2.0)]))
     centre = float(random.choice([0.0, random.uniform(0.0, length)]))
     return ls.Link(length, mass, mass * length**2 / 12.0, centre)

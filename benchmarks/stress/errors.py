@@ -1,4 +1,4 @@
-"""What one call of the product is worth: its errors against 50 digits, sample by sample, in units of ε = 2^-52."""
+"""Compute the errors of one sweep against 50 digits, sample by sample, in units of ε = 2^-52."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from benchmarks.stress.designs import FORCES, LINKS, Designs
 
 EPS = 2.0**-52
 SURELY = 1e-5
-"""A sine that no status but ok may have."""
+"""Sine above which every status but ok is wrong."""
 NO_POWER = 1e-290
-"""[W] Below, terms of powers have fewer digits than others."""
+"""Power [W] below which terms have fewer digits than others."""
 
 
-class Verdict(NamedTuple):
-    """Figures of the samples with status ok, by name, and how many samples were judged so against all reason."""
+class Errors(NamedTuple):
+    """Figures of the samples with status ok, by name, and the number of samples whose status or values are wrong."""
 
     samples: int
     figures: dict[str, Array]
@@ -31,7 +31,8 @@ class Verdict(NamedTuple):
         return len(self.figures["mixed"])
 
 
-def verdict(designs: Designs) -> Verdict:
+def errors_of(designs: Designs) -> Errors:
+    """Return the errors of linksweep's results for designs at their crank angle."""
     cycle, n = answers(designs), len(designs)
     ok = values(cycle, "status", n) == 0
     exact, roots = designs.exact()
@@ -42,7 +43,7 @@ def verdict(designs: Designs) -> Verdict:
     finite = np.all([np.isfinite(values(cycle, str(name), n)) for name in cycle.data_vars], axis=0)
     finite &= np.isfinite(true["mu"]) & np.isfinite(figures["mixed"])
     wrong = np.where(ok, ~finite, true["mu"] > SURELY)
-    return Verdict(n, {name: figure[ok] for name, figure in figures.items()}, int(wrong.sum()))
+    return Errors(n, {name: figure[ok] for name, figure in figures.items()}, int(wrong.sum()))
 
 
 def _figures(designs: Designs, cycle: xr.Dataset, errors: dict, spreads: dict, true: dict) -> dict[str, Array]:
@@ -65,7 +66,7 @@ def _figures(designs: Designs, cycle: xr.Dataset, errors: dict, spreads: dict, t
 
 
 def answers(designs: Designs, threads: int | None = None) -> xr.Dataset:
-    """What the product says, the drive's unknown under the name `drive`."""
+    """Return linksweep's results, with the drive's unknown named `drive`."""
     scene = designs.scene()
     drive = scene.mechanism.drives[scene.drive]
     names = (*FORCES, drive, "error_bound", "power_residual")
@@ -77,19 +78,19 @@ def _driven(designs: Designs) -> str:
 
 
 def _applied(designs: Designs) -> Array:
-    """The largest weight or load; a torque as the force that it is at the end of its link."""
+    """Return the largest weight or load; a torque as the force at the end of its link."""
     x = designs.numbers
     pull = np.hypot(x["gravity_x"], x["gravity_y"])
-    found = [pull * x[f"{role}_mass"] for role in LINKS[designs.machine]]
-    found += [np.abs(x[name]) for name in ("coupler_force_x", "coupler_force_y", "slider_push") if name in x]
+    forces = [pull * x[f"{role}_mass"] for role in LINKS[designs.machine]]
+    forces += [np.abs(x[name]) for name in ("coupler_force_x", "coupler_force_y", "slider_push") if name in x]
     if "rocker_torque" in x:
-        found.append(np.abs(x["rocker_torque"] / x["rocker_length"]))
-    return np.maximum(np.max(np.broadcast_arrays(*found), axis=0), LEAST)
+        forces.append(np.abs(x["rocker_torque"] / x["rocker_length"]))
+    return np.maximum(np.max(np.broadcast_arrays(*forces), axis=0), LEAST)
 
 
-def _error(found: Array, exact: Array, ok: Array) -> Array:
+def _error(values: Array, exact: Array, ok: Array) -> Array:
     with fifty_digits():
-        return _floats(abs(exactly(np.where(ok, found, 0.0)) - exact))
+        return _floats(abs(exactly(np.where(ok, values, 0.0)) - exact))
 
 
 def _floats(numbers: Array) -> Array:
