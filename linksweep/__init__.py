@@ -36,10 +36,9 @@ from linksweep.scene.curves.interpolation import OvershootWarning
 from linksweep.scene.designs.distributions import Normal, Tolerance
 from linksweep.scene.designs.sampling import sample
 from linksweep.scene.examples import example
+from linksweep.scene.loads.action import LOADS
 from linksweep.scene.loads.air_cycle import DieselCycle, OttoCycle
-from linksweep.scene.loads.gas_pressure import GasPressure
-from linksweep.scene.loads.load import Load
-from linksweep.scene.loads.springs import Damper, Spring, TorsionDamper, TorsionSpring
+from linksweep.scene.loads.kinds import *  # noqa: F403  (every kind of load, by its own name)
 from linksweep.scene.scene import Scene
 from linksweep.studies.checked import open_study
 from linksweep.studies.run import study
@@ -49,14 +48,11 @@ __all__ = [
     "Bar",
     "Bearing",
     "Counterweight",
-    "Damper",
     "DieselCycle",
     "Disk",
     "FourBar",
-    "GasPressure",
     "InvertedSliderCrank",
     "Link",
-    "Load",
     "LoopTrack",
     "Motor",
     "MultiCylinder",
@@ -66,10 +62,7 @@ __all__ = [
     "QuantityTable",
     "Scene",
     "SliderCrank",
-    "Spring",
     "Tolerance",
-    "TorsionDamper",
-    "TorsionSpring",
     "bearings",
     "best_counterweights",
     "breakdown",
@@ -105,6 +98,7 @@ __all__ = [
     "sweep",
     "system",
     "with_counterweights",
+    *LOADS,
 ]
 
 if TYPE_CHECKING:

@@ -7,40 +7,11 @@ attributes and converted by its own registry, so that pint need not be imported.
 
 from __future__ import annotations
 
-from dataclasses import Field, fields
 from typing import Any
 
 import numpy as np
 
 from linksweep.base.validate import UNITS, as_float, is_array, is_quantity
-
-PAIRS = {"gravity": ("acceleration", "acceleration"), "force": ("force", "force"), "at": ("length", "angle")}
-"""Kinds of the two numbers of a pair, by the name of the field."""
-ROWS = {"breaks": "angle"}
-"""Kind of the numbers of a list, by the name of the field."""
-
-
-def float64_fields(owner: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass by name, with numbers as float64 and other values unchanged."""
-    return {item.name: _float64_field(item, getattr(owner, item.name)) for item in fields(owner)}
-
-
-def _float64_field(item: Field, value: Any) -> Any:
-    rule = item.metadata.get("rule")
-    return to_float64(value, rule.kind) if rule else _several(item.name, value)
-
-
-def kinds_of(name: str, value: tuple | list) -> tuple[str, ...]:
-    """Return the kinds of a pair, or of the end of a spring: a link, then a point of the ground or of the link."""
-    if name in ("from_", "to"):
-        ground = isinstance(value[0], str) and value[0] == "ground"
-        return ("", "length", "length" if ground else "angle")
-    return PAIRS.get(name, ("",) * len(value))
-
-
-def as_pair(value: Any, kinds: tuple[str, str]) -> Any:
-    """Return two numbers, or a bare array of two, as a pair of float64; anything else unchanged."""
-    return tuple(map(to_float64, value, kinds)) if _is_row(value) and len(value) == 2 else value
 
 
 def to_float64(value: Any, kind: str) -> Any:
@@ -65,22 +36,6 @@ def all_to_float64(values: Any, kind: str) -> Any:
         return [to_float64(value, kind) for value in values]
     converted = to_float64(values, kind)
     return converted.values if is_array(converted) and not is_quantity(converted) else converted
-
-
-def _several(name: str, value: Any) -> Any:
-    """Return a pair, a list, or the end of a spring, with numbers as float64; anything else unchanged."""
-    if name in PAIRS:
-        return as_pair(value, PAIRS[name])
-    if name in ROWS:
-        return tuple(to_float64(number, ROWS[name]) for number in value) if _is_row(value) else value
-    end = name in ("from_", "to") and isinstance(value, tuple | list) and len(value) == 3
-    return tuple(map(to_float64, value, kinds_of(name, value))) if end else value
-
-
-def _is_row(value: Any) -> bool:
-    """Return whether a value is a list of numbers, or a bare array of one axis."""
-    bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
-    return isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
 
 
 def _array(array: Any, kind: str) -> Any:

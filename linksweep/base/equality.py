@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
 from typing import Any
 
-from linksweep.base.conversion import float64_fields
+from linksweep.base.fields import converted_fields, declared, has_fields
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import is_array
 
@@ -15,7 +14,7 @@ class ByContent:
     with equal content: numbers, dims and labels. A `__post_init__` of a subclass calls this one first."""
 
     def __post_init__(self) -> None:
-        normalise(self, **float64_fields(self))
+        normalise(self, **converted_fields(self))
 
     def __eq__(self, other: object) -> bool:
         return content(self) == content(other) if type(other) is type(self) else NotImplemented
@@ -27,8 +26,8 @@ class ByContent:
 def content(value: Any) -> Any:
     """Return the content that decides equality, as nested tuples, without names, attributes or other coordinates of
     arrays."""
-    if is_dataclass(value):
-        return type(value).__name__, tuple(content(getattr(value, item.name)) for item in fields(value))
+    if has_fields(value):
+        return type(value).__name__, tuple(content(getattr(value, name)) for name, *_ in declared(value))
     if is_array(value):
         labels = [(dim, _labels(value[dim].values)) for dim in value.dims if dim in value.coords]
         return value.dims, value.values.tobytes(), repr(labels)

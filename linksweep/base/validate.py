@@ -6,7 +6,7 @@ import difflib
 import numbers
 import re
 from collections.abc import Iterable
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -74,41 +74,10 @@ class Rule:
         return broken
 
 
-def parameter(kind: str, default: Any = MISSING, **bounds: Any) -> Any:
-    """Return a dataclass field that holds a number under a rule."""
-    metadata = {"rule": Rule(kind, **bounds)}
-    return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
-
-
-def field_problems(owner: Any, prefix: str = "") -> list[str]:
-    """Return the problems of the ruled fields of a dataclass, each with its path; its owner checks None."""
-    return [
-        problem
-        for item in fields(owner)
-        if "rule" in item.metadata and getattr(owner, item.name) is not item.default
-        for problem in number_problems(prefix + item.name, getattr(owner, item.name), item.metadata["rule"])
-    ]
-
-
-def pair_problems(path: str, pair: Any, rules: tuple[Rule, Rule], meaning: str) -> list[str]:
-    if not (isinstance(pair, tuple | list) and len(pair) == 2):
-        return [f"{path} = {quote(pair)}: must be a pair {meaning}"]
-    return [p for k in (0, 1) for p in number_problems(f"{path}[{k + 1}]", pair[k], rules[k])]
-
-
 def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
     """Return a problem if a number derived from valid ones is more than a float can hold."""
     sound = is_lazy(number) or bool(np.all(np.isfinite(number)))
     return [] if sound else [f"{path}: its {meaning} is more than a number can hold; reduce its measures"]
-
-
-def plain_numbers_problems(path: str, values: Any, rule: Rule) -> list[str]:
-    """Return the problems of a tuple that must hold plain numbers."""
-    if not isinstance(values, tuple):
-        return [f"{path} = {quote(values)}: must be a list, each item {rule.number}"]
-    items = [(f"{path}[{k}]", value) for k, value in enumerate(values, 1)]
-    arrays = [f"{at} is an array: must be {rule.number}, for all designs the same" for at, x in items if is_array(x)]
-    return arrays + [p for at, x in items if not is_array(x) for p in number_problems(at, x, rule)]
 
 
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:

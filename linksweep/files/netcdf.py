@@ -16,8 +16,9 @@ from linksweep.files.seal import SAVED, mark_of, seal, sealed
 from linksweep.files.table import to_csv
 from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.file.reading import parse_scene, read_scene
 from linksweep.scene.file.text_file import kind_of
-from linksweep.scene.file.toml import parse_scene, read_scene, require_writable
+from linksweep.scene.file.writing import require_writable
 from linksweep.scene.scene import Scene
 from linksweep.scene.storable import label_problem, name_problem
 

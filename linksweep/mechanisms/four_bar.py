@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, is_lazy, parameter
+from linksweep.base.fields import of_kind, parameter
+from linksweep.base.validate import Number, is_lazy
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
@@ -21,7 +22,7 @@ from linksweep.mechanisms.limits.four_bar_limits import (
     rocker_dead_centres,
     swings,
 )
-from linksweep.mechanisms.links import Bar, Disk, Link, link_parameters
+from linksweep.mechanisms.links import LINK, AnyLink, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import (
     Body,
@@ -102,9 +103,9 @@ class FourBar(Mechanism):
     'open'
     """
 
-    crank: Link | Bar | Disk
-    coupler: Link | Bar | Disk
-    rocker: Link | Bar | Disk
+    crank: AnyLink = of_kind(LINK)
+    coupler: AnyLink = of_kind(LINK)
+    rocker: AnyLink = of_kind(LINK)
     ground: Number = parameter("length", above=0.0)
     branch: str = "open"
     ground_angle: Number = parameter("angle", 0.0)

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.validate import Number, parameter
+from linksweep.base.fields import of_kind, parameter
+from linksweep.base.validate import Number
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
@@ -24,7 +25,7 @@ from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters
+from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.rows.crank import (
@@ -109,8 +110,8 @@ class InvertedSliderCrank(Mechanism):
     ('N', 54000.0)
     """
 
-    crank: Link | Bar | Disk
-    rocker: Link | Bar | Disk
+    crank: AnyLink = of_kind(LINK)
+    rocker: AnyLink = of_kind(LINK)
     ground: Number = parameter("length", above=0.0)
     block_mass: Number = parameter("mass", at_least=0.0)
     block_inertia: Number = parameter("inertia", 0.0, at_least=0.0)

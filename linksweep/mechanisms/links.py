@@ -13,7 +13,8 @@ import numpy as np
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, field_problems, overflow_problems, parameter, quote
+from linksweep.base.fields import PartField, below, declared, field_problems, parameter
+from linksweep.base.validate import Number, overflow_problems
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,23 +131,28 @@ class Disk(ByContent):
         return 0.5 * self.mass * self.radius * self.radius
 
 
-def link_problems(mechanism: Any, *roles: str) -> list[str]:
-    """What is wrong with the links that a mechanism has in these roles."""
-    problems = []
-    for role in roles:
-        link = getattr(mechanism, role)
-        sound = isinstance(link, Link | Bar | Disk)
-        problems += _link_problems(role, link) if sound else [f"{role} = {quote(link)}: must be a Link, Bar or Disk"]
-    return problems
+AnyLink = Link | Bar | Disk
 
 
-def _link_problems(role: str, link: Link | Bar | Disk) -> list[str]:
-    problems = field_problems(link, role + ".")
-    with np.errstate(over="ignore"):
-        return problems or overflow_problems(role, link.inertia, "moment of inertia")
+class LinkField(PartField):
+    """A field that holds a link, which it checks with its numbers."""
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        if problems := super().problems(path, value) or field_problems(value, below(path, self)):
+            return problems
+        with np.errstate(over="ignore"):
+            return overflow_problems(path, value.inertia, "moment of inertia")
 
 
-def link_parameters(role: str, link: Link | Bar | Disk) -> dict[str, Number]:
+LINK = LinkField((Link, Bar, Disk), AnyLink, default=Link)
+
+
+def links_of(mechanism: Any) -> dict[str, AnyLink]:
+    """Return the links that are fields of a mechanism, by role."""
+    return {role: getattr(mechanism, role) for role, kind, _ in declared(mechanism) if kind is LINK}
+
+
+def link_parameters(role: str, link: AnyLink) -> dict[str, Number]:
     """A link's numbers under the names that the physics wires by; its centre of gravity in the link's own axes."""
     return {
         f"{role}_length": link.length,

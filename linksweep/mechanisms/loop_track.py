@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from linksweep.base.validate import Number, parameter
+from linksweep.base.fields import parameter
+from linksweep.base.validate import Number
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.drawing import Track
 from linksweep.mechanisms.limits.finding import Checks

@@ -10,14 +10,15 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, choice_problems, field_problems, refuse
+from linksweep.base.fields import field_problems
+from linksweep.base.validate import Number, choice_problems, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.links import Bar, Disk, Link, link_problems
+from linksweep.mechanisms.links import AnyLink, Link, links_of
 from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, OverDesigns
 from linksweep.mechanisms.rows.load_forms import Form
@@ -38,7 +39,7 @@ class Mechanism(ByContent, ABC):
         @register
         @dataclass(frozen=True, eq=False)
         class ScotchYoke(Mechanism):
-            crank: Link | Bar | Disk
+            crank: AnyLink = of_kind(LINK)
             yoke_mass: Number = parameter("mass", at_least=0.0)
 
             links = ("crank", "yoke")
@@ -98,8 +99,7 @@ class Mechanism(ByContent, ABC):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        own_links = link_problems(self, *self.parts())
-        refuse(own_links + field_problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both")))
+        refuse(field_problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both")))
         refuse(self.closure_problems())
 
     @abstractmethod
@@ -152,10 +152,9 @@ class Mechanism(ByContent, ABC):
         """Return functions that derive further numbers of the physics from the design and its motion."""
         return ()
 
-    def parts(self) -> dict[str, Link | Bar | Disk]:
+    def parts(self) -> dict[str, AnyLink]:
         """Return the links that are parameters of the machine, by role."""
-        own = {item.name for item in fields(self)}
-        return {role: getattr(self, role) for role in self.links if role in own}
+        return links_of(self)
 
     def masses(self) -> dict[str, MassDistribution]:
         """Return the mass distribution of each moving link by role: a part's own, or parameters such as block_mass."""

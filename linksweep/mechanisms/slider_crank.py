@@ -10,7 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.degrees import cos_sin_low_words
-from linksweep.base.validate import Number, parameter
+from linksweep.base.fields import of_kind, parameter
+from linksweep.base.validate import Number
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.cylinder import Cylinder
@@ -26,7 +27,7 @@ from linksweep.mechanisms.limits.slider_crank_limits import (
     wedging,
     wedging_by_crank,
 )
-from linksweep.mechanisms.links import Bar, Disk, Link, cg_parameters, link_parameters
+from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
@@ -93,8 +94,8 @@ class SliderCrank(Mechanism):
     'open'
     """
 
-    crank: Link | Bar | Disk
-    rod: Link | Bar | Disk
+    crank: AnyLink = of_kind(LINK)
+    rod: AnyLink = of_kind(LINK)
     slider_mass: Number = parameter("mass", at_least=0.0)
     offset: Number = parameter("length", 0.0)
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)

@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
+from linksweep.base.fields import FieldKind, NumberField, RowField, declared, field_rules, has_fields, left_out
 from linksweep.base.validate import UNITS
 from linksweep.mechanisms.links import Bar, Disk
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
 from linksweep.scene.grid import crank_grid
+from linksweep.scene.loads.ends import GROUND
 from linksweep.scene.loads.load import Load
+from linksweep.scene.loads.springs import EndField
 from linksweep.scene.scene import Scene
 
 SHOWN = {
@@ -32,7 +34,7 @@ SHOWN = {
 LEFT_OUT = ("length", "angle")
 """Kinds of which a mechanism's own default, no offset and no turn, need not be said."""
 LONG = 10.0  # m: from here on a length is shown in m
-KIND_OF = {item.name: item.metadata["rule"].kind for item in fields(Scene) if "rule" in item.metadata}
+
 SAMPLES = 720  # angles at which what changes over the revolution is looked at
 
 
@@ -93,13 +95,13 @@ def _made(link: Any) -> str:
 def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
     """Yield the parameters that belong to no link, and the branch."""
     bodies = tuple(f"{body.role}_" for body in mechanism.bodies)
-    for item in fields(mechanism):
-        value = getattr(mechanism, item.name)
-        kind = item.metadata["rule"].kind if "rule" in item.metadata else ""
-        if kind and not item.name.startswith(bodies) and not (kind in LEFT_OUT and value == item.default):
-            yield _plain(item.name), quantity(value, kind)
+    for name, field, default in declared(mechanism):
+        value = getattr(mechanism, name)
+        kind = field.rule.kind if isinstance(field, NumberField) else ""
+        if kind and not name.startswith(bodies) and not (kind in LEFT_OUT and value == default):
+            yield _plain(name), quantity(value, kind)
         elif isinstance(value, str):
-            yield item.name, value
+            yield name, value
 
 
 def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
@@ -113,7 +115,7 @@ def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
         yield "its acceleration", quantity(sampled.motion["alpha2"], "angular_acceleration")
     for name in ("speed", "thrust"):
         if name in mechanism.motion:
-            size = quantity(getattr(sampled, name), KIND_OF[name])
+            size = quantity(getattr(sampled, name), field_rules(Scene)[name].kind)
             yield name, f"{size} {remarks.get(name, '')}".rstrip()
     turns = round(sampled.period / mechanism.period)
     if turns > 1:
@@ -163,27 +165,26 @@ def _breaks(angles: Sequence[float]) -> list[str]:
 
 def _in_words(part: Any) -> str:
     """Return a dataclass in words: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
-    parts = []
-    for item in fields(part):
-        value = getattr(part, item.name)
-        if is_dataclass(value):
-            parts.append(f"{_plain(item.name)}: {_in_words(value)}")
-        elif "rule" in item.metadata:
-            parts += [] if value is None else [f"{_plain(item.name)} {quantity(value, item.metadata['rule'].kind)}"]
-        elif item.name == "breaks":
-            parts += _breaks(value)
-        elif value is None:
-            continue
-        else:
-            parts.append(f"{_plain(item.name)} {_end(value) if isinstance(value, tuple) else value}")
-    kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
-    return f"{kind} ({', '.join(parts)})"
+    fields = ((name, kind, getattr(part, name)) for name, kind, _ in declared(part))
+    texts = [_field_in_words(_plain(name), kind, value) for name, kind, value in fields if not left_out(value)]
+    title = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
+    return f"{title} ({', '.join(texts)})"
+
+
+def _field_in_words(name: str, kind: FieldKind, value: Any) -> str:
+    if has_fields(value):
+        return f"{name}: {_in_words(value)}"
+    if isinstance(kind, NumberField):
+        return f"{name} {quantity(value, kind.rule.kind)}"
+    if isinstance(kind, RowField):
+        return f"{name} at {', '.join(quantity(number, kind.rule.kind) for number in value)}"
+    return f"{name} {_end(value) if isinstance(kind, EndField) else value}"
 
 
 def _end(end: tuple[str, Any, Any]) -> str:
     """Return the end of a spring in words: a point of the ground, or of a link in its polar coordinates."""
     link, first, second = end
-    if link == "ground":
+    if link == GROUND:
         return f"ground at ({quantity(first, 'length')}, {quantity(second, 'length')})"
     return f"{link}, {quantity(first, 'length')} at {quantity(second, 'angle')} from its first pin"
 

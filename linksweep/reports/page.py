@@ -16,7 +16,8 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep.base.validate import Rule, pair_problems, refuse
+from linksweep.base.fields import PairField
+from linksweep.base.validate import Rule, refuse
 from linksweep.files.atomic import ending_of
 from linksweep.files.netcdf import write_text
 from linksweep.reports import checks as page_checks
@@ -29,7 +30,7 @@ from linksweep.reports.markup import Markup, joined, safe, section, tag
 from linksweep.reports.results_of_page import Range, Results, results_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.designs.choose import design_labels
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.scene import Scene
 from linksweep.studies.scene_at import scene_at
 
@@ -138,7 +139,7 @@ def _right(results: Results) -> Iterator[Markup]:
 def _part_problems(part: Any, period: float) -> list[str]:
     if part is None:
         return []
-    problems = pair_problems("theta2", part, (Rule("angle"), Rule("angle")), "(first, last) crank angle in degrees")
+    problems = PairField(Rule("angle"), Rule("angle"), "(first, last) crank angle in degrees").problems("theta2", part)
     if problems:
         return problems
     first, last = part

@@ -19,7 +19,7 @@ from linksweep.engine.trace.plan import plan
 from linksweep.results.dataset import design_coordinates, kept_beside
 from linksweep.scene.designs.lazy import in_memory, lazy_paths, stand_in
 from linksweep.scene.designs.selection import design_sizes
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 

@@ -12,7 +12,7 @@ import xarray as xr
 from linksweep.base.frozen import cached_beside
 from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.scene import Scene
 
 STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"

@@ -1,12 +1,13 @@
-"""Numbers that functions are given, converted and checked as constructors do with theirs."""
+"""Convert and check the numbers of a function's arguments, as constructors do with their fields."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from linksweep.base.conversion import as_pair, to_float64
-from linksweep.base.validate import Number, Rule, is_array, number_problems, pair_problems, refuse
-from linksweep.scene.parameters import numbers
+from linksweep.base.conversion import to_float64
+from linksweep.base.fields import PairField, numbers_in
+from linksweep.base.validate import Number, Rule, is_array, number_problems, refuse
 from linksweep.scene.units import unit_problems
 
 
@@ -16,30 +17,28 @@ def checked_number(path: str, value: Any, rule: Rule) -> Number:
     Raises
     ------
     ValueError
-        For what the rule does not allow, and for an array that says another unit.
+        For a number that the rule does not allow, and for an array whose `units` attribute names another unit.
     """
     number = to_float64(value, rule.kind)
     refuse(number_problems(path, number, rule) or array_unit_problems(path, number, rule.kind))
     return number
 
 
-def checked_pair(path: str, value: Any, rules: tuple[Rule, Rule], meaning: str) -> tuple[Number, Number]:
-    """Return two numbers, each as `checked_number` does; `meaning` is what the message calls them."""
-    first, second = rules
-    pair = as_pair(value, (first.kind, second.kind))
-    refuse(pair_problems(path, pair, rules, meaning))
-    for k, (number, rule) in enumerate(zip(pair, rules, strict=True), 1):
-        refuse(array_unit_problems(f"{path}[{k}]", number, rule.kind))
+def checked_pair(path: str, value: Any, kind: PairField) -> tuple[Number, Number]:
+    """Return two numbers, each as `checked_number` does."""
+    pair = kind.converted(value)
+    refuse(kind.problems(path, pair))
+    refuse(unit_attribute_problems(numbers_in(path, pair, kind)))
     return pair
 
 
-def said_unit_problems(owner: Any) -> list[str]:
-    """Return what is wrong with the units that the arrays of a scene, or of a part of one, say in their attributes."""
-    return [p for path, number, kind in numbers(owner) if kind for p in array_unit_problems(path, number, kind)]
+def unit_attribute_problems(parameters: Iterable[tuple[str, Number, str]]) -> list[str]:
+    """Return the problems of the units that arrays have in their attributes, of numbers with their paths and kinds."""
+    return [problem for path, number, kind in parameters for problem in array_unit_problems(path, number, kind)]
 
 
 def array_unit_problems(path: str, number: Number, kind: str) -> list[str]:
-    """Return what is wrong with the units that an array, and its angles theta2, say in their attributes."""
+    """Return the problems of the `units` attributes of an array and of its angles theta2."""
     if not is_array(number):
         return []
     angles = number.coords["theta2"].attrs if "theta2" in number.coords else {}

@@ -5,75 +5,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from linksweep.base.conversion import kinds_of
-from linksweep.base.frozen import Owner, field_values, with_sound, with_values
+from linksweep.base.fields import FieldKind, below, declared, has_fields
+from linksweep.base.frozen import Owner, with_sound, with_values
 from linksweep.base.validate import is_array
 from linksweep.scene.dimensions import laid
 
 
-def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
-    """Every number of a scene with its path and its kind ("" for a word that stands among numbers)."""
-    for item in fields(owner):
-        value, path = getattr(owner, item.name), prefix + item.name
-        if "rule" in item.metadata and not _has_parts(value):
-            yield path, value, item.metadata["rule"].kind
-        elif item.name == "loads":
-            for k, load in enumerate(value, 1):
-                yield from numbers(load, f"loads[{k}].")
-        elif _has_parts(value):
-            yield from numbers(value, "" if item.name == "mechanism" else path + ".")
-        elif isinstance(value, tuple | list):
-            kinds = zip(value, kinds_of(item.name, value), strict=False)
-            yield from ((f"{path}[{k}]", number, kind) for k, (number, kind) in enumerate(kinds, 1))
-
-
 def free(scene: Any) -> dict[str, tuple[Any, str]]:
-    """What may vary in a study: value and kind of each number by its path, but for words that this machine lacks."""
-    words = {path: (scene.motion.get(path, value), kind) for path, value, kind in numbers(scene) if kind}
-    return {path: (value, kind) for path, (value, kind) in words.items() if value is not None or "." in path}
+    """Return value and kind, by path, of each number that may vary in a study; none that this machine does not take."""
+    numbers = {path: (scene.motion.get(path, value), kind) for path, (value, kind) in scene.numbers.items()}
+    return {path: (value, kind) for path, (value, kind) in numbers.items() if value is not None or "." in path}
 
 
 def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner:
-    """A scene with other numbers at these paths, all put in at once, so that it is judged only when it is complete.
+    """Copy with other numbers at these paths, all put in at once and validated when the copy is complete.
 
     Raises ValueError where the scene with these numbers is refused.
     """
-    parts = field_values(owner)
-    below = {name: prefix if name == "mechanism" else prefix + name for name in parts}
-    return with_values(owner, **{name: _replaced(part, below[name], values) for name, part in parts.items()})
+    parts = ((name, kind, getattr(owner, name)) for name, kind, _ in declared(owner))
+    return with_values(owner, **{name: _replaced(part, prefix + name, kind, values) for name, kind, part in parts})
 
 
 def bare(value: Any) -> Any:
-    """A number, or a part of a scene, without labels: its arrays as xarray's Variables, far quicker to reckon with."""
+    """Return a number, or a part of a scene, without labels: arrays become Variables of xarray, which are faster."""
     return _with_arrays(value, lambda array: array.variable)
 
 
 def along(value: Any, dims: tuple[str, ...]) -> Any:
-    """The same with an axis for each of these dims, by numpy; arrays that have others stay as they are."""
+    """Return a number, or a part of a scene, with its arrays in numpy, an axis for each of these dims.
+
+    Arrays with further dims stay as they are.
+    """
     return _with_arrays(value, lambda array: laid(array, dims) if {*array.dims} <= {*dims} else array)
 
 
-def _with_arrays(value: Any, made: Callable[[Any], Any]) -> Any:
-    if _has_parts(value):
-        return with_sound(value, **{item.name: _with_arrays(getattr(value, item.name), made) for item in fields(value)})
+def _with_arrays(value: Any, convert: Callable[[Any], Any]) -> Any:
+    if has_fields(value):
+        parts = {name: _with_arrays(getattr(value, name), convert) for name, *_ in declared(value)}
+        return with_sound(value, **parts)
     if isinstance(value, tuple | list):
-        return tuple(_with_arrays(item, made) for item in value)
-    return made(value) if is_array(value) else value
+        return tuple(_with_arrays(item, convert) for item in value)
+    return convert(value) if is_array(value) else value
 
 
-def _replaced(value: Any, path: str, values: Mapping[str, Any]) -> Any:
+def _replaced(value: Any, path: str, kind: FieldKind, values: Mapping[str, Any]) -> Any:
     if path in values:
         return values[path]
-    if _has_parts(value):
-        return replaced(value, values, path and path + ".")
+    if has_fields(value):
+        return replaced(value, values, below(path, kind))
     if isinstance(value, tuple | list):
-        return tuple(_replaced(item, f"{path}[{k}]", values) for k, item in enumerate(value, 1))
+        kinds = kind.items(value) or (kind,) * len(value)
+        items = enumerate(zip(value, kinds, strict=True), 1)
+        return tuple(_replaced(item, f"{path}[{k}]", each, values) for k, (item, each) in items)
     return value
-
-
-def _has_parts(value: Any) -> bool:
-    return is_dataclass(value) and not isinstance(value, type)

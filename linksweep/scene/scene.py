@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -12,35 +12,38 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.equality import ByContent, content
-from linksweep.base.frozen import field_values, normalise, with_sound
-from linksweep.base.validate import (
-    UNITS,
-    Number,
-    Rule,
-    choice_problems,
+from linksweep.base.fields import (
+    PairField,
+    PartField,
+    PartsField,
+    declared,
     field_problems,
-    is_array,
-    is_lazy,
-    pair_problems,
+    field_rules,
+    left_out,
+    numbers,
+    of_kind,
     parameter,
-    quote,
-    refuse,
 )
+from linksweep.base.frozen import field_values, normalise, with_sound
+from linksweep.base.validate import UNITS, Number, Rule, choice_problems, is_lazy, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
-from linksweep.scene.checked_number import said_unit_problems
+from linksweep.scene.checked_number import unit_attribute_problems
 from linksweep.scene.curves.over_angle import ArrayCurve, period_of, period_of_function, turning_problems
 from linksweep.scene.curves.quick import Quick, quick_angles
 from linksweep.scene.dimensions import dimension_problems
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, engine_inputs
-from linksweep.scene.loads.action import Action
-from linksweep.scene.parameters import bare, numbers
+from linksweep.scene.loads.action import LOADS, Action
+from linksweep.scene.loads.kinds import Load
+from linksweep.scene.parameters import bare
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.storable import storable_coordinate
 
-ACCELERATION = Rule("acceleration")
+GRAVITY = PairField(Rule("acceleration"), Rule("acceleration"), "(gx, gy) in m/s^2")
+MECHANISM = PartField(MECHANISMS.values(), Mechanism, inline=True)
+ACTIONS = PartsField(PartField(LOADS.values(), Action, default=Load))
 MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
 """Parameters of a scene of which each mechanism takes its own."""
 
@@ -103,11 +106,11 @@ class Scene(ByContent):
     'crank'
     """
 
-    mechanism: Mechanism
+    mechanism: Mechanism = of_kind(MECHANISM)
     omega2: Number = parameter("angular_velocity", None, over_angle=True)
     alpha2: Number = parameter("angular_acceleration", None, over_angle=True)
-    gravity: Sequence[Number] = (0.0, 0.0)
-    loads: Sequence[Action] = ()
+    gravity: Sequence[Number] = of_kind(GRAVITY, (0.0, 0.0))
+    loads: Sequence[Action] = of_kind(ACTIONS, ())
     drive: str = ""
     speed: Number = parameter("velocity", None, at_least=0.0)
     thrust: Number = parameter("force", None)
@@ -118,7 +121,8 @@ class Scene(ByContent):
         normalise(self, **self._normalised())
         refuse(self._problems())
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
-        refuse(said_unit_problems(self) + self._interpolation_problems())
+        units = unit_attribute_problems((path, *number) for path, number in self.numbers.items())
+        refuse(units + self._interpolation_problems())
         turn = self.mechanism.period
         refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
         # omega2 is a result by that name, too; the speed of a loop's results is another than the parameter
@@ -126,26 +130,22 @@ class Scene(ByContent):
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
     def __repr__(self) -> str:
-        defaults = {item.name: item.default for item in fields(self)} | dict(self.mechanism.defaults)
+        defaults = {name: default for name, _, default in declared(self)} | dict(self.mechanism.defaults)
         values = {name: repr(value) for name, value in field_values(self).items()}
         own = [f"{name}={text}" for name, text in values.items() if text != repr(defaults[name])]
         return f"Scene({', '.join(own)})"
 
     def _normalised(self) -> dict[str, Any]:
-        """Return the fields with arrays labelled, loads as a tuple, and the mechanism's defaults."""
+        """Return the fields with arrays labelled, and the mechanism's defaults."""
         values = {name: _own_label(name, value) for name, value in field_values(self).items()}
         defaults = self.mechanism.defaults if isinstance(self.mechanism, Mechanism) else {}
-        values |= {name: default for name, default in defaults.items() if _left_out(values[name])}
-        return values | {"loads": _load_tuple(self.loads)}
+        values |= {name: default for name, default in defaults.items() if left_out(values[name])}
+        return values
 
     def _problems(self) -> list[str]:
         """Return the problems of each parameter by itself."""
-        sound = isinstance(self.mechanism, Mechanism)
-        problems = [] if sound else [f"mechanism = {quote(self.mechanism)}: must be a {' or '.join(MECHANISMS)}"]
-        problems += field_problems(self)
-        problems += pair_problems("gravity", self.gravity, (ACCELERATION, ACCELERATION), "(gx, gy) in m/s^2")
-        problems += self._motion_problems() if sound else []
-        return problems + self._load_problems()
+        motion_problems = self._motion_problems() if isinstance(self.mechanism, Mechanism) else []
+        return field_problems(self) + motion_problems + self._load_problems()
 
     def _motion_problems(self) -> list[str]:
         """Return the problems of the parameters for motion: those that the mechanism does not take, or requires."""
@@ -154,23 +154,17 @@ class Scene(ByContent):
         problems = [
             f"{name} = {quote(value)}: is no word of {kind.__name__}; give its own: {own}"
             for name, value in values.items()
-            if name not in kind.motion and not _left_out(value)
+            if name not in kind.motion and not left_out(value)
         ]
-        if _left_out(values[required]):
-            rule = next(item.metadata["rule"] for item in fields(self) if item.name == required)
-            problems.append(f"{required}: missing; give {kind.__name__} {rule.number}")
+        if left_out(values[required]):
+            problems.append(f"{required}: missing; give {kind.__name__} {field_rules(Scene)[required].number}")
         choices = kind.choices().items()
         return problems + [p for name, allowed in choices for p in choice_problems(name, values[name], allowed)]
 
     def _load_problems(self) -> list[str]:
-        if not isinstance(self.loads, tuple):
-            return [f"loads = {quote(self.loads)}: must be a Load, or a list of them"]
-        links = _links_of(self.mechanism)
-        problems: list[str] = []
-        for path, load in self._loads() if links else ():  # a mechanism without links takes no loads at all
-            sound = isinstance(load, Action)
-            problems += load.problems(path, links) if sound else [f"{path} = {quote(load)}: must be a Load"]
-        return problems
+        links, loads = _links_of(self.mechanism), self._loads() if isinstance(self.loads, tuple) else []
+        actions = [(path, load) for path, load in loads if isinstance(load, Action)]
+        return [p for path, load in actions for p in load.problems(path, links)] if links else []  # else none are taken
 
     def _index_problems(self) -> list[str]:
         """Return a line for each parameter over the index of a machine that is not the crank's angle."""
@@ -194,20 +188,26 @@ class Scene(ByContent):
         return self.mechanism.table(self.drive, tuple(load.form for load in self.loads))
 
     @cached_property
+    def numbers(self) -> dict[str, tuple[Any, str]]:
+        """Value and kind of each number of the scene, by path."""
+        return {path: (value, kind) for path, value, kind in numbers(self)}
+
+    @cached_property
     def arrays(self) -> dict[str, xr.DataArray]:
         """DataArrays of the scene, over designs or angles, by the path of the parameter."""
-        return {path: value for path, value in self._numbers.items() if isinstance(value, xr.DataArray)}
+        return {path: value for path, value in self._varying.items() if isinstance(value, xr.DataArray)}
 
-    @property
-    def _numbers(self) -> dict[str, Any]:
-        """Numbers of the scene by path, but for tables and functions of a position."""
+    @cached_property
+    def _varying(self) -> dict[str, Any]:
+        """Arrays and functions of the scene by path, but for tables and functions of a position."""
         curves = {id(number) for load in self.loads for number in load.over_positions}
-        return {path: value for path, value, _ in numbers(self) if id(value) not in curves}
+        varying = {path: value for path, (value, _) in self.numbers.items() if not isinstance(value, float | None)}
+        return {path: value for path, value in varying.items() if id(value) not in curves}
 
     @cached_property
     def parameters(self) -> dict[str, xr.Variable]:
         """Arrays of the scene as variables that state their unit, without the user's other attributes."""
-        units = {path: UNITS.get(kind, "") for path, _, kind in numbers(self)}
+        units = {path: UNITS[self.numbers[path][1]] for path in self.arrays}
         return {
             path: xr.Variable(array.dims, array.data, {"units": units[path], "long_name": f"parameter {path}"})
             for path, array in self.arrays.items()
@@ -216,7 +216,7 @@ class Scene(ByContent):
     @cached_property
     def functions(self) -> dict[str, Any]:
         """Functions of theta2 by the path of the parameter."""
-        return {path: value for path, value in self._numbers.items() if callable(value) and not hasattr(value, "dims")}
+        return {path: value for path, value in self._varying.items() if callable(value)}
 
     @cached_property
     def motion(self) -> dict[str, Any]:
@@ -282,7 +282,8 @@ class Scene(ByContent):
     @cached_property
     def bare(self) -> Scene:
         """Scene whose arrays have no labels, but for those of its loads."""
-        return with_sound(self, **{name: bare(value) for name, value in field_values(self).items() if name != "loads"})
+        parts = {name: value for name, value in field_values(self).items() if name != "loads"}
+        return with_sound(self, **{name: bare(value) for name, value in parts.items()}) if self.arrays else self
 
     @cached_property
     def inputs(self) -> Inputs:
@@ -354,7 +355,7 @@ class Scene(ByContent):
         mass = 700.0
         <BLANKLINE>
         """
-        from linksweep.scene.file.toml import toml_of  # here: it takes scenes
+        from linksweep.scene.file.writing import toml_of  # here: it takes scenes
 
         return toml_of(self)
 
@@ -365,18 +366,7 @@ def _own_label(name: str, value: Any) -> Any:
     return value.assign_coords({name: value.values}) if own and not is_lazy(value) else value
 
 
-def _load_tuple(loads: Any) -> Any:
-    """Return any collection of loads as a tuple, a single load as one of one; anything else as it is."""
-    loads = (loads,) if isinstance(loads, Action) else loads
-    several = isinstance(loads, Iterable) and not isinstance(loads, str | Mapping | np.ndarray) and not is_array(loads)
-    return tuple(loads) if several else loads
-
-
 def _links_of(mechanism: Any) -> tuple[str, ...]:
     """Return the moving links of a mechanism; for an object that is none, those of every mechanism."""
     kinds = [mechanism] if isinstance(mechanism, Mechanism) else MECHANISMS.values()
     return tuple(dict.fromkeys(role for kind in kinds for role in kind.links))
-
-
-def _left_out(value: Any) -> bool:
-    return value is None or (isinstance(value, str | tuple | list) and not value)

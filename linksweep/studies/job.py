@@ -18,7 +18,7 @@ from linksweep.results.peaks import peaks
 from linksweep.scene.curves.over_position import is_function
 from linksweep.scene.curves.tabulated import values_at
 from linksweep.scene.designs.selection import Block, blocks, design_sizes, selected
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 

@@ -8,7 +8,7 @@ import xarray as xr
 from refusals import LOOP, refusal
 
 import linksweep as ls
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 
 PRESS, ENGINE, SHAPER = (ls.example(name) for name in ("press", "engine", "quick-return"))
 LIGHT = {"mass": 0.0, "inertia": 0.0}

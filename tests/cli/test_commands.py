@@ -9,7 +9,7 @@ from drawn import closed_figures  # noqa: F401
 
 import linksweep as ls
 from linksweep.cli.main import main
-from linksweep.scene.file.toml import write_scene
+from linksweep.scene.file.writing import write_scene
 
 PRESS = ls.example("press")
 ENGINE = ls.example("engine")

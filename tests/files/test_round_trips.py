@@ -158,7 +158,7 @@ def test_a_scene_is_saved_as_a_text_to_be_edited(tmp_path):
 
 @pytest.mark.parametrize("number", [0.1 + 0.2, 5e-324, 1.7976931348623157e308, 1e16, -0.0, 123456789.123456789])
 def test_numbers_in_a_text_come_back_to_the_bit(number):
-    from linksweep.scene.file.toml import parse_scene
+    from linksweep.scene.file.reading import parse_scene
 
     again = parse_scene(replace(ls.example("press"), alpha2=number).to_toml()).alpha2
     assert np.float64(again).tobytes() == np.float64(number).tobytes()

@@ -156,7 +156,7 @@ def test_a_design_taken_from_a_batch_still_knows_its_scene():
 
 
 def test_files_of_scenes_and_of_results_say_the_same(tmp_path):
-    from linksweep.scene.file.toml import write_scene
+    from linksweep.scene.file.writing import write_scene
 
     (tmp_path / "scene.toml").write_text(write_scene(batch()), encoding="utf-8")
     ls.save(ls.sweep(batch(), 12), tmp_path / "cycle.nc")

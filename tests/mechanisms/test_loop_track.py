@@ -10,7 +10,7 @@ from refusals import refusal
 
 import linksweep as ls
 from linksweep.cli.main import main
-from linksweep.scene.file.toml import parse_scene
+from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.units import quantity
 
 mp.mp.dps = 50

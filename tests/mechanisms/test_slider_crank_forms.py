@@ -13,7 +13,8 @@ from oracle_slider_crank import DRIVES, SliderCrankData, mirrored, random_data, 
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.trace.plan import Plan, plan
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 
 KINEMATICS = ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider")
 FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")

@@ -40,6 +40,7 @@ from numpydoc.validate import Validator, validate
 
 import linksweep as ls
 from linksweep.analysis.design.objective import Objective
+from linksweep.base.fields import field_rules
 from linksweep.base.validate import UNITS
 from linksweep.plot.accessor import Cycle
 from linksweep.plot.kit.film import Film
@@ -336,19 +337,13 @@ def summary_problems(summary: str, kind: str) -> list[str]:
 def parameter_problems(thing: object, doc: Validator) -> list[str]:
     """Return the parameters whose default, or unit, is not stated."""
     signature = inspect.signature(thing).parameters
-    kinds = {item.name: item.metadata["rule"].kind for item in ruled_fields(thing)}
+    rules = field_rules(thing) if dataclasses.is_dataclass(thing) else {}
     report = []
     for name, (type_line, lines) in doc.doc_parameters.items():
         if name in signature:
             report += default_problems(name, type_line, signature[name].default)
-        report += unit_problems(name, type_line, " ".join(lines), kinds.get(name))
+        report += unit_problems(name, type_line, " ".join(lines), rules[name].kind if name in rules else None)
     return report
-
-
-def ruled_fields(thing: object) -> list[dataclasses.Field]:
-    if not dataclasses.is_dataclass(thing):
-        return []
-    return [item for item in dataclasses.fields(thing) if "rule" in item.metadata]
 
 
 def default_problems(name: str, type_line: str, default: object) -> list[str]:

@@ -20,7 +20,7 @@ from linksweep.reports.markup import Markup, tag
 from linksweep.reports.page import page
 from linksweep.results.peaks import peaks_of_part
 from linksweep.scene.examples import names
-from linksweep.scene.file.toml import parse_scene
+from linksweep.scene.file.reading import parse_scene
 
 STEEL = {"width": 0.02, "thickness": 0.02, "density": 7750}
 

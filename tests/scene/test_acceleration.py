@@ -10,7 +10,8 @@ from scipy.interpolate import CubicSpline
 
 import linksweep as ls
 from linksweep.cli.main import main
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.grid import crank_grid
 
 PRESS = ls.example("press")

@@ -1,19 +1,23 @@
-"""What acts on a mechanism, one protocol for all; equality by content; and what an array says of its unit."""
+"""Loads of every kind on one protocol; equality by content; units that arrays have in their attributes."""
 
 import math
-from dataclasses import dataclass, replace
+import re
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.base.validate import parameter
-from linksweep.mechanisms.rows.load_forms import LoadForm
-from linksweep.scene.file import toml as file
+from linksweep.base.fields import choice, parameter
+from linksweep.base.frozen import with_sound
+from linksweep.reports.inputs import loads as loads_in_words
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.loads.action import Action
-from linksweep.scene.loads.kinds import ACTIONS
+from linksweep.scene.loads.action import LOADS, Action
+from linksweep.scene.loads.load import LoadForm
+from linksweep.scene.parameters import free
 
 PRESS = ls.example("press")
 ENGINE = ls.example("engine")
@@ -22,14 +26,15 @@ WIDTHS = xr.DataArray([0.1, 0.2], {"design": [1, 2]}, "design")
 
 @dataclass(frozen=True, eq=False)
 class Brake(Action):
-    """A new kind of load, which the package has never heard of: a torque on the crank, on in one of two turns."""
+    """A kind of load that the package does not know: a torque against the crank, on in one of two turns."""
 
-    torque: float = parameter("torque")
+    torque: float = parameter("torque", at_least=0.0)
     on: float = parameter("angle")
+    lining: str = choice("dry", "wet")
+    there: xr.DataArray = field(default=None, init=False, repr=False)  # over the angles of a sweep
 
     form = LoadForm("crank", force=False, torque=True, link_axes=False)
     period = 720.0
-    there = 0.0
 
     def misfits(self, path, mechanism):
         return [] if isinstance(mechanism, ls.FourBar) else [f"{path} is a Brake: must be on a FourBar"]
@@ -38,46 +43,86 @@ class Brake(Action):
         return (self.on,)
 
     def sampled(self, path, revolution):
-        brought = replace(self)
         angles = np.asarray(revolution.grid.angles)
         gripping = np.mod(angles - self.on, 720.0) < 360.0
-        object.__setattr__(brought, "there", xr.DataArray(-self.torque * gripping, {"theta2": angles}, "theta2"))
-        return brought
+        return with_sound(self, there=-self.torque * xr.DataArray(gripping, {"theta2": angles}, "theta2"))
 
     def parameters(self, name, machine):
         return {f"{name}_torque": self.there}
 
 
 @pytest.fixture
-def _known_to_files(monkeypatch):
-    """As one more of ACTIONS is."""
-    monkeypatch.setitem(file.SCHEMA, Brake, file._fields(Brake))
-    monkeypatch.setitem(file._LOADS.classes, "Brake", Brake)
+def _registered(monkeypatch):
+    """What `register` does, undone after the test."""
+    monkeypatch.setitem(LOADS, "Brake", Brake)
 
 
-@pytest.mark.usefixtures("_known_to_files")
-def test_a_new_kind_of_load_is_one_class():
-    """Period, jumps, torque and file of a load that only this test knows, beside one of the package."""
-    own = ls.Load("rocker", torque=-12.0)
-    braked, free = (ls.Scene(PRESS.mechanism, omega2=30.0, loads=loads) for loads in ([own, Brake(5.0, 100.5)], [own]))
-    assert braked.period == 720.0 and braked.jumps() == (100.5,)
-    found = ls.sweep(braked, 720, ["T12"]).T12
+def braked(**numbers) -> ls.Scene:
+    loads = [ls.Load("rocker", torque=-12.0), Brake(**{"torque": 5.0, "on": 100.5} | numbers)]
+    return ls.Scene(PRESS.mechanism, omega2=30.0, loads=loads)
+
+
+def test_a_new_kind_of_load_is_swept():
+    """Period, jumps and torque of a load that only this test knows, beside one of the package."""
+    free = replace(braked(), loads=[ls.Load("rocker", torque=-12.0)])
+    assert braked().period == 720.0 and braked().jumps() == (100.5,)
+    found = ls.sweep(braked(), 720, ["T12"]).T12
     without = ls.sweep(free, np.arange(720.0), ["T12"]).T12
     on = (found.theta2 > 100.5) & (found.theta2 <= 460.0)
     np.testing.assert_allclose(found - without, xr.where(on, 5.0, 0.0), atol=1e-11)
-    assert file.parse_scene(file.write_scene(braked)) == braked
 
 
-def test_a_new_kind_of_load_is_judged_like_the_others():
-    with pytest.raises(ValueError, match=r"^loads\[2\].torque = nan N m: must be finite$"):
+def test_exact_peaks_of_a_new_kind_of_load():
+    """In one of the two turns the drive gives 5 N m more: the highest torque is that much higher, the least is not."""
+    free = ls.peaks(replace(braked(), loads=[ls.Load("rocker", torque=-12.0)]), of=["T12"])
+    peaks = ls.peaks(braked(on=free.T12_max_at.item() - 1.0), of=["T12"])
+    np.testing.assert_allclose(peaks.T12_max, free.T12_max + 5.0, rtol=1e-10)
+    np.testing.assert_allclose(peaks.T12_min, free.T12_min, rtol=1e-10)
+    np.testing.assert_allclose(peaks.T12_max_at, free.T12_max_at, atol=1e-5)
+
+
+@pytest.mark.usefixtures("_registered")
+def test_a_new_kind_of_load_has_its_table_in_files():
+    torques = xr.DataArray([5.0, 6.0], {"pad": [1, 2]}, "pad")
+    for scene in (braked(), braked(torque=torques), braked(lining="wet")):
+        assert parse_scene(write_scene(scene)) == scene
+    table = '[[loads]]\ntype = "Brake"\ntorque = "5000 N mm"\non = "0.25 rev"\n'
+    text = write_scene(PRESS).partition("[[loads]]")[0]
+    assert parse_scene(text + table).loads == (Brake(5.0, 90.0),)
+    for wrong, message in {
+        'torque = "5000 N mm"\n': 'loads[1].torque: missing; write torque = "12 N m", or a number in N m',
+        " mm": 'loads[1].torque = "5000 N": N is a unit of force, not of torque',
+    }.items():
+        with pytest.raises(ValueError, match=re.escape(message)):
+            parse_scene(text + table.replace(wrong, ""))
+    with pytest.raises(ValueError, match=r"must be one of Load, .*, Brake"):
+        parse_scene(text + table.replace('"Brake"', '"Clutch"'))
+
+
+def test_a_new_kind_of_load_varies_like_the_others():
+    """Its numbers are free in a study, and convert; its words are no numbers."""
+    assert {path for path in free(braked()) if path.startswith("loads[2]")} == {"loads[2].torque", "loads[2].on"}
+    drawn = ls.sample(braked(), {"loads[2].torque": ("4000 N mm", "6 N m")}, n=8)
+    torque = drawn.arrays["loads[2].torque"]
+    assert torque.min() >= 4.0 and torque.max() <= 6.0 and torque.std() > 0.1
+    assert ls.peaks(drawn, of=["T12"], theta2=72).sizes == {"design": 8}
+
+
+def test_a_report_has_words_for_a_new_kind_of_load():
+    assert "Brake (torque 5\u202fN m, on 100.5°, lining dry)" in str(loads_in_words(braked()))
+
+
+def test_a_new_kind_of_load_is_checked_like_the_others():
+    with pytest.raises(ValueError, match=r"^loads\[2\].torque = nan N m: must be finite and at least 0$"):
         ls.Scene(PRESS.mechanism, omega2=30.0, loads=[ls.Load("rocker", torque=-12.0), Brake(math.nan, 0.0)])
     with pytest.raises(ValueError, match=r"^loads\[1\] is a Brake: must be on a FourBar$"):
         ls.Scene(ENGINE.mechanism, omega2=30.0, loads=Brake(5.0, 0.0))
 
 
 def test_all_loads_of_the_package_are_actions():
-    assert all(issubclass(kind, Action) for kind in ACTIONS)
-    assert len(ACTIONS) == len({kind.__name__ for kind in ACTIONS}) == 6
+    """Each is public by its own name: the line that registers it is all that `linksweep` needs."""
+    assert all(issubclass(kind, Action) and getattr(ls, name) is kind for name, kind in LOADS.items())
+    assert {*LOADS} == {"Load", "GasPressure", "Spring", "Damper", "TorsionSpring", "TorsionDamper"} <= {*ls.__all__}
 
 
 def test_jumps_of_all_loads_are_those_of_the_scene():

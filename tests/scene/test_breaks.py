@@ -5,7 +5,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 
 ENGINE = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), slider_mass=0.5)
 

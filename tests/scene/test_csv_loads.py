@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.scene.file.toml import read_scene
+from linksweep.scene.file.reading import read_scene
 
 ENGINE = """\
 omega2 = 100

@@ -20,8 +20,8 @@ from random_scenes import built, listed, objects, sound, spoiled
 
 import linksweep as ls
 from linksweep.results.compute import compute
-from linksweep.scene.file import toml as file
-from linksweep.scene.file.toml import parse_scene
+from linksweep.scene import file
+from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.grid import crank_grid
 
 EXAMPLES = os.environ.get("LINKSWEEP_FUZZ")

@@ -10,7 +10,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 
 A, B, BORE, R, P1, P3, GAMMA = 0.04, 0.14, 0.09, 9.0, 1.0e5, 5.0e6, 1.4
 AREA = math.pi * BORE**2 / 4

@@ -9,7 +9,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.scene.file.toml import parse_scene, read_scene, write_scene
+from linksweep.scene.file.reading import parse_scene, read_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.studies.job import scene_digest
 
 KINDS = ("periodic cubic", "pchip", "linear", "step")

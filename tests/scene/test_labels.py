@@ -11,7 +11,8 @@ import xarray as xr
 from refusals import refusal
 
 import linksweep as ls
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 
 
 def objects(*labels):

@@ -11,8 +11,9 @@ import xarray as xr
 from refusals import SCENE
 
 import linksweep as ls
+from linksweep.base.fields import numbers
 from linksweep.scene.designs.sampling import METHODS
-from linksweep.scene.parameters import numbers, replaced
+from linksweep.scene.parameters import replaced
 
 PRESS = ls.example("press")
 RANGE = {"coupler.length": (0.2, 0.24)}
@@ -49,8 +50,8 @@ def test_paths_reach_links_loads_springs_and_cycles():
     scene = replaced(ls.Scene(SCENE.mechanism, omega2=30.0, loads=[spring]), {"loads[1].to[3]": 20.0})
     assert scene.loads[0].to == ("rocker", 0.1, 20.0)
     kinds = {path: kind for path, _, kind in numbers(scene)}
-    assert [kinds[f"loads[1].from_[{k}]"] for k in (1, 2, 3)] == ["", "length", "length"]
-    assert [kinds[f"loads[1].to[{k}]"] for k in (1, 2, 3)] == ["", "length", "angle"]
+    assert [kinds[f"loads[1].from_[{k}]"] for k in (2, 3)] == ["length", "length"]
+    assert [kinds[f"loads[1].to[{k}]"] for k in (2, 3)] == ["length", "angle"]
     engine = replaced(ls.example("engine"), {"loads[1].pressure.compression_ratio": 9.0})
     assert engine.loads[0].pressure.compression_ratio == 9.0
 

@@ -10,7 +10,8 @@ from refusals import refusal
 from test_springs import FOUR_BAR, all_kinds, scene
 
 import linksweep as ls
-from linksweep.scene.file.toml import parse_scene, write_scene
+from linksweep.scene.file.reading import parse_scene
+from linksweep.scene.file.writing import write_scene
 
 
 def test_scene_file_round_trip():

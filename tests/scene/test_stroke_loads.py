@@ -10,7 +10,8 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.reports.page import page
-from linksweep.scene.file.toml import parse_scene, read_scene, write_scene
+from linksweep.scene.file.reading import parse_scene, read_scene
+from linksweep.scene.file.writing import write_scene
 from linksweep.studies.job import scene_digest
 
 A, B = 0.04, 0.14

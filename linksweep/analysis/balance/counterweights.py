@@ -13,21 +13,12 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import (
-    Number,
-    Rule,
-    choice_problems,
-    field_problems,
-    pair_problems,
-    parameter,
-    quote,
-    refuse,
-)
+from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind, parameter
+from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.links import Link
 from linksweep.results.compute import require, require_scene
-from linksweep.scene.checked_number import checked_number, said_unit_problems
-from linksweep.scene.loads.load import AT
+from linksweep.scene.checked_number import checked_number, unit_attribute_problems
 from linksweep.scene.scene import Scene
 
 RADIUS = Rule("length", above=0.0)
@@ -65,18 +56,14 @@ class Counterweight(ByContent):
 
     link: str
     mass: Number = parameter("mass", at_least=0.0)
-    at: Sequence[Number] = (0.0, 0.0)
+    at: Sequence[Number] = of_kind(POLAR_POINT, (0.0, 0.0))
     inertia: Number = parameter("inertia", 0.0, at_least=0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         named = f'link = {quote(self.link)}: must be a name, such as "crank"'
-        refuse(
-            [named] * (not isinstance(self.link, str))
-            + field_problems(self)
-            + pair_problems("at", self.at, AT, "(distance in m, angle in degrees)")
-        )
-        refuse(said_unit_problems(self))
+        refuse(([] if isinstance(self.link, str) else [named]) + field_problems(self))
+        refuse(unit_attribute_problems(numbers(self)))
 
 
 def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -> Scene:

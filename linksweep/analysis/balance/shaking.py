@@ -6,10 +6,11 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.fields import PairField
 from linksweep.base.validate import Rule, quote, refuse
 from linksweep.scene.checked_number import checked_pair
 
-POINT = (Rule("length"), Rule("length"))
+POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m from A")
 
 
 def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.DataArray:
@@ -44,7 +45,7 @@ def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.Da
     missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
     advice = 'sweep with outputs=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])
-    about = checked_pair("about", about, POINT, "(x, y) in m from A")
+    about = checked_pair("about", about, POINT)
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
     where = (
         "a point of each design" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"

@@ -23,6 +23,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.degrees import cos_sin
+from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.physics.algebra import planar
 from linksweep.results.check import evaluated
@@ -33,7 +34,6 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_pair
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.loads.load import AT
 from linksweep.scene.scene import Scene
 
 ANGLE = "transmission_angle"
@@ -137,7 +137,7 @@ def coupler_curve(
     bodies = {body.role: body for body in scene.mechanism.bodies}
     role = _floating(scene) if link is None else link
     refuse(choice_problems("link", role, bodies))
-    at = checked_pair("at", at, AT, "(distance in m, angle in degrees)")
+    at = checked_pair("at", at, POLAR_POINT)
     body, cycle = bodies[role], sweep(scene, theta2, ["status"], threads=threads)
     k = body.number
     position, velocity, acceleration = (

@@ -15,24 +15,16 @@ import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import MEANINGS, UNBOUNDED, Rotation, rotation_under_load
 from linksweep.base.equality import ByContent
+from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.memory import require_memory
-from linksweep.base.validate import (
-    Number,
-    choice_problems,
-    count_problems,
-    field_problems,
-    name_problems,
-    parameter,
-    quote,
-    refuse,
-)
+from linksweep.base.validate import Number, choice_problems, count_problems, name_problems, quote, refuse
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import angles_missing, require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import flags, joined
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import said_unit_problems
+from linksweep.scene.checked_number import unit_attribute_problems
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -91,7 +83,7 @@ class Bearing(ByContent):
     def __post_init__(self) -> None:
         super().__post_init__()
         refuse(field_problems(self) + choice_problems("kind", self.kind, EXPONENTS))
-        refuse(said_unit_problems(self))
+        refuse(unit_attribute_problems(numbers(self)))
 
     @property
     def exponent(self) -> float:

@@ -19,7 +19,6 @@ import numpy as np
 
 from linksweep.base.validate import Rule
 from linksweep.scene.curves.over_angle import called, period_of
-from linksweep.scene.parameters import numbers
 
 Array = np.ndarray
 Function = Callable[[Array], Array]
@@ -54,7 +53,7 @@ def quick_angles(scene: Any) -> Quick:
     arrays = [array for array in scene.arrays.values() if "theta2" in array.dims and "theta2" in array.coords]
     periods = [period_of(array, scene.mechanism.period) for array in arrays]
     data = [of_data(array["theta2"].values, own, scene.period) for array, own in zip(arrays, periods, strict=True)]
-    functions = [_of_checked(scene, path, kind) for path, _, kind in numbers(scene) if path in scene.functions]
+    functions = [_of_checked(scene, path, scene.numbers[path][1]) for path in scene.functions]
     return joined([*data, *functions])
 
 

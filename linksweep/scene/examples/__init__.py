@@ -4,7 +4,7 @@ from importlib.resources import files
 from itertools import takewhile
 
 from linksweep.base.validate import choice_problems, refuse
-from linksweep.scene.file.toml import parse_scene
+from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.scene import Scene
 
 

@@ -1,1 +1,1 @@
-"""Hold all that acts on a machine, each load a class with its parameters, and what changes over the crank angle."""
+"""Loads on the links of a mechanism: forces and torques, gas pressure, springs and dampers."""

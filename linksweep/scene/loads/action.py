@@ -1,50 +1,64 @@
-"""What every action on a mechanism offers to the scene that takes it, with what most of them answer."""
+"""What a scene requires of every load, and the register of all kinds of loads."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, field_problems
+from linksweep.base.fields import field_problems
+from linksweep.base.validate import Number
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.scene.revolution import Revolution
 
+Kind = TypeVar("Kind", bound="type[Action]")
+
 
 class Action(ByContent):
-    """What may stand among a scene's loads: a frozen dataclass that knows its form and its numbers."""
+    """A load of a scene: a frozen dataclass with a form (its rows in a machine's table) and numbers for them.
+
+    Derive a dataclass, declare the kind of each field, and register it::
+
+        @register
+        @dataclass(frozen=True, eq=False)
+        class Brake(Action):
+            torque: Number = parameter("torque", at_least=0.0)
+            ...
+
+    With a line in `linksweep.scene.loads` it is then one of the package's loads.
+    """
 
     @property
     def form(self) -> Form:
-        """Which rows it brings, without its numbers."""
+        """The rows and quantities that the load adds to a machine's table."""
         raise NotImplementedError
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Its numbers under the names that the physics wires by, given the machine's."""
+        """Return the load's numbers under the names that the rows of its form take; `machine` are the machine's."""
         raise NotImplementedError
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
-        """What is wrong with it on a machine of these links; by default, what is with its numbers."""
+        """Return the problems of the load on a machine of these links; by default those of its fields."""
         return field_problems(self, path + ".")
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
-        """Why a mechanism does not take it, sound as it is in itself."""
+        """Return why this mechanism cannot take the load, which is valid in itself."""
         return []
 
     @property
     def on_centre_of(self) -> str:
-        """The link with whose centre of gravity its place moves; "" for none."""
+        """The link with whose centre of gravity its point of action moves; "" for none."""
         return ""
 
     @property
     def over_positions(self) -> tuple[Any, ...]:
-        """Its tables and functions of a position: curves, which have neither designs nor crank angles."""
+        """Tables and functions of a position: curves, which have neither designs nor crank angles."""
         return ()
 
     @property
     def period(self) -> float:
-        """After which it repeats [degree], besides what its numbers over theta2 say; 0 where it has none of its own."""
+        """Period [degree] of the load, besides those of its numbers over theta2; 0 where it has none of its own."""
         return 0.0
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
@@ -53,9 +67,19 @@ class Action(ByContent):
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
         """Return the names of pairs of quantities: one rises through 0 where its force may turn over quickly, the other
-        says within which angle of the crank [rad]."""
+        states within which angle of the crank [rad]."""
         return ()
 
     def sampled(self, path: str, revolution: Revolution) -> Action:
-        """The same with all that changes over the revolution at its angles; itself where nothing does."""
+        """Return the load with all that changes over the revolution at its angles; itself where nothing changes."""
         return self
+
+
+LOADS: dict[str, type[Action]] = {}
+"""Every registered kind of load by the name of its class, which is its `type` in a scene file."""
+
+
+def register(kind: Kind) -> Kind:
+    """Add a kind of load to `LOADS`; a decorator of its dataclass."""
+    LOADS[kind.__name__] = kind
+    return kind

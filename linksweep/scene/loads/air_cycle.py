@@ -21,12 +21,13 @@ import xarray as xr
 
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.equality import ByContent
-from linksweep.base.validate import Number, as_float, field_problems, is_lazy, parameter, quote, refuse
+from linksweep.base.fields import field_problems, numbers, parameter
+from linksweep.base.validate import Number, as_float, is_lazy, quote, refuse
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.scene.dimensions import dims_of
-from linksweep.scene.parameters import along, bare, numbers
+from linksweep.scene.parameters import along, bare
 
 ATMOSPHERE = 101325.0
 
@@ -139,6 +140,7 @@ class DieselCycle(ByContent):
 
 
 Cycle = OttoCycle | DieselCycle
+CYCLES = (OttoCycle, DieselCycle)
 
 
 def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning: Number) -> xr.Variable:

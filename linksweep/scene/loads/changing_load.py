@@ -1,25 +1,19 @@
-"""Loads whose numbers may change over the revolution: how arrays go on between their angles, and where they jump."""
+"""Loads whose numbers may change over the revolution: their interpolation between angles, and the angles of jumps."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+from linksweep.base.fields import RowField
 from linksweep.base.frozen import normalise
-from linksweep.base.validate import (
-    Number,
-    Rule,
-    choice_problems,
-    is_array,
-    plain_numbers_problems,
-    quote,
-)
+from linksweep.base.validate import Number, Rule, choice_problems, is_array, quote
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.interpolation import INTERPOLATIONS
 from linksweep.scene.curves.over_angle import corners
 from linksweep.scene.loads.action import Action
 
-BREAK = Rule("angle")
+BREAKS = RowField(Rule("angle"))
 
 
 class ChangingLoad(Action):
@@ -30,7 +24,7 @@ class ChangingLoad(Action):
 
     @property
     def changing(self) -> tuple[Any, ...]:
-        """Return its numbers that may change over the revolution."""
+        """The numbers that may change over the revolution."""
         raise NotImplementedError
 
     def __post_init__(self) -> None:
@@ -38,12 +32,11 @@ class ChangingLoad(Action):
         if self.interpolation is None:
             normalise(self, interpolation=next(iter(self._of_arrays()), None))
 
-    def changing_problems(self, path: str) -> list[str]:
-        """Return what is wrong with the breaks and the interpolation of a load at this path."""
-        problems = plain_numbers_problems(f"{path}.breaks", self.breaks, BREAK)
+    def interpolation_problems(self, path: str) -> list[str]:
+        """Return the problems of the interpolation of the load at this path."""
         if self.interpolation is None:
-            return problems
-        problems += choice_problems(f"{path}.interpolation", self.interpolation, INTERPOLATIONS)
+            return []
+        problems = choice_problems(f"{path}.interpolation", self.interpolation, INTERPOLATIONS)
         others = [f"one is {quote(other)}" for other in self._of_arrays() if other != self.interpolation]
         others += ["one is a function" for number in self.changing if callable(number) and not is_array(number)]
         kind = f"{path}.interpolation = {quote(self.interpolation)}: is that of all its arrays, but"
@@ -54,5 +47,6 @@ class ChangingLoad(Action):
         return (*self.breaks, *(angle for array in self.changing for angle in corners(array, self.interpolation)))
 
     def _of_arrays(self) -> list[Any]:
+        """Return the interpolations that its arrays name in their attributes."""
         attributes = (getattr(number, "attrs", {}) for number in self.changing)
         return [own["interpolation"] for own in attributes if "interpolation" in own]

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from linksweep.base.frozen import field_values, unvalidated, with_sound
-from linksweep.base.validate import Number, Rule, field_problems, overflow_problems, parameter
+from linksweep.base.fields import field_problems, of_kind, parameter
+from linksweep.base.frozen import with_sound
+from linksweep.base.validate import Number, Rule, overflow_problems
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
-from linksweep.mechanisms.rows.load_forms import LoadForm
-from linksweep.scene.loads.air_cycle import ATMOSPHERE, Cycle, pressure_over
-from linksweep.scene.loads.changing_load import ChangingLoad
+from linksweep.scene.loads.action import register
+from linksweep.scene.loads.air_cycle import ATMOSPHERE, CYCLES, Cycle, pressure_over
+from linksweep.scene.loads.changing_load import BREAKS, ChangingLoad
+from linksweep.scene.loads.load import LoadForm
 from linksweep.scene.revolution import Revolution
 
 PRESSURE = Rule("pressure", over_angle=True)
 
 
+@register
 @dataclass(frozen=True, eq=False)
 class GasPressure(ChangingLoad):
     """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
@@ -60,19 +63,15 @@ class GasPressure(ChangingLoad):
     """
 
     bore: Number = parameter("length", above=0.0)
-    pressure: Number | Cycle = parameter("pressure", over_angle=True)
+    pressure: Number | Cycle = parameter("pressure", over_angle=True, parts=CYCLES)
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
-    breaks: Sequence[float] = ()
+    breaks: Sequence[float] = of_kind(BREAKS, ())
     interpolation: str | None = None
+    in_cylinder: Number = field(default=None, init=False, repr=False)  # of a cycle, over the angles of a sweep [Pa]
 
     @property
     def changing(self) -> tuple[Any, ...]:
         return self.pressure, self.crankcase
-
-    @property
-    def in_cylinder(self) -> Number:
-        """Pressure in the cylinder [Pa]."""
-        return self.pressure
 
     @property
     def form(self) -> LoadForm:
@@ -87,12 +86,11 @@ class GasPressure(ChangingLoad):
         return self.cycle.period if self.cycle else 0.0
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
-        given = self if self.cycle is None else replace(self, pressure=ATMOSPHERE)
         of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
-        problems = field_problems(given, path + ".")
+        problems = field_problems(self, path + ".")
         with np.errstate(over="ignore"):
             problems = problems or overflow_problems(f"{path}.bore", self.bore * self.bore, "square")
-        return problems + of_cycle + self.changing_problems(path)
+        return problems + of_cycle + self.interpolation_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         if missing := lack(mechanism, "cylinder"):
@@ -114,7 +112,7 @@ class GasPressure(ChangingLoad):
             return with_sound(self, pressure=pressure, crankcase=crankcase)
         cylinder = revolution.mechanism.cylinder
         pressure = pressure_over(self.cycle, cylinder, revolution.grid.angles, revolution.turning)
-        return unvalidated(SampledCycle, **field_values(self) | {"crankcase": crankcase, "in_cylinder": pressure})
+        return with_sound(self, crankcase=crankcase, in_cylinder=pressure)
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
@@ -122,14 +120,8 @@ class GasPressure(ChangingLoad):
         return (*dead_centres, *super().jumps(mechanism))
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """The force along the guide, NaN where the crank does not take a cycle round; it acts at C."""
+        """Return the force along the guide, NaN where the crank of a cycle does not turn fully; it acts at C."""
+        pressure = self.in_cylinder if self.cycle else self.pressure
         area = 0.25 * math.pi * (self.bore * self.bore)
-        force = machine["branch_sign"] * (self.crankcase - self.in_cylinder) * area
+        force = machine["branch_sign"] * (self.crankcase - pressure) * area
         return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}
-
-
-@dataclass(frozen=True, eq=False)
-class SampledCycle(GasPressure):
-    """A gas pressure whose cycle has been evaluated at the angles of a sweep."""
-
-    in_cylinder: Number = None

@@ -1,11 +1,11 @@
-"""What may act on a mechanism: the classes that a scene takes as loads, and that its file can name.
+"""The kinds of loads: each is a class in a file of this folder, `register`ed there, with a line here.
 
-Each is an `Action`: a new kind of load is one more of them, one more here, and its form in `mechanisms`.
+The line is all that scenes, scene files and `linksweep` itself need to take a new kind.
 """
 
-from linksweep.scene.loads.action import Action
-from linksweep.scene.loads.gas_pressure import GasPressure
-from linksweep.scene.loads.load import Load
-from linksweep.scene.loads.springs import Damper, Spring, TorsionDamper, TorsionSpring
-
-ACTIONS: tuple[type[Action], ...] = (Load, GasPressure, Spring, Damper, TorsionSpring, TorsionDamper)
+from linksweep.scene.loads.gas_pressure import GasPressure as GasPressure
+from linksweep.scene.loads.load import Load as Load
+from linksweep.scene.loads.springs import Damper as Damper
+from linksweep.scene.loads.springs import Spring as Spring
+from linksweep.scene.loads.torsion import TorsionDamper as TorsionDamper
+from linksweep.scene.loads.torsion import TorsionSpring as TorsionSpring

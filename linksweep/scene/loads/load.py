@@ -5,32 +5,36 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import xarray as xr
 
-from linksweep.base.conversion import PAIRS, as_pair
 from linksweep.base.degrees import cos_sin
-from linksweep.base.frozen import normalise, with_values
-from linksweep.base.validate import Number, Rule, choice_problems, field_problems, pair_problems, parameter, quote
+from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems, of_kind, parameter, word
+from linksweep.base.frozen import normalise, with_sound
+from linksweep.base.validate import Number, Rule, choice_problems, quote
+from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.rows.bodies import Body
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
-from linksweep.mechanisms.rows.load_forms import LoadForm
+from linksweep.mechanisms.rows.load_forms import Acting
 from linksweep.mechanisms.strokes import Stroke
+from linksweep.physics.algebra import planar
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
 from linksweep.scene.curves.over_position import POSITION, at_positions, corners, is_function, is_table, table_problems
-from linksweep.scene.loads.changing_load import ChangingLoad
+from linksweep.scene.loads.action import register
+from linksweep.scene.loads.changing_load import BREAKS, ChangingLoad
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.units import unit_problems
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
-FORCE_PAIR = "(Fx, Fy) in N, each a number, a DataArray or a function of theta2"
-AT = (Rule("length", at_least=0.0, polar=True), Rule("angle"))
+COMPONENTS = PairField(FORCE, FORCE, "(Fx, Fy) in N, each a number, a DataArray or a function of theta2", or_first=True)
 AT_ANGLES: dict[str, Any] = {"over": None, "while_": None, "breaks": (), "interpolation": None}
-"""Words of a load over a position once it has been brought to crank angles."""
+"""Fields of a load over a position once it is sampled at crank angles."""
 
 
+@register
 @dataclass(frozen=True, eq=False)
 class Load(ChangingLoad):
     """A force at a point of a link, a torque on it, or both, besides weight and inertia.
@@ -84,21 +88,20 @@ class Load(ChangingLoad):
     >>> press = ls.Load("slider", force=push, over="slider.to_end", while_="closing", interpolation="step")
     """
 
-    link: str
-    force: Sequence[Number] | Number | None = None
-    at: Sequence[Number] = (0.0, 0.0)
-    frame: str = "ground"
+    link: str = word('"coupler"')
+    force: Sequence[Number] | Number | None = of_kind(COMPONENTS, None)
+    at: Sequence[Number] = of_kind(POLAR_POINT, (0.0, 0.0))
+    frame: str = choice("ground", "link")
     torque: Number | None = parameter("torque", None, over_angle=True)
-    origin: str = "pin"
-    breaks: Sequence[float] = ()
+    origin: str = choice("pin", "cg")
+    breaks: Sequence[float] = of_kind(BREAKS, ())
     interpolation: str | None = None
     over: str | None = None
     while_: str | None = None
 
     def __post_init__(self) -> None:
-        normalise(self, force=as_pair(self.force, PAIRS["force"]))
         on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
-        if on_slider and self.force is not None and not isinstance(self.force, tuple | list | str):
+        if on_slider and COMPONENTS.may_be_first(self.force):
             normalise(self, force=(self.force, 0.0), frame="link")
         super().__post_init__()
 
@@ -117,19 +120,11 @@ class Load(ChangingLoad):
         return LoadForm(self.link, self.force is not None, self.torque is not None, self.frame == "link")
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
-        found = choice_problems(f"{path}.link", self.link, links)
-        found += choice_problems(f"{path}.frame", self.frame, ("ground", "link"))
-        found += choice_problems(f"{path}.origin", self.origin, ("pin", "cg"))
-        found += self.changing_problems(path) + self._position_problems(path)
+        problems = choice_problems(f"{path}.link", self.link, links)
+        problems += self.interpolation_problems(path) + self._position_problems(path)
         if self.force is None and self.torque is None:
-            found.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
-        if self.force is not None:
-            found += pair_problems(f"{path}.force", self.force, (FORCE, FORCE), FORCE_PAIR)
-        return (
-            found
-            + field_problems(self, path + ".")
-            + pair_problems(f"{path}.at", self.at, AT, "(distance in m, angle in degrees)")
-        )
+            problems.append(f"{path} has neither force nor torque: give force=(Fx, Fy), torque=..., or both")
+        return problems + field_problems(self, path + ".")
 
     @property
     def on_centre_of(self) -> str:
@@ -146,8 +141,8 @@ class Load(ChangingLoad):
             return problems
         stroke = mechanism.strokes[self.over]
         for at, number in self._changing_at(path):
-            said_unit = number[POSITION].attrs.get("units") if is_table(number) else None
-            problems += unit_problems(f"{at}.{POSITION}", said_unit, stroke.kind)
+            unit = number[POSITION].attrs.get("units") if is_table(number) else None
+            problems += unit_problems(f"{at}.{POSITION}", unit, stroke.kind)
         return problems + ([] if self.while_ is None else choice_problems(f"{path}.while_", self.while_, stroke.words))
 
     def _position_problems(self, path: str) -> list[str]:
@@ -159,7 +154,7 @@ class Load(ChangingLoad):
         return periodic + [p for at, number in self._changing_at(path) for p in table_problems(at, number)]
 
     def _changing_at(self, path: str) -> list[tuple[str, Any]]:
-        """Numbers that may change over the revolution, with their paths."""
+        """Return the numbers that may change over the revolution, with their paths."""
         forces = [(f"{path}.force[{k}]", force) for k, force in enumerate(self.changing[:-1], 1)]
         return [*forces, (f"{path}.torque", self.torque)]
 
@@ -179,31 +174,31 @@ class Load(ChangingLoad):
             sample(at, number, rule) for (at, number), rule in zip(self._changing_at(path), rules, strict=True)
         )
         values = {"force": self.force and tuple(force), "torque": torque}
-        return with_values(self, **values) if self.over is None else with_values(self, **values, **AT_ANGLES)
+        return with_sound(self, **values) if self.over is None else with_sound(self, **values, **AT_ANGLES)
 
     def _stroke(self, mechanism: Mechanism) -> Stroke:
         return mechanism.strokes[str(self.over)]
 
     def _positions(self, revolution: Revolution) -> tuple[str, xr.DataArray, Number]:
-        """Kind of the positions, these over the angles, and where it acts: 1 on its way, 0 on the other."""
+        """Return the kind of the positions, the positions over the angles, and 1 where the load acts, 0 elsewhere."""
         stroke = self._stroke(revolution.mechanism)
         quantity, slope = revolution.kinematics(stroke.quantity, stroke.slope)
         positions = stroke.start + stroke.sense * quantity
         if self.while_ is None:
             return stroke.kind, positions, 1.0
         forward = slope * (revolution.turning * stroke.forward)
-        on_its_way = forward > 0.0 if self.while_ == stroke.words[0] else forward < 0.0
-        return stroke.kind, positions, 1.0 * on_its_way
+        acting = forward > 0.0 if self.while_ == stroke.words[0] else forward < 0.0
+        return stroke.kind, positions, 1.0 * acting
 
     def _followed(self, kind: str, positions: xr.DataArray, acts: Number, path: str, number: Any, rule: Rule) -> Any:
-        """A force or torque over the angles; what is 0 everywhere stays so."""
+        """Return a force or torque over the angles; one that is 0 at every position stays a number."""
         if number is None or (not hasattr(number, "dims") and not callable(number) and number == 0.0):
             return number
         followed: xr.DataArray = at_positions(path, number, rule, positions, kind, self.interpolation) * acts
         return followed.fillna(0.0)  # where it cannot be assembled there is no position
 
     def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """The load's numbers under the names that the physics wires by; `machine` has its link's centre of gravity."""
+        """Return the load's numbers under the names that its rows take; `machine` has its link's centre of gravity."""
         named: dict[str, Any] = {}
         if self.force is not None:
             component = f"{load}_force_" if self.frame == "link" else f"{load}_F"
@@ -215,3 +210,55 @@ class Load(ChangingLoad):
         if self.torque is not None:
             named[f"{load}_torque"] = self.torque
         return named
+
+
+@dataclass(frozen=True)
+class LoadForm:
+    """The rows of a force at a point of a link, a torque on it, or both."""
+
+    link: str
+    force: bool
+    torque: bool
+    link_axes: bool
+    full_turns: bool = False
+    damps: ClassVar[bool] = False
+
+    @property
+    def place(self) -> str:
+        return self.link
+
+    def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
+        body = bodies[self.link]
+        power = Row(planar.product, (f"{name}_torque_power",), (f"{name}_torque", f"omega{body.number}"))
+        return [power, *(self._force_rows(name, body) if self.force else [])]
+
+    def on(self, name: str, link: str) -> Acting:
+        if link != self.link:
+            return Acting()
+        moments = self._of_force(f"{name}_moment") + self._of_torque(f"{name}_torque")
+        return Acting(self._of_force(f"{name}_F"), moments)
+
+    def powers(self, name: str) -> tuple[str, ...]:
+        return self._of_force(f"{name}_force_power") + self._of_torque(f"{name}_torque_power")
+
+    def quantities(self, name: str) -> list[Quantity]:
+        return []
+
+    def _of_force(self, name: str) -> tuple[str, ...]:
+        return (name,) if self.force else ()
+
+    def _of_torque(self, name: str) -> tuple[str, ...]:
+        return (name,) if self.torque else ()
+
+    def _force_rows(self, name: str, body: Body) -> list[Row | Total]:
+        point, force = (f"{name}_rx", f"{name}_ry"), (f"{name}_Fx", f"{name}_Fy")
+        velocity = (f"{name}_vx", f"{name}_vy")
+        rows: list[Row | Total] = [
+            Row(planar.to_ground_axes, point, (f"{name}_at_x", f"{name}_at_y", *body.axes)),
+            Row(planar.cross, (f"{name}_moment",), (*point, *force)),
+            Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *point)),
+            Row(planar.dot, (f"{name}_force_power",), (*force, *velocity)),
+        ]
+        if self.link_axes:
+            rows.append(Row(planar.to_ground_axes, force, (f"{name}_force_x", f"{name}_force_y", *body.axes)))
+        return rows

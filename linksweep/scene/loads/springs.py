@@ -1,58 +1,61 @@
-"""Springs and dampers between two links, or between a link and the ground."""
+"""Springs and dampers along the line between two points of links, or of a link and the ground."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from linksweep.base.degrees import cos_sin
-from linksweep.base.validate import (
-    Number,
-    Rule,
-    choice_problems,
-    field_problems,
-    number_problems,
-    parameter,
-    quote,
-)
-from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.rows.spring_forms import (
-    GROUND,
-    DamperForm,
-    SpringForm,
-    TorsionDamperForm,
-    TorsionSpringForm,
-    approach,
-)
-from linksweep.scene.loads.action import Action
-from linksweep.scene.loads.load import AT
+from linksweep.base.fields import POLAR_POINT, FieldKind, ListField, NumberField, field_problems, of_kind, parameter
+from linksweep.base.validate import Number, Rule
+from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.mechanisms.rows.bodies import Body
+from linksweep.mechanisms.rows.load_forms import Acting
+from linksweep.physics import springs
+from linksweep.physics.algebra import planar
+from linksweep.scene.loads.action import Action, register
+from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems, same_link_problems
 
-POINT = (Rule("length"), Rule("length"))
+LENGTH = NumberField(Rule("length"))
 End = tuple[str, Number, Number]
+
+
+class EndField(ListField):
+    """A field that holds the end of a spring: a point of the ground, or of a link in its polar coordinates."""
+
+    requirement = '("ground", x, y) in m, or (link, distance in m, angle in degrees)'
+
+    def items(self, value: Any) -> tuple[FieldKind, ...] | None:
+        if not (isinstance(value, tuple | list) and len(value) == 3):
+            return None
+        ground = isinstance(value[0], str) and value[0] == GROUND
+        return (FieldKind(), *((LENGTH, LENGTH) if ground else POLAR_POINT.numbers))
 
 
 @dataclass(frozen=True, eq=False)
 class _Line(Action):
-    """What acts along the line between two points."""
+    """A load along the line between two points."""
 
-    from_: End
-    to: End
+    from_: End = of_kind(EndField(example='["ground", 0.3, 0]'))
+    to: End = of_kind(EndField(example='["rocker", "10 cm", 15]'))
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
-        ends = {f"{path}.from_": self.from_, f"{path}.to": self.to}
-        found = [problem for at, end in ends.items() for problem in _end_problems(at, end, links)]
-        same = [] if found else _same_link(f"{path}.to[1]", self.from_[0], self.to[0])
-        return found + same + field_problems(self, path + ".")
+        problems = field_problems(self, path + ".")
+        if not problems:
+            problems += link_problems(f"{path}.from_[1]", self.from_[0], links)
+            problems += link_problems(f"{path}.to[1]", self.to[0], links)
+        return problems or same_link_problems(f"{path}.to[1]", self.from_[0], self.to[0])
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
         return (approach(name),)
 
     def ends(self, name: str) -> dict[str, Number]:
-        """Its ends' numbers: in ground axes from A, or in their links' axes from their first pins."""
-        return _end(f"{name}_from", self.from_) | _end(f"{name}_to", self.to)
+        """Return the ends' numbers: in ground axes from A, or in their links' axes from their first pins."""
+        return _end_parameters(f"{name}_from", self.from_) | _end_parameters(f"{name}_to", self.to)
 
 
+@register
 @dataclass(frozen=True, eq=False)
 class Spring(_Line):
     """A linear spring between two points: tension rate·(length − free_length).
@@ -86,6 +89,7 @@ class Spring(_Line):
         return {f"{name}_rate": self.rate, f"{name}_free_length": self.free_length} | self.ends(name)
 
 
+@register
 @dataclass(frozen=True, eq=False)
 class Damper(_Line):
     """A viscous damper between two points: tension coefficient · rate of its length.
@@ -116,108 +120,107 @@ class Damper(_Line):
         return {f"{name}_coefficient": self.coefficient} | self.ends(name)
 
 
-@dataclass(frozen=True, eq=False)
-class _Turning(Action):
-    """What acts between the lines of pins of two links; of the ground, the line is x."""
-
-    from_: str
-    to: str
-
-    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
-        found = choice_problems(f"{path}.from_", self.from_, (GROUND, *links))
-        found += choice_problems(f"{path}.to", self.to, (GROUND, *links))
-        return (
-            found + ([] if found else _same_link(f"{path}.to", self.from_, self.to)) + field_problems(self, path + ".")
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class TorsionSpring(_Turning):
-    """A torsion spring between two links: it turns `to` back, and `from_` on, by rate·twist.
-
-    Parameters
-    ----------
-    from_, to : two links by name; one may be "ground"
-    rate : [N m/rad]
-    free_angle : angle from the line of pins of `from_` (of the ground: from x) to that of `to`, counter-clockwise,
-        at which it exerts no torque [degree]
-
-    The twist is the angle between the links less the free angle, folded to (-180, 180]: it follows from the position
-    alone, and no turns are counted. Where a link turns so far that the twist passes 180, the torque jumps; `peaks`
-    looks at both sides of the jump of a spring between crank and ground, of others only at the samples.
-
-    Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load can be asked for
-    loadk_twist [degree], loadk_to_torque and loadk_power. What is wrong with it is a ValueError of that scene.
-
-    Examples
-    --------
-    >>> import linksweep as ls
-    >>> ls.TorsionSpring(from_="ground", to="rocker", rate=5.0, free_angle=90.0).to
-    'rocker'
-    """
-
-    rate: Number = parameter("torsional_rate", at_least=0.0)
-    free_angle: Number = parameter("angle", 0.0)
-
-    @property
-    def form(self) -> TorsionSpringForm:
-        return TorsionSpringForm(self.from_, self.to)
-
-    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        cos, sin = cos_sin(self.free_angle)
-        return {f"{name}_rate": self.rate, f"{name}_free_cos": cos, f"{name}_free_sin": sin}
-
-    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        """Crank angle [degree] at which the twist of a spring between crank and ground passes 180."""
-        turned = {(GROUND, "crank"): 1.0, ("crank", GROUND): -1.0}.get((self.from_, self.to))
-        return () if turned is None else (180.0 + turned * self.free_angle,)
-
-
-@dataclass(frozen=True, eq=False)
-class TorsionDamper(_Turning):
-    """A viscous damper between two links that turn against each other: torque coefficient · rate of their angle.
-
-    Parameters
-    ----------
-    from_, to : two links by name; one may be "ground"
-    coefficient : [N m s/rad], DataArray of design dims allowed
-
-    The scene that takes it as its k-th load can be asked for loadk_to_torque and loadk_power. What is wrong with it is
-    a ValueError of that scene.
-
-    Examples
-    --------
-    >>> import linksweep as ls
-    >>> ls.TorsionDamper(from_="crank", to="coupler", coefficient=0.2).coefficient
-    0.2
-    """
-
-    coefficient: Number = parameter("torsional_damping", at_least=0.0)
-
-    @property
-    def form(self) -> TorsionDamperForm:
-        return TorsionDamperForm(self.from_, self.to)
-
-    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Its number under the name that the physics wires by."""
-        return {f"{name}_coefficient": self.coefficient}
-
-
-def _end(name: str, end: End) -> dict[str, Number]:
+def _end_parameters(name: str, end: End) -> dict[str, Number]:
     if end[0] == GROUND:
         return {f"{name}_x": end[1], f"{name}_y": end[2]}
     cos, sin = cos_sin(end[2])
     return {f"{name}_at_x": end[1] * cos, f"{name}_at_y": end[1] * sin}
 
 
-def _end_problems(path: str, end: Any, links: tuple[str, ...]) -> list[str]:
-    if not (isinstance(end, tuple | list) and len(end) == 3):
-        wanted = '("ground", x, y) in m, or (link, distance in m, angle in degrees)'
-        return [f"{path} = {quote(end)}: must be {wanted}"]
-    rules = POINT if isinstance(end[0], str) and end[0] == GROUND else AT
-    problems = choice_problems(f"{path}[1]", end[0], (GROUND, *links))
-    return problems + [p for k in (0, 1) for p in number_problems(f"{path}[{k + 2}]", end[k + 1], rules[k])]
+@dataclass(frozen=True)
+class LineForm(Between):
+    """A force along the line between two points; a subclass states its tension."""
+
+    def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
+        unit, pull = (f"{name}_ux", f"{name}_uy"), (f"{name}_from_Fx", f"{name}_from_Fy")
+        line, speed = (f"{name}_dx", f"{name}_dy"), (f"{name}_dvx", f"{name}_dvy")
+        rows = [row for end, link in self.ends(name) for row in _end_rows(end, bodies[link])]
+        return [
+            *rows,
+            Row(planar.difference, line, (*_position(f"{name}_to"), *_position(f"{name}_from"))),
+            Row(planar.square, (f"{name}_length_squared",), line),
+            Row(planar.root, (f"{name}_length",), (f"{name}_length_squared",)),
+            Row(springs.line_direction, unit, (*line, f"{name}_length")),
+            Row(planar.difference, speed, (*_velocity(f"{name}_to", self.to), *_velocity(f"{name}_from", self.from_))),
+            Row(planar.dot, (f"{name}_lengthening",), (*unit, *speed)),
+            self.tension(name),
+            Row(planar.along, pull, (f"{name}_tension", *unit)),
+            *(Row(planar.opposite, (f"{name}_to_F{axis}",), (f"{name}_from_F{axis}",)) for axis in "xy"),
+            Row(springs.resisting_power, (f"{name}_power",), (f"{name}_tension", f"{name}_lengthening")),
+            *self._approach(name, line),
+        ]
+
+    def _approach(self, name: str, line: tuple[str, str]) -> list[Row | Total]:
+        """Return the rows that tell where its ends come closest as the crank turns, and how narrow that is."""
+        ratio, (slope, width) = (f"{name}_dux", f"{name}_duy"), approach(name)
+        ends = (*_ratio(f"{name}_to", self.to), *_ratio(f"{name}_from", self.from_))
+        return [
+            Row(planar.difference, ratio, ends),
+            Row(planar.dot, (slope,), (*line, *ratio)),
+            Row(springs.turning_width, (width,), (f"{name}_length", *ratio)),
+        ]
+
+    def tension(self, name: str) -> Row:
+        """Return the row of the tension."""
+        raise NotImplementedError
+
+    def on(self, name: str, link: str) -> Acting:
+        ends = [end for end, role in self.ends(name) if role == link]
+        return Acting(tuple(f"{end}_F" for end in ends), tuple(f"{end}_moment" for end in ends))
+
+    def quantities(self, name: str) -> list[Quantity]:
+        return [
+            Quantity(f"{name}_length", "m", f"distance between the ends of {self.title(name)}"),
+            Quantity(f"{name}_tension", "N", f"tension of {self.title(name)}, negative where it pushes its ends apart"),
+            Quantity(f"{name}_power", "W", f"power of {self.title(name)}, positive when it feeds the mechanism"),
+        ]
 
 
-def _same_link(path: str, first: str, second: str) -> list[str]:
-    return [f"{path} = {second!r}: must be another link than that of from_"] if first == second else []
+def approach(name: str) -> tuple[str, str]:
+    """Return the names of l·dl/dθ2, which rises through 0 where the ends come closest, and of the width there."""
+    return f"{name}_approach", f"{name}_width"
+
+
+@dataclass(frozen=True)
+class SpringForm(LineForm):
+    """The rows of a linear spring."""
+
+    def tension(self, name: str) -> Row:
+        inputs = (f"{name}_rate", f"{name}_free_length", f"{name}_length")
+        return Row(springs.spring_tension, (f"{name}_tension",), inputs)
+
+
+@dataclass(frozen=True)
+class DamperForm(LineForm):
+    """The rows of a viscous damper."""
+
+    damps: ClassVar[bool] = True
+
+    def tension(self, name: str) -> Row:
+        return Row(planar.product, (f"{name}_tension",), (f"{name}_coefficient", f"{name}_lengthening"))
+
+
+def _end_rows(end: str, body: Body) -> list[Row | Total]:
+    """Return the rows of an end on a moving link: its position and velocity, moment and power of the force on it."""
+    arm, force, velocity = (f"{end}_rx", f"{end}_ry"), (f"{end}_Fx", f"{end}_Fy"), (f"{end}_vx", f"{end}_vy")
+    return [
+        Row(planar.to_ground_axes, arm, (f"{end}_at_x", f"{end}_at_y", *body.axes)),
+        Row(planar.vector_sum, (f"{end}_x", f"{end}_y"), (*body.pin_position, *arm)),
+        Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *arm)),
+        Row(planar.point_velocity, (f"{end}_ux", f"{end}_uy"), (*body.pin_ratio, body.ratio, *arm)),
+        Row(planar.cross, (f"{end}_moment",), (*arm, *force)),
+        Row(planar.dot, (f"{end}_power",), (*force, *velocity)),
+    ]
+
+
+def _position(end: str) -> Pair:
+    return f"{end}_x", f"{end}_y"
+
+
+def _velocity(end: str, link: str) -> Pair:
+    return (0.0, 0.0) if link == GROUND else (f"{end}_vx", f"{end}_vy")
+
+
+def _ratio(end: str, link: str) -> Pair:
+    """Return the velocity of an end per rate of the crank."""
+    return (0.0, 0.0) if link == GROUND else (f"{end}_ux", f"{end}_uy")

@@ -1,0 +1,288 @@
+"""Fields of dataclasses: what each holds is declared once, on the field, by its kind.
+
+Conversion, checks, paths, scene files and reports follow `declared(cls)`; none of them knows a field by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.base.conversion import to_float64
+from linksweep.base.validate import Rule, choice_problems, is_array, is_quantity, number_problems, quote
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldKind:
+    """A field that may hold anything, such as a word: its owner checks it. `example` is how a scene file writes it."""
+
+    example: str = '"..."'
+
+    def converted(self, value: Any) -> Any:
+        """Return the value with its numbers as float64 in the units of their kinds; anything else as it is."""
+        return value
+
+    def items(self, value: Any) -> tuple[FieldKind, ...] | None:
+        """Return the kinds of the items of a list; None for a value that is not such a list."""
+        return None
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        """Return the problems of a converted value, each with its path."""
+        return []
+
+
+@dataclass(frozen=True)
+class NumberField(FieldKind):
+    """A field that holds a number under a rule, or an object of a class in `parts`, which its owner checks."""
+
+    rule: Rule
+    parts: Collection[type] = ()
+
+    def converted(self, value: Any) -> Any:
+        return to_float64(value, self.rule.kind)
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        return [] if isinstance(value, tuple(self.parts)) else number_problems(path, value, self.rule)
+
+
+class PlainNumber(NumberField):
+    """An item of a `RowField`: a number that is the same for all designs."""
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        if is_array(value):
+            return [f"{path} is an array: must be {self.rule.number}, for all designs the same"]
+        return super().problems(path, value)
+
+
+@dataclass(frozen=True)
+class ChoiceField(FieldKind):
+    """A field that holds one of a few words."""
+
+    allowed: tuple[str, ...]
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        return choice_problems(path, value, self.allowed)
+
+
+class ListField(FieldKind):
+    """A field that holds a list, each item of a kind of its own."""
+
+    @property
+    def requirement(self) -> str:
+        """The value that the field requires, in words."""
+        raise NotImplementedError
+
+    def converted(self, value: Any) -> Any:
+        kinds = self.items(value)
+        return value if kinds is None else tuple(kind.converted(item) for kind, item in zip(kinds, value, strict=True))
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        kinds = self.items(value)
+        if kinds is None:
+            return [f"{path} = {quote(value)}: must be {self.requirement}"]
+        items = enumerate(zip(kinds, value, strict=True), 1)
+        return [problem for k, (kind, item) in items for problem in kind.problems(f"{path}[{k}]", item)]
+
+
+@dataclass(frozen=True)
+class PairField(ListField):
+    """A field that holds two numbers; a scene file may give the first alone where the class takes it (`or_first`)."""
+
+    first: Rule
+    second: Rule
+    meaning: str
+    or_first: bool = False
+
+    @property
+    def requirement(self) -> str:
+        return f"a pair {self.meaning}"
+
+    def may_be_first(self, value: Any) -> bool:
+        """Return whether a value may be the first number alone."""
+        return self.or_first and value is not None and not isinstance(value, str) and not _is_row(value)
+
+    @property
+    def numbers(self) -> tuple[NumberField, NumberField]:
+        """The kinds of the two numbers."""
+        return NumberField(self.first), NumberField(self.second)
+
+    def items(self, value: Any) -> tuple[FieldKind, ...] | None:
+        return self.numbers if _is_row(value, 2) else None
+
+
+@dataclass(frozen=True)
+class RowField(ListField):
+    """A field that holds any number of plain numbers of one kind."""
+
+    rule: Rule
+
+    @property
+    def requirement(self) -> str:
+        return f"a list, each item {self.rule.number}"
+
+    def items(self, value: Any) -> tuple[FieldKind, ...] | None:
+        return (PlainNumber(self.rule),) * len(value) if _is_row(value) else None
+
+
+@dataclass(frozen=True)
+class PartField(FieldKind):
+    """A field that holds an object of one of several dataclasses, which a scene file names by its `type`.
+
+    Parameters
+    ----------
+    classes : the classes
+    base : their common base, of which a value must be
+    default : the class of a table without a `type`, if any
+    inline : whether the paths of the object's own fields leave this field's name out
+    """
+
+    classes: Collection[type]
+    base: Any
+    default: type | None = None
+    inline: bool = False
+
+    @property
+    def by_name(self) -> dict[str, type]:
+        """Return the classes by name, the default first."""
+        return {cls.__name__: cls for cls in sorted(self.classes, key=lambda cls: cls is not self.default)}
+
+    @property
+    def words(self) -> str:
+        """The names of the classes in words: "Link, Bar or Disk"."""
+        *others, last = self.by_name
+        return f"{', '.join(others)} or {last}" if others else last
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        return [] if isinstance(value, self.base) else [f"{path} = {quote(value)}: must be a {self.words}"]
+
+
+@dataclass(frozen=True)
+class PartsField(ListField):
+    """A field that holds any number of objects, each as a `PartField` of its own; a single one counts as a list."""
+
+    each: PartField
+
+    @property
+    def requirement(self) -> str:
+        return f"a {self.each.words}, or a list of them"
+
+    def converted(self, value: Any) -> Any:
+        if isinstance(value, self.each.base):
+            return (value,)
+        other = isinstance(value, str | Mapping | np.ndarray) or is_array(value) or not isinstance(value, Iterable)
+        return value if other else tuple(value)
+
+    def items(self, value: Any) -> tuple[FieldKind, ...] | None:
+        return (self.each,) * len(value) if isinstance(value, tuple | list) else None
+
+
+class Declared(NamedTuple):
+    """A field of a dataclass: its name, what it holds, and its default (MISSING where it has none)."""
+
+    name: str
+    kind: FieldKind
+    default: Any
+
+
+ANYTHING = FieldKind()
+POLAR_POINT = PairField(Rule("length", at_least=0.0, polar=True), Rule("angle"), "(distance in m, angle in degrees)")
+"""A point in a link's own polar coordinates: distance from its first pin, angle from its line of pins."""
+
+
+def declared(owner: Any) -> tuple[Declared, ...]:
+    """Return the fields of a dataclass, or of an object of one, that its constructor takes."""
+    return _declared(owner if isinstance(owner, type) else type(owner))
+
+
+@cache
+def _declared(cls: Any) -> tuple[Declared, ...]:
+    return tuple(Declared(f.name, f.metadata.get("kind", ANYTHING), f.default) for f in fields(cls) if f.init)
+
+
+@cache
+def field_rules(cls: Any) -> Mapping[str, Rule]:
+    """Return the rules of those fields of a dataclass that hold a number, by name."""
+    return {name: kind.rule for name, kind, _ in declared(cls) if isinstance(kind, NumberField)}
+
+
+def of_kind(kind: FieldKind, default: Any = MISSING) -> Any:
+    """Return a dataclass field of a kind."""
+    return field(default=default, metadata={"kind": kind})
+
+
+def parameter(kind: str, default: Any = MISSING, parts: Collection[type] = (), **bounds: Any) -> Any:
+    """Return a dataclass field that holds a number under a `Rule` of this kind and bounds, or one of some `parts`."""
+    return of_kind(NumberField(Rule(kind, **bounds), parts), default)
+
+
+def word(example: str, default: Any = MISSING) -> Any:
+    """Return a dataclass field that holds a word; `example` is how a scene file may write it."""
+    return of_kind(FieldKind(example=example), default)
+
+
+def choice(default: str, *others: str) -> Any:
+    """Return a dataclass field that holds one of a few words."""
+    return of_kind(ChoiceField((default, *others)), default)
+
+
+def field_problems(owner: Any, prefix: str = "") -> list[str]:
+    """Return the problems of a dataclass's fields by their kinds, each with its path; a default is no problem."""
+    return [
+        problem
+        for name, kind, default in declared(owner)
+        if (value := getattr(owner, name)) is not default
+        for problem in kind.problems(prefix + name, value)
+    ]
+
+
+def converted_fields(owner: Any) -> dict[str, Any]:
+    """Return those fields of a dataclass that change when its numbers become float64 in the units of their kinds."""
+    pairs = ((name, getattr(owner, name), kind) for name, kind, _ in declared(owner))
+    converted = ((name, value, kind.converted(value)) for name, value, kind in pairs)
+    return {name: new for name, old, new in converted if new is not old}
+
+
+def left_out(value: Any) -> bool:
+    """Return whether a value is that of a field left out: None, or an empty text or list."""
+    return value is None or (isinstance(value, str | tuple | list) and not value)
+
+
+def has_fields(value: Any) -> bool:
+    """Return whether a value is an object of a dataclass."""
+    return is_dataclass(value) and not isinstance(value, type)
+
+
+def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
+    """Yield the path, the value and the kind of each number in a dataclass, and in the dataclasses that it holds.
+
+    Numbers that are the same for all designs are left out.
+    """
+    for name, kind, _ in declared(owner):
+        yield from numbers_in(prefix + name, getattr(owner, name), kind)
+
+
+def below(path: str, kind: FieldKind) -> str:
+    """Return what the paths of an object's fields begin with, of the path of the field that holds it."""
+    return "" if isinstance(kind, PartField) and kind.inline else path + "."
+
+
+def numbers_in(path: str, value: Any, kind: FieldKind) -> Iterator[tuple[str, Any, str]]:
+    """Yield the path, the value and the kind of each number in the value of a field."""
+    if has_fields(value):
+        yield from numbers(value, below(path, kind))
+    elif isinstance(kind, NumberField):
+        yield from [] if isinstance(kind, PlainNumber) else [(path, value, kind.rule.kind)]
+    else:
+        for k, each in enumerate(kind.items(value) or (), 1):
+            yield from numbers_in(f"{path}[{k}]", value[k - 1], each)
+
+
+def _is_row(value: Any, count: int | None = None) -> bool:
+    """Return whether a value is a list, or a bare array that can only be one; of this count if one is given."""
+    bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
+    row = isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
+    return row and (count is None or len(value) == count)

@@ -1,0 +1,172 @@
+"""Torsion springs and dampers between two links, or between a link and the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from linksweep.base.degrees import cos_sin
+from linksweep.base.fields import field_problems, parameter, word
+from linksweep.base.validate import Number
+from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.rows.bodies import Body
+from linksweep.mechanisms.rows.load_forms import Acting
+from linksweep.physics import springs
+from linksweep.physics.algebra import planar
+from linksweep.physics.algebra.arithmetic import degrees
+from linksweep.scene.loads.action import Action, register
+from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems, same_link_problems
+
+
+@dataclass(frozen=True, eq=False)
+class _Turning(Action):
+    """A torque between the lines of pins of two links; the line of the ground is x."""
+
+    from_: str = word('"ground"')
+    to: str = word('"rocker"')
+
+    def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        problems = link_problems(f"{path}.from_", self.from_, links) + link_problems(f"{path}.to", self.to, links)
+        problems = problems or same_link_problems(f"{path}.to", self.from_, self.to)
+        return problems + field_problems(self, path + ".")
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class TorsionSpring(_Turning):
+    """A torsion spring between two links: it turns `to` back, and `from_` on, by rate·twist.
+
+    Parameters
+    ----------
+    from_, to : two links by name; one may be "ground"
+    rate : [N m/rad]
+    free_angle : angle from the line of pins of `from_` (of the ground: from x) to that of `to`, counter-clockwise,
+        at which it exerts no torque [degree]
+
+    The twist is the angle between the links less the free angle, folded to (-180, 180]: it follows from the position
+    alone, and no turns are counted. Where a link turns so far that the twist passes 180, the torque jumps; `peaks`
+    looks at both sides of the jump of a spring between crank and ground, of others only at the samples.
+
+    Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load can be asked for
+    loadk_twist [degree], loadk_to_torque and loadk_power. What is wrong with it is a ValueError of that scene.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.TorsionSpring(from_="ground", to="rocker", rate=5.0, free_angle=90.0).to
+    'rocker'
+    """
+
+    rate: Number = parameter("torsional_rate", at_least=0.0)
+    free_angle: Number = parameter("angle", 0.0)
+
+    @property
+    def form(self) -> TorsionSpringForm:
+        return TorsionSpringForm(self.from_, self.to)
+
+    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        cos, sin = cos_sin(self.free_angle)
+        return {f"{name}_rate": self.rate, f"{name}_free_cos": cos, f"{name}_free_sin": sin}
+
+    def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Return the crank angle [degree] at which the twist of a spring between crank and ground passes 180."""
+        turned = {(GROUND, "crank"): 1.0, ("crank", GROUND): -1.0}.get((self.from_, self.to))
+        return () if turned is None else (180.0 + turned * self.free_angle,)
+
+
+@register
+@dataclass(frozen=True, eq=False)
+class TorsionDamper(_Turning):
+    """A viscous damper between two links that turn against each other: torque coefficient · rate of their angle.
+
+    Parameters
+    ----------
+    from_, to : two links by name; one may be "ground"
+    coefficient : [N m s/rad], DataArray of design dims allowed
+
+    The scene that takes it as its k-th load can be asked for loadk_to_torque and loadk_power. What is wrong with it is
+    a ValueError of that scene.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.TorsionDamper(from_="crank", to="coupler", coefficient=0.2).coefficient
+    0.2
+    """
+
+    coefficient: Number = parameter("torsional_damping", at_least=0.0)
+
+    @property
+    def form(self) -> TorsionDamperForm:
+        return TorsionDamperForm(self.from_, self.to)
+
+    def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the load's number under the name that its rows take."""
+        return {f"{name}_coefficient": self.coefficient}
+
+
+@dataclass(frozen=True)
+class TurningForm(Between):
+    """The rows of a torque between two links, against the angle or the rate by which one turns from the other."""
+
+    def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
+        first, second = bodies.get(self.from_), bodies.get(self.to)
+        rates = [f"omega{body.number}" if body else 0.0 for body in (second, first)]
+        return [
+            Row(springs.turning_rate, (f"{name}_turning",), tuple(rates)),
+            *self.resistance(name, first, second),
+            Row(planar.identity, (f"{name}_from_torque",), (f"{name}_resistance",)),
+            Row(planar.opposite, (f"{name}_to_torque",), (f"{name}_resistance",)),
+            *(
+                Row(planar.product, (f"{end}_power",), (f"{end}_torque", f"omega{bodies[link].number}"))
+                for end, link in self.ends(name)
+            ),
+            Row(springs.resisting_power, (f"{name}_power",), (f"{name}_resistance", f"{name}_turning")),
+        ]
+
+    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
+        """Return the rows of the resisting torque."""
+        raise NotImplementedError
+
+    def on(self, name: str, link: str) -> Acting:
+        return Acting(moments=tuple(f"{end}_torque" for end, role in self.ends(name) if role == link))
+
+    def quantities(self, name: str) -> list[Quantity]:
+        return [
+            Quantity(f"{name}_to_torque", "N m", f"torque of {self.title(name)} on the {self.to}"),
+            Quantity(f"{name}_power", "W", f"power of {self.title(name)}, positive when it feeds the mechanism"),
+        ]
+
+
+@dataclass(frozen=True)
+class TorsionSpringForm(TurningForm):
+    """The rows of a torsion spring."""
+
+    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
+        free = (f"{name}_free_cos", f"{name}_free_sin")
+        return [
+            Row(springs.twist, (f"{name}_twist_rad",), (*_line(first), *_line(second), *free)),
+            Row(degrees, (f"{name}_twist",), (f"{name}_twist_rad",)),
+            Row(planar.product, (f"{name}_resistance",), (f"{name}_rate", f"{name}_twist_rad")),
+        ]
+
+    def quantities(self, name: str) -> list[Quantity]:
+        twist = f"angle by which {self.title(name)} is wound from its free angle, in (-180, 180]"
+        return [Quantity(f"{name}_twist", "degree", twist), *super().quantities(name)]
+
+
+@dataclass(frozen=True)
+class TorsionDamperForm(TurningForm):
+    """The rows of a viscous damper of rotation."""
+
+    damps: ClassVar[bool] = True
+
+    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
+        return [Row(planar.product, (f"{name}_resistance",), (f"{name}_coefficient", f"{name}_turning"))]
+
+
+def _line(body: Body | None) -> Pair:
+    """Return the direction of a link's line of pins; x for the ground."""
+    return (1.0, 0.0) if body is None else (f"r{body.number}x", f"r{body.number}y")
