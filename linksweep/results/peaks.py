@@ -1,4 +1,4 @@
-"""peaks(scene): the worst of each quantity over the continuous revolution, and where it is."""
+"""Compute the worst of each quantity over the continuous revolution, and its angle."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from linksweep.results.compute import (
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
-from linksweep.results.peak_search.along_paths import Found
+from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
@@ -41,12 +41,12 @@ from linksweep.scene.scene import Scene
 SOLVERS = ("fast", "superposed")
 SUMMARIES = ("mean", "rms", "bound", "samples")
 STATUS_ANGLES = 720
-"""Angles of a turn at which a scene is looked at for jams, dead centres and the like, where its numbers do not tell."""
+"""Angles of a turn at which the status is computed, if the mechanism's numbers do not show that it is always ok."""
 PARTIAL, UNBOUNDED = 1, 3
 
 
-class Wanted(NamedTuple):
-    """What is asked of a quantity, and the signals whose largest values, or the powers whose means, that takes."""
+class Request(NamedTuple):
+    """A requested summary of a quantity: a largest value of signals, or a mean of powers."""
 
     quantity: Quantity
     summary: str
@@ -120,7 +120,7 @@ def peaks(
         return peaks_of_cylinders(scene.in_memory, of, threads)
     require_scene(scene)
     names = None if of is None else requested("of", of)
-    items = _wanted(scene, names)
+    items = _requests(scene, names)
     result = _exact(scene, items, threads) if theta2 is None else _of_samples(scene, theta2, items, threads, solver)
     angles = "" if theta2 is None else f", theta2={len(result.grid.angles)}"
     by = "" if solver == "fast" else f", solver={solver!r}"
@@ -132,7 +132,7 @@ def peaks(
 def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
     """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
     names = requested("of", of)
-    items = _wanted(scene, names)
+    items = _requests(scene, names)
     result = _exact(scene, items, threads, part)
     return _dataset(scene, items, result, f"linksweep.peaks(scene, of={names})", threads)
 
@@ -152,11 +152,11 @@ class Result(NamedTuple):
     sampled: Scene
     grid: Grid
     assembly: Field
-    largest: dict[str, Found]
+    largest: dict[str, SignalPeak]
     averages: Averages
 
 
-def _dataset(scene: Scene, items: list[Wanted], result: Result, command: str, threads: int | None) -> xr.Dataset:
+def _dataset(scene: Scene, items: list[Request], result: Result, command: str, threads: int | None) -> xr.Dataset:
     sampled, grid, assembly, largest, averages = result
     order = tuple(sampled.inputs.sizes)
     status = status_of(scene, sampled, grid, assembly, largest, averages, threads)
@@ -169,48 +169,50 @@ def _dataset(scene: Scene, items: list[Wanted], result: Result, command: str, th
     return xr.Dataset(variables | {"status": status}, coordinates, provenance(scene, command, coordinates))
 
 
-def wanted(
+def parsed_requests(
     quantities: Mapping[str, Quantity], names: Iterable[str], problems_of: Callable[[str], list[str]]
-) -> list[Wanted]:
-    """Return what is asked of each quantity by names such as "F32", "T12_mean"; ValueError for other names."""
-    found, problems = [], []
+) -> list[Request]:
+    """Return the requests that names such as "F32", "T12_mean" state; raise ValueError for other names."""
+    requests, problems = [], []
     for name in names:
         stem, _, ending = name.rpartition("_")
         stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
         if stem not in quantities or stem == "cond":
             problems += problems_of(name)
         else:
-            found.append(_takes(quantities[stem], ending))
+            requests.append(_request(quantities[stem], ending))
     refuse(problems)
-    return found
+    return requests
 
 
-def _wanted(scene: Scene, names: list[str] | None) -> list[Wanted]:
+def _requests(scene: Scene, names: list[str] | None) -> list[Request]:
     quantities = scene.table.quantity
     known = [name for name in quantities if name != "cond"]
     default = scene.mechanism.peak_quantities(scene.drive)
-    return wanted(quantities, default if names is None else names, lambda n: quantity_problems("of", n, known, scene))
+    return parsed_requests(
+        quantities, default if names is None else names, lambda n: quantity_problems("of", n, known, scene)
+    )
 
 
-def _takes(quantity: Quantity, summary: str) -> Wanted:
-    """A peak of a magnitude is sought on its square, a least value as the largest of the opposite."""
+def _request(quantity: Quantity, summary: str) -> Request:
+    """Return a request: a magnitude has the peak of its square, a least value is the largest of the opposite."""
     name, squared = quantity.name, quantity.squared
     if summary == "mean":
-        return Wanted(quantity, summary, powers=((name, 1),))
+        return Request(quantity, summary, powers=((name, 1),))
     if summary == "rms":
-        return Wanted(quantity, summary, powers=((squared, 1) if squared else (name, 2),))
-    return Wanted(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
+        return Request(quantity, summary, powers=((squared, 1) if squared else (name, 2),))
+    return Request(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
 
 
-def _signals(items: list[Wanted]) -> tuple[str, ...]:
+def _signals(items: list[Request]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(signal for item in items for signal in item.signals))
 
 
-def _powers(items: list[Wanted]) -> tuple[Power, ...]:
+def _powers(items: list[Request]) -> tuple[Power, ...]:
     return tuple(dict.fromkeys(power for item in items for power in item.powers))
 
 
-def _exact(scene: Scene, items: list[Wanted], threads: int | None, part: Part | None = None) -> Result:
+def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part | None = None) -> Result:
     refuse(angles_missing(scene))
     turns = round(scene.period / scene.mechanism.period)
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
@@ -224,7 +226,7 @@ def _exact(scene: Scene, items: list[Wanted], threads: int | None, part: Part | 
     return Result(scene.at_one_angle, grid, with_dead_centres(scene, assembly), largest, averages)
 
 
-def _of_samples(scene: Scene, theta2: ArrayLike, items: list[Wanted], threads: int | None, solver: str) -> Result:
+def _of_samples(scene: Scene, theta2: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
     """Return the largest of a grid's samples, as they are."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
@@ -239,19 +241,19 @@ def _of_samples(scene: Scene, theta2: ArrayLike, items: list[Wanted], threads: i
     reduced = {}
     if reductions:
         reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    found = {}
+    extremes = {}
     for signal, reduction in largest.items():
         value, angle = reduced[reduction]
-        found[signal] = Found(value, angle, value, value)
+        extremes[signal] = SignalPeak(value, angle, value, value)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
-    return Result(sampled, grid, assembly_of(scene, threads), found, averaged)
+    return Result(sampled, grid, assembly_of(scene, threads), extremes, averaged)
 
 
 def _over_time(
     sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, threads: int | None, solver: str
 ) -> Averages:
-    """Means of a grid's samples, each for the time that it stands for."""
+    """Return means of a grid's samples, each weighted by the time that the crank takes for it."""
     names = tuple(dict.fromkeys([name for name, _ in powers] + [pace]))
     fields, averages = compute(sampled, grid, names, threads, solver=solver), {}
     for name, power in powers:
@@ -269,22 +271,22 @@ def status_of(
     sampled: Scene,
     grid: Grid,
     assembly: Field,
-    found: dict[str, Found],
+    extremes: dict[str, SignalPeak],
     averages: Averages,
     threads: int | None,
 ) -> xr.Variable:
-    """The assembly's 0, 1 or 2; 1 also where some sample is not ok, and 3 where a peak or a mean is without bound.
+    """Return the status of peaks: the assembly's 0, 1 or 2; 1 if some sample is not ok, 3 if a peak or mean is inf.
 
-    Where no sample is ok, there are no peaks either: they are made NaN.
+    Peaks and means of designs without any sample that is ok become NaN.
     """
     order = tuple(sampled.inputs.sizes)
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
         status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
-        # on an arc a sample more or less decides nothing: it has been looked at more closely
-        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), found, averages)
-    for dims, values in (*(peak.value for peak in found.values()), *averages.values()):
+        # on an arc these samples do not decide: the search along paths has looked at it more closely
+        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), extremes, averages)
+    for dims, values in (*(peak.value for peak in extremes.values()), *averages.values()):
         infinite = np.isinf(values)
         if infinite.any():
             there = variable(Field(dims, infinite), "1", "", order)
@@ -297,7 +299,7 @@ def status_of(
 def _extremes_of_status(
     scene: Scene, sampled: Scene, grid: Grid, threads: int | None
 ) -> tuple[xr.Variable, xr.Variable]:
-    """The best and the worst status of each design's samples."""
+    """Return the best and the worst status of each design's samples."""
     reductions = tuple(Reduction(kind, "status") for kind in ("least_sample", "largest_sample"))
     request = plan(scene.table, ("status",), sampled.inputs.forms)
     if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
@@ -307,52 +309,52 @@ def _extremes_of_status(
     return least, worst
 
 
-def _blank(ok: xr.Variable, found: dict[str, Found], averages: Averages) -> None:
-    """NaN where no design that shares a number is ok."""
+def _blank(ok: xr.Variable, extremes: dict[str, SignalPeak], averages: Averages) -> None:
+    """Make peaks and means NaN where no design that shares a number is ok."""
     good = Field(tuple(map(str, ok.dims)), ok.values)
     if not good.values.all():
-        found |= peaks_where(good, found)
+        extremes |= peaks_where(good, extremes)
         averages |= {power: only_where(good, field) for power, field in averages.items()}
 
 
 def named(
-    item: Wanted, found: dict[str, Found], averages: Averages, spot: str
+    item: Request, extremes: dict[str, SignalPeak], averages: Averages, spot: str
 ) -> Iterator[tuple[str, Field, str, str]]:
-    """Names, fields, units and words of what is asked of a quantity."""
+    """Yield name, field, unit and meaning of each variable of a request."""
     quantity, summary = item.quantity, item.summary
-    name, units, said = quantity.name, quantity.units, quantity.long_name
-    largest = [found[signal] for signal in item.signals]
+    name, units, meaning = quantity.name, quantity.units, quantity.long_name
+    largest = [extremes[signal] for signal in item.signals]
     if summary == "mean":
-        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over time of: {said}"
+        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over time of: {meaning}"
     elif summary == "rms":
         mean_square = averages[item.powers[0]]
-        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over time of: {said}"
+        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over time of: {meaning}"
     elif summary == "bound":
         bound = _map(_largest, *(_bound(peak, quantity) for peak in largest))
-        yield f"{name}_bound", bound, units, f"how much larger the peak could be of: {said}"
+        yield f"{name}_bound", bound, units, f"how much larger the peak could be of: {meaning}"
     elif summary == "samples":
         samples = _map(_largest, *(peak.samples for peak in largest))
-        yield f"{name}_samples", samples, "1", f"{spot}s looked at for the peak of: {said}"
+        yield f"{name}_samples", samples, "1", f"{spot}s evaluated for the peak of: {meaning}"
     elif quantity.squared:
-        yield f"{name}_peak", _map(np.sqrt, largest[0].value), units, f"largest {said}"
-        yield f"{name}_peak_at", largest[0].angle, "degree", f"{spot} of the largest {said}"
+        yield f"{name}_peak", _map(np.sqrt, largest[0].value), units, f"largest {meaning}"
+        yield f"{name}_peak_at", largest[0].angle, "degree", f"{spot} of the largest {meaning}"
     else:
         least = _map(lambda value: 0.0 - value, largest[1].value)
-        yield f"{name}_max", largest[0].value, units, f"largest {said}"
-        yield f"{name}_max_at", largest[0].angle, "degree", f"{spot} of the largest {said}"
-        yield f"{name}_min", least, units, f"least {said}"
-        yield f"{name}_min_at", largest[1].angle, "degree", f"{spot} of the least {said}"
+        yield f"{name}_max", largest[0].value, units, f"largest {meaning}"
+        yield f"{name}_max_at", largest[0].angle, "degree", f"{spot} of the largest {meaning}"
+        yield f"{name}_min", least, units, f"least {meaning}"
+        yield f"{name}_min_at", largest[1].angle, "degree", f"{spot} of the least {meaning}"
         magnitude = _map(lambda x, y: np.maximum(np.abs(x), np.abs(y)), largest[0].value, least)
-        yield f"{name}_peak", magnitude, units, f"largest magnitude of the {said}"
+        yield f"{name}_peak", magnitude, units, f"largest magnitude of the {meaning}"
 
 
-def _bound(peak: Found, quantity: Quantity) -> Field:
-    """How much larger a peak could be; of a square's, with √(v + δ) − √v = δ/(√(v + δ) + √v)."""
+def _bound(peak: SignalPeak, quantity: Quantity) -> Field:
+    """Return how much larger a peak could be; for a square v, √(v + δ) − √v = δ/(√(v + δ) + √v)."""
     if not quantity.squared:
-        return peak.beyond
-    value, beyond = peak.value.values, peak.beyond.values
+        return peak.bound
+    value, bound = peak.value.values, peak.bound.values
     with np.errstate(invalid="ignore"):
-        return Field(peak.value.dims, beyond / (np.sqrt(value + beyond) + np.sqrt(value)))
+        return Field(peak.value.dims, bound / (np.sqrt(value + bound) + np.sqrt(value)))
 
 
 def _largest(*values: np.ndarray) -> np.ndarray:

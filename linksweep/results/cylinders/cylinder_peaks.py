@@ -12,9 +12,9 @@ from linksweep.results.compute import assembly_of, requested
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
 from linksweep.results.dataset import design_coordinates, joined, origin_attributes, variable
-from linksweep.results.peak_search.along_paths import Found
+from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.quadrature import means_at
-from linksweep.results.peaks import STATUS_ANGLES, Averages, Wanted, named, peaks, status_of, wanted
+from linksweep.results.peaks import STATUS_ANGLES, Averages, Request, named, parsed_requests, peaks, status_of
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -26,7 +26,7 @@ def peaks_of_cylinders(machine: MultiCylinder, of: Iterable[str] | None, threads
     """
     names = [name for name in SHAKING if name not in ("Fsx", "Fsy")] if of is None else requested("of", of)
     pins = [name for name in names if name.partition("_")[0] in machine.pin_forces and name not in machine.quantity]
-    sums = wanted(
+    sums = parsed_requests(
         machine.quantity,
         [name for name in names if name not in pins],
         lambda name: name_problems("of", name, [*machine.quantity, *machine.pin_forces]),
@@ -39,7 +39,7 @@ def peaks_of_cylinders(machine: MultiCylinder, of: Iterable[str] | None, threads
     return ds.assign_attrs(command=f"linksweep.peaks(engine{'' if of is None else f', of={names}'})")
 
 
-def _of_sums(machine: MultiCylinder, sums: list[Wanted], threads: int | None) -> xr.Dataset:
+def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -> xr.Dataset:
     """Return the peaks and means of sums over the cylinders."""
     signals = tuple(dict.fromkeys(signal for item in sums for signal in item.signals))
     powers = tuple(dict.fromkeys(power for item in sums for power in item.powers))
@@ -59,7 +59,7 @@ def _of_sums(machine: MultiCylinder, sums: list[Wanted], threads: int | None) ->
     ).assign_attrs(title="linksweep: MultiCylinder")
 
 
-def _status(scene: Scene, extremes: dict[str, Found], averages: Averages, threads: int | None) -> xr.Variable:
+def _status(scene: Scene, extremes: dict[str, SignalPeak], averages: Averages, threads: int | None) -> xr.Variable:
     """Return the status of one cylinder, and make the sums NaN where none of its samples is ok."""
     grid = crank_grid(STATUS_ANGLES, scene.period)
     return status_of(scene, scene.at_one_angle, grid, assembly_of(scene, threads), extremes, averages, threads)

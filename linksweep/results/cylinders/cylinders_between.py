@@ -15,7 +15,14 @@ import numpy as np
 from linksweep.engine.run import Field
 from linksweep.results.cylinders.cylinder_sums import combined, sources_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.peak_search.along_paths import Found, PathsOf, follow, nothing, raise_to_poles, unbounded
+from linksweep.results.peak_search.along_paths import (
+    PathsOf,
+    SignalPeak,
+    follow,
+    nothing,
+    raise_to_poles,
+    with_unknown_bound,
+)
 from linksweep.results.peak_search.arcs import arc_ends
 from linksweep.results.peak_search.between import (
     EVERYWHERE,
@@ -147,7 +154,7 @@ def _pole_candidates(group: Cylinders, signals: tuple[str, ...]) -> Candidates:
 
 def exact_peaks_of_sums(
     machine: MultiCylinder, signals: tuple[str, ...], threads: int | None = None
-) -> dict[str, Found]:
+) -> dict[str, SignalPeak]:
     """Return the peak of each sum over the continuous cycle, for every design; NaN where it has none."""
     peaks = {signal: nothing(field) for signal, field in empty(machine, signals).items()}
     paths: tuple[PathsOf, ...] = (turns, about_approaches) if machine.engine.approaches() else (turns,)
@@ -155,4 +162,4 @@ def exact_peaks_of_sums(
         follow(group, peaks, paths, threads)
         if may_have_poles(machine.engine, signals):
             raise_to_poles(group, peaks, threads)
-    return peaks if machine.engine.quick.all else {signal: unbounded(peak) for signal, peak in peaks.items()}
+    return peaks if machine.engine.quick.all else {signal: with_unknown_bound(peak) for signal, peak in peaks.items()}

@@ -30,33 +30,33 @@ PathsOf = Callable[[Any], Paths]
 """A function that returns the paths of a group of designs."""
 
 
-class Found(NamedTuple):
+class SignalPeak(NamedTuple):
     """A signal's largest value, its angle [degree], a bound on how much higher it may be, and the samples it took."""
 
     value: Field
     angle: Field
-    beyond: Field
+    bound: Field
     samples: Field
 
 
 class Best(NamedTuple):
-    """The best of each signal on each path: arrays (path, signal) of the numbers that `Found` has."""
+    """The best of each signal on each path: arrays (path, signal) of the numbers that `SignalPeak` has."""
 
     value: Array
     angle: Array
-    beyond: Array
+    bound: Array
     samples: Array
 
 
-def nothing(field: Field) -> Found:
+def nothing(field: Field) -> SignalPeak:
     """Return peaks that are all NaN, from a field of NaN."""
-    return Found(*(Field(field.dims, field.values.copy()) for _ in Found._fields))
+    return SignalPeak(*(Field(field.dims, field.values.copy()) for _ in SignalPeak._fields))
 
 
-def unbounded(peak: Found) -> Found:
+def with_unknown_bound(peak: SignalPeak) -> SignalPeak:
     """Return a peak whose bound is inf: the signal depends on a load that changes too quickly to be followed."""
-    beyond = np.where(np.isfinite(peak.value.values), np.inf, peak.beyond.values)
-    return peak._replace(beyond=Field(peak.beyond.dims, beyond))
+    bound = np.where(np.isfinite(peak.value.values), np.inf, peak.bound.values)
+    return peak._replace(bound=Field(peak.bound.dims, bound))
 
 
 def angle_in_period(angle: Array, period: float) -> Array:
@@ -65,13 +65,13 @@ def angle_in_period(angle: Array, period: float) -> Array:
     return np.where(folded < period - NEAR_PERIOD, folded, 0.0 * folded)
 
 
-def follow(group: Any, peaks: dict[str, Found], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
+def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
     """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
     for paths_of in all_paths:
         _follow(group, peaks, paths_of(group), threads)
 
 
-def _follow(group: Group, peaks: dict[str, Found], paths: Paths, threads: int | None) -> None:
+def _follow(group: Group, peaks: dict[str, SignalPeak], paths: Paths, threads: int | None) -> None:
     if not len(paths.row):
         return
     places = group.some(paths.row).places
@@ -83,7 +83,7 @@ def _follow(group: Group, peaks: dict[str, Found], paths: Paths, threads: int | 
         _raise(peak, index, Best(*(numbers[:, k] for numbers in best)))
 
 
-def raise_to_poles(group: Any, peaks: dict[str, Found], threads: int | None, part: Part | None = None) -> None:
+def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
     """Make the peaks infinite at the poles of their signals, those inside a part of the period if there is one."""
     row, angle, infinite = poles(group, tuple(peaks), threads)
     if part is not None:
@@ -103,21 +103,21 @@ def _flat_index(field: Field, places: Places, count: int) -> Array:
     return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 
-def _raise(peak: Found, at: Array, best: Best) -> None:
+def _raise(peak: SignalPeak, at: Array, best: Best) -> None:
     """Replace a signal's peak at each index by the highest best of that index, where it is higher."""
-    value, angle, beyond, samples = (field.values.reshape(-1) for field in peak)
+    value, angle, bound, samples = (field.values.reshape(-1) for field in peak)
     height = np.nan_to_num(best.value, nan=-np.inf)
     order = np.lexsort((-np.arange(len(at)), height, at))  # by index, then height; of equals the first path comes last
     last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each index
     place = at[last]
     with np.errstate(invalid="ignore"):
-        reach = np.nan_to_num(value + beyond, nan=-np.inf, posinf=np.inf, neginf=-np.inf)
-        np.maximum.at(reach, at, height + best.beyond)
+        reach = np.nan_to_num(value + bound, nan=-np.inf, posinf=np.inf, neginf=-np.inf)
+        np.maximum.at(reach, at, height + best.bound)
         higher = last[~(height[last] <= value[place]) & (height[last] > -np.inf)]
         value[at[higher]], angle[at[higher]] = best.value[higher], best.angle[higher]
-        beyond[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
-    known = np.where(np.isfinite(value[place]), beyond[place], 0.0)  # nothing is above an infinite peak
-    beyond[place] = np.where(np.isnan(value[place]), np.nan, known)
+        bound[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
+    known = np.where(np.isfinite(value[place]), bound[place], 0.0)  # nothing is above an infinite peak
+    bound[place] = np.where(np.isnan(value[place]), np.nan, known)
     samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, best.samples, len(value))[place]
 
 
@@ -150,9 +150,9 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
             trials[search.VALUE, column] = values[tag % len(signals), np.arange(len(tag))]
             samples += np.bincount(path, minlength=count_of_paths)
             count = run["advance"](lanes, trials, count, best)
-    value, x, beyond = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
+    value, x, bound = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
-    return Best(value, angle, beyond, np.broadcast_to(samples[:, None], value.shape))
+    return Best(value, angle, bound, np.broadcast_to(samples[:, None], value.shape))
 
 
 def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
@@ -180,14 +180,14 @@ def _keep(lanes: Array, which: Array) -> int:
 
 def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best, threads: int | None) -> Best:
     """Return the best on arcs, raised to the limits at their ends: infinite where a signal is unbounded."""
-    value, angle, beyond, samples = best
+    value, angle, bound, samples = best
     for end, side in enumerate((-1.0, 1.0)):
         limit, error = _limits(group, signals, paths, end, np.abs(value), threads)
         raised = limit > value
         edge = paths.middle + side * paths.half
-        value, beyond = np.where(raised, limit, value), np.where(raised, error, beyond)
+        value, bound = np.where(raised, limit, value), np.where(raised, error, bound)
         angle = np.where(raised, angle_in_period(edge, group.scene.period)[:, None], angle)
-    return Best(value, angle, beyond, samples + 2 * (NODES + 2))
+    return Best(value, angle, bound, samples + 2 * (NODES + 2))
 
 
 def _limits(

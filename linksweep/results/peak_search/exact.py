@@ -19,13 +19,13 @@ from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute, only_where
 from linksweep.results.peak_search.along_paths import (
-    Found,
     PathsOf,
+    SignalPeak,
     angle_in_period,
     follow,
     nothing,
     raise_to_poles,
-    unbounded,
+    with_unknown_bound,
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
@@ -51,25 +51,27 @@ WINDOWS_AT_ONCE = 4096
 
 def exact_peaks(
     scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
-) -> dict[str, Found]:
+) -> dict[str, SignalPeak]:
     """Return the peak of each signal over the continuous revolution, for every design; NaN where it has none."""
     peaks = _fused_first(scene, signals, assembly, threads) if scene.steady else _by_paths(scene, signals, threads)
     _raise_to_poles(scene, peaks, threads)
     return peaks
 
 
-def peaks_within(scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None) -> dict[str, Found]:
+def peaks_within(
+    scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None
+) -> dict[str, SignalPeak]:
     """Return the peak of each signal between two angles [degree], ends included; angles of peaks lie between them."""
     peaks = _by_paths(scene, signals, threads, (partial(arcs_within, part),))
     _raise_to_poles(scene, peaks, threads, part)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
-    for *_, angle, _beyond, _samples in peaks.values():
+    for *_, angle, _bound, _samples in peaks.values():
         away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
         angle.values[...] = middle + np.clip(away, -half, half)
     return peaks
 
 
-def _raise_to_poles(scene: Scene, peaks: dict[str, Found], threads: int | None, part: Part | None = None) -> None:
+def _raise_to_poles(scene: Scene, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
     if may_have_poles(scene, tuple(peaks)):
         for _, group in assembled_groups(scene, tuple(peaks)):
             raise_to_poles(group, peaks, threads, part)
@@ -77,14 +79,16 @@ def _raise_to_poles(scene: Scene, peaks: dict[str, Found], threads: int | None, 
 
 def _by_paths(
     scene: Scene, signals: tuple[str, ...], threads: int | None, paths: tuple[PathsOf, ...] = ()
-) -> dict[str, Found]:
+) -> dict[str, SignalPeak]:
     """Return peaks from a search along these paths, or along those for each design's kind of assembly."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     for kind, group in assembled_groups(scene, signals):
         follow(group, peaks, paths or _paths(scene, kind), threads)
     if scene.quick.all:
         return peaks
-    return {signal: unbounded(peak) if _is_over_angle(scene, signal) else peak for signal, peak in peaks.items()}
+    return {
+        signal: with_unknown_bound(peak) if _is_over_angle(scene, signal) else peak for signal, peak in peaks.items()
+    }
 
 
 def _is_over_angle(scene: Scene, signal: str) -> bool:
@@ -94,7 +98,7 @@ def _is_over_angle(scene: Scene, signal: str) -> bool:
     return not over_angle.isdisjoint(plan(scene.table, (signal,), inputs.forms).inputs)
 
 
-def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, Found]:
+def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, SignalPeak]:
     """Return peaks from the fused search, raised to those along paths where its samples do not suffice."""
     names = (*signals, "assembly")
     whole, partly = (_designs_where(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
@@ -132,15 +136,15 @@ def _designs_where(scene: Scene, field: Field, value: float) -> Array:
     return np.flatnonzero(np.broadcast_to(laid(field, tuple(sizes)) == value, tuple(sizes.values())))
 
 
-def peaks_where(good: Field, peaks: dict[str, Found]) -> dict[str, Found]:
+def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
     """Return the peaks, NaN where no design that shares one is good."""
-    return {signal: Found(*(only_where(good, field) for field in peak)) for signal, peak in peaks.items()}
+    return {signal: SignalPeak(*(only_where(good, field) for field in peak)) for signal, peak in peaks.items()}
 
 
 # ----------------------------------------------------------------------------------------- the fused search
 
 
-def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, Found]:
+def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, SignalPeak]:
     """Return peaks from the search inside the kernel; a signal that does not depend on the angle is its own peak."""
     inputs, index = scene.inputs, scene.mechanism.index
     forms = tuple((name, form) for name, form in inputs.forms if name not in GRID_ROWS)
@@ -157,16 +161,16 @@ def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[
     return at_angles | {signal: _constant(field) for signal, field in values.items()}
 
 
-def _at_angle(scene: Scene, peak: Peak) -> Found:
+def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
     """Return a peak of the fused search, which knows a half-angle tangent, with its angle [degree]."""
     dims, value = peak.value
     away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
     angle = away + laid(scene.mechanism.near_toggle_angle, dims)
     angle = np.where(np.isnan(value), np.nan, angle_in_period(angle, scene.period))
-    return Found(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
+    return SignalPeak(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
 
 
-def _constant(field: Field) -> Found:
+def _constant(field: Field) -> SignalPeak:
     """Return the peak of a signal that does not depend on the angle: at 0, after one sample."""
     zero, one = (np.full(field.values.shape, number) for number in (0.0, 1.0))
-    return Found(*(Field(field.dims, values) for values in (field.values.copy(), zero, zero.copy(), one)))
+    return SignalPeak(*(Field(field.dims, values) for values in (field.values.copy(), zero, zero.copy(), one)))
