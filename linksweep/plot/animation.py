@@ -22,7 +22,7 @@ from linksweep.plot import track as track_plot
 from linksweep.plot.curves import HEADROOM, forces
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.style import BLACK, BLUE, FORCE_COLORS, GREY, small_type
+from linksweep.plot.kit.style import BLACK, BLUE, FORCE_COLORS, GREY, force_color, small_type
 from linksweep.plot.machine import ARROW, CURVE, Shape, draw_ground, draw_links, positions, shape_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.sweep import sweep
@@ -197,7 +197,7 @@ def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: A
 def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
     """Return the frames at those of these angles that have a result."""
     cycle = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
-    good = np.flatnonzero(cycle["status"].values == 0)
+    good = np.flatnonzero(signals.spread(cycle["status"], len(angles)) == 0)
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
     parts = {force: _rows(cycle, force) for force in drawing.forces}
@@ -243,10 +243,10 @@ def _arrow(ax: Axes, name: str, ends: np.ndarray, named: float) -> None:
 
     length = float(np.hypot(*(ends[1] - ends[0])))
     if length > 0.0:
-        arrow(ax, ends[0], ends[1], FORCE_COLORS[name])
+        arrow(ax, ends[0], ends[1], force_color(name))
     if length > named:
         x, y = 11.0 * (ends[1] - ends[0]) / length
-        style = _beside(FORCE_COLORS[name]) | {"ha": "center", "va": "center"}
+        style = _beside(force_color(name)) | {"ha": "center", "va": "center"}
         ax.annotate(signals.symbol(name), tuple(ends[1]), (x, y), **style)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import drawing_of
+from linksweep.plot.kit.drawings import joints_of
 from linksweep.plot.kit.style import BLUE, GREY, VERMILION, crank_angles, grid, small_type
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -56,7 +56,7 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
     """
     import matplotlib.pyplot as plt
 
-    drawing = drawing_of(before.mechanism)
+    drawing = joints_of(before.mechanism)
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces
     cycles = {

@@ -13,7 +13,7 @@ from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import drawing_of_results
-from linksweep.plot.kit.style import BLUE, FORCE_COLORS, GREY, VERMILION, axes_or_new, grid, small_type
+from linksweep.plot.kit.style import BLUE, GREY, VERMILION, axes_or_new, force_color, grid, small_type
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
 
@@ -134,7 +134,7 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
     _cross(ax)
     for force, (_, x, y) in loci.items():
         text = f"{signals.symbol(force)} ({drawing_of_results(ds).joint_text(force)})"
-        ax.plot(x, y, color=FORCE_COLORS[force], label=text)
+        ax.plot(x, y, color=force_color(force), label=text)
     near = [np.hypot(x, y) <= BEYOND * usual for _, x, y in loci.values()]
     _limits(
         ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))
@@ -149,6 +149,7 @@ def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
     drawing = drawing_of_results(ds)
     link = drawing.link_of(pin, frame)
     if link != 1:
+        refuse([] if link in drawing.frames else [f"frame = {frame!r}: link {link} has no axes; take the ground's"])
         x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
     return angles, x, y
 

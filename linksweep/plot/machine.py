@@ -15,7 +15,7 @@ from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Block, Drawing, Guide
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.style import BLACK, FORCE_COLORS, GREY, SKY, axes_or_new, grid
+from linksweep.plot.kit.style import BLACK, GREY, SKY, axes_or_new, force_color, grid
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -120,7 +120,8 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
 
 def _require_assembled(cycle: xr.Dataset, angle: float) -> None:
     """Raise ValueError where the mechanism has no position at the last angle of a cycle."""
-    status, angles = cycle.status.values, cycle[signals.INDEX].values
+    angles = cycle[signals.INDEX].values
+    status = signals.spread(cycle.status, len(angles))
     if status[-1]:
         possible = angles[:-1][status[:-1] == 0]
         off = np.abs((possible - angle + 180.0) % 360.0 - 180.0)
@@ -130,7 +131,7 @@ def _require_assembled(cycle: xr.Dataset, angle: float) -> None:
 
 def _meaning(cycle: xr.Dataset) -> str:
     """Return the meaning of the last status, to follow a subject."""
-    word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values[-1])]
+    word = cycle.status.attrs["flag_meanings"].split()[int(cycle.status.values.ravel()[-1])]
     phrases = {
         "cannot_assemble": "cannot be assembled",
         "toggle": "is at a toggle",
@@ -146,7 +147,7 @@ def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.
     none."""
     sample = sweep(scene, theta2=[angle], outputs=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     signals.require_one_design(sample.values())
-    if sample.status.values[-1]:
+    if sample.status.any():
         raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(sample)}")
     return {
         force: np.array([part.values.reshape(-1)[0] for part in signals.components(sample, force)])
@@ -295,5 +296,5 @@ def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarra
         if size > 0.0:
             start = starts[name]
             tip = start + vector * (ARROW * extent / largest)
-            arrow(ax, start, tip, FORCE_COLORS[name])
-            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", FORCE_COLORS[name]))
+            arrow(ax, start, tip, force_color(name))
+            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", force_color(name)))

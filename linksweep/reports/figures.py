@@ -96,7 +96,7 @@ def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
     pins = drawing.pin_forces
     force = max(pins, key=lambda name: float(peaks[f"{name}_peak"]))
     at = float(peaks[f"{force}_peak_at"])
-    if np.isfinite(peaks[f"{force}_peak"]) and int(sweep(results.scene, [at], ["status"])["status"][0]) == 0:
+    if np.isfinite(peaks[f"{force}_peak"]) and not sweep(results.scene, [at], ["status"])["status"].any():
         return force, at
     largest = {
         name: signals.peak(*signals.revolution(results.cycle, signals.magnitude(results.cycle, name))) for name in pins

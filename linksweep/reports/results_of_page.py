@@ -94,8 +94,9 @@ def _angles(first: float, last: float) -> np.ndarray:
 
 def _outputs(scene: Scene) -> tuple[str, ...]:
     """Return the quantities over the angle that the page draws and checks."""
-    own = (*scene.mechanism.kinematics(), *scene.mechanism.dynamics(scene.drive))
-    return (*own, *_known(scene, "Fsx", "Fsy", "power_residual", "error_bound"))
+    machine, forces = scene.mechanism, scene.mechanism.drawing.forces if scene.mechanism.drawing else ()
+    drawn = (*(f"{force}{axis}" for force in forces for axis in "xy"), "Fsx", "Fsy", "power_residual", "error_bound")
+    return tuple(dict.fromkeys((*machine.kinematics(), *machine.dynamics(scene.drive), *_known(scene, *drawn))))
 
 
 def _known(scene: Scene, *names: str) -> list[str]:

@@ -270,11 +270,15 @@ def test_every_mechanism_can_be_drawn(kind):
     assert (kind.drawing is None) == (kind.track is not None)
 
 
-def test_a_mechanism_without_a_drawing_is_named(cycles, monkeypatch):
+def test_of_a_mechanism_without_a_drawing_only_the_forces_at_pins_are_plotted(cycles, monkeypatch):
     monkeypatch.setattr(ls.SliderCrank, "drawing", None)
-    for draw in (plot.mechanism, plot.forces, plot.bearing, plot.cycle):
-        with pytest.raises(ValueError, match="a SliderCrank cannot be drawn: its class declares no `drawing`"):
+    assert plot.forces(cycles["crossed"]).get_ylabel() == "pin force [N]"  # without the guide, which is no pin
+    plot.bearing(cycles["crossed"], "F32")
+    for draw in (plot.mechanism, plot.cycle):
+        with pytest.raises(ValueError, match="cannot draw a SliderCrank, which has no drawing of links"):
             draw(cycles["crossed"])
+    with pytest.raises(ValueError, match="frame = 'journal': link 2 has no axes; take the ground's"):
+        plot.bearing(cycles["crossed"], "F32", frame="journal")
 
 
 def test_results_of_a_mechanism_that_is_not_registered_are_named(cycles, monkeypatch):
@@ -288,7 +292,7 @@ def test_a_car_in_a_loop_has_no_crank_to_plot_over():
     scene = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, thrust=10_000.0, gravity=GRAVITY)
     ds = ls.sweep(scene, 36)
     for draw in (plot.forces, plot.torque, plot.bearing, plot.mechanism):
-        with pytest.raises(ValueError, match=r"a LoopTrack cannot be drawn: it has no links: plot\.loop"):
+        with pytest.raises(ValueError, match=r"cannot draw a LoopTrack, which has no drawing of links .plot\.loop"):
             draw(ds)
     assert [ax.get_ylabel() for ax in plot.cycle(ds).axes] == [ax.get_ylabel() for ax in plot.loop(ds).axes]
 

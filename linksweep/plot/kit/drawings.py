@@ -10,26 +10,32 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
+from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.drawing import Drawing
 
 LOST = Drawing(joints={"A": (1, 2), "B": (3, 2), "C": (4, 3), "ground": (1, 4)})
 """Drawing for a Dataset that has lost its scene, which alone states how link 4 is held."""
-ON_TRACK = "it has no links: plot.loop, plot.cycle and plot.animate show it"
-NO_DRAWING = "its class declares no `drawing`"
+
+
+def joints_of(machine: Mechanism | type[Mechanism]) -> Drawing:
+    """Return the drawing of a machine, or where its class declares none the joints that are its pins.
+
+    Raises ValueError for a machine without pins.
+    """
+    return Drawing(machine.pins, machine.journals) if machine.pins and not machine.drawing else drawing_of(machine)
 
 
 def drawing_of(machine: Mechanism | type[Mechanism]) -> Drawing:
     """Return the drawing of a machine. Raises ValueError where its class declares none."""
-    kind = machine if isinstance(machine, type) else type(machine)
-    if kind.drawing is None:
-        raise ValueError(f"a {kind.__name__} cannot be drawn: {ON_TRACK if kind.track else NO_DRAWING}")
-    return kind.drawing
+    if machine.drawing is None:
+        raise ValueError(f"cannot draw {lack(machine, 'drawing')}")
+    return machine.drawing
 
 
 def drawing_of_results(ds: xr.Dataset) -> Drawing:
-    """Return the drawing of the machine whose results a Dataset holds; `LOST` where it has lost its scene."""
+    """Return the joints of the machine whose results a Dataset holds; `LOST` where it has lost its scene."""
     kind = machine_of_results(ds)
-    return LOST if kind is None else drawing_of(kind)
+    return LOST if kind is None else joints_of(kind)
 
 
 def machine_of_results(ds: xr.Dataset) -> type[Mechanism] | None:

@@ -128,10 +128,10 @@ def by_angle(ds: xr.Dataset, *signals: xr.DataArray) -> tuple[np.ndarray, ...]:
     """Return angles and signals as arrays sorted by angle."""
     angles = ds[INDEX].values.astype(float)
     order = np.argsort(angles, kind="stable")
-    return (angles[order], *(_spread(signal, len(angles))[order] for signal in signals))
+    return (angles[order], *(spread(signal, len(angles))[order] for signal in signals))
 
 
-def _spread(signal: xr.DataArray, count: int) -> np.ndarray:
+def spread(signal: xr.DataArray, count: int) -> np.ndarray:
     """Return values at every angle, also of a signal that does not depend on it."""
     require_one_design([signal])
     return np.broadcast_to(signal.values.astype(float), (count,))

@@ -17,6 +17,11 @@ GREY, SHADE = "#666666", "#EBEBEB"
 FORCE_COLORS = {"F12": BLUE, "F32": VERMILION, "F43": GREEN, "F14": PURPLE}
 
 
+def force_color(force: str) -> str:
+    """Return the colour of a force, such as F12; orange for a pair of links without one of its own."""
+    return FORCE_COLORS.get(force, ORANGE)
+
+
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
     """Return `ax`, or the axes of a new figure where it is None."""
     if ax is not None:
