@@ -177,3 +177,12 @@ def test_beside_the_dead_centres_of_a_driven_rod():
         rate = lambda angle: (A * mp.cos(angle)) ** 2 / (B**2 - (A * mp.sin(angle)) ** 2)  # noqa: E731
         expected = SPEED * math.sqrt(mp.quad(rate, [0, mp.pi / 2, mp.pi]) / mp.pi)
     assert float(found.omega3_rms) == pytest.approx(expected, rel=1e-10)
+
+
+def test_a_quantity_of_nothing_but_rounding_has_a_mean():
+    """The inertia of a crank alone acts through A, where it has no moment."""
+    crank = ls.Link(0.08, 1.0, 0.001, cg_distance=0.04)
+    machine = ls.FourBar(crank, ls.Link(0.22, 0.0, 0.0), ls.Link(0.18, 0.0, 0.0), ground=0.20)
+    means = ls.peaks(ls.Scene(machine, omega2=30.0), of=["Ms_rms", "Fs_rms"])
+    assert float(means.Ms_rms) < 1e-15
+    assert float(means.Fs_rms) == pytest.approx(1.0 * 0.04 * 30.0**2, rel=1e-13)

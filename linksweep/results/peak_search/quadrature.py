@@ -36,6 +36,9 @@ DIVERGENCE = 1e5
 """Size of a piece, relative to the first estimate of the whole, from which on the integral diverges."""
 FIRST_DIVERGENCE = 12
 """Halvings after which that is checked: a load may have a narrow peak that the first estimate missed."""
+NOISE, FIRST_NOISE = 0.1, 8
+"""An integrand with more than this share of its pieces open after so many halvings is nothing but rounding, as is the
+shaking moment of a crank alone: in others only kinks, jumps and poles keep pieces open, one or two each."""
 LAST_DIGIT = 2.0**-44
 """Spacing of floating-point numbers at an angle of 360 [degree]."""
 POLE = 1e-3
@@ -172,6 +175,7 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, th
     whichever others are computed with it.
     """
     count, pieces, scale = len(paths.x), _first_pieces(paths), None
+    first = np.bincount(pieces.path, minlength=count)
     total = np.zeros((len(integrands), count))
     pending = np.ones((len(integrands), len(pieces.path)), dtype=bool)
     for halvings in range(HALVINGS):
@@ -180,6 +184,9 @@ def _integrals(group: Group, integrands: tuple[Integrand, ...], paths: Paths, th
         unsettled = pending & _disagree(rules, scale[:, pieces.path], beside_toggles=paths.middle is not None)
         if halvings >= FIRST_DIVERGENCE:
             unsettled = _without_divergent(rules, unsettled, scale, pieces.path)
+        if halvings >= FIRST_NOISE:
+            noise = _by_owner(unsettled, pieces.path, count) > NOISE * first * 2.0**halvings
+            unsettled &= ~noise[:, pieces.path]
         total += _by_owner(np.where(pending & ~unsettled, rules.outer, 0.0), pieces.path, count)
         halved = unsettled.any(axis=0)
         if not halved.any():
