@@ -151,9 +151,9 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
 def _loaded(path: Path) -> xr.Dataset:
     """Return the whole of a NetCDF file; one without linksweep's seal is read in a separate process."""
     if not (mark := mark_of(path)):
-        from linksweep.files.apart import read_apart  # here: it also runs as a program, which imports this module
+        from linksweep.files.isolated import read_isolated  # here: it also runs as a program, which imports this module
 
-        return read_apart(path)
+        return read_isolated(path)
     sealed(path, mark)  # raises for a damaged file
     with NETCDF, xr.open_dataset(path, engine="netcdf4") as ds:
         return ds.load()

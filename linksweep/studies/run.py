@@ -180,10 +180,10 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
 
     try:
         with _progress(prod(job.sizes.values())) as advance:
-            there = [number for number in range(len(job.blocks)) if kept.holds(number)]
-            missing = sorted({*range(len(job.blocks))} - {*there})
+            stored = [number for number in range(len(job.blocks)) if kept.holds(number)]
+            missing = sorted({*range(len(job.blocks))} - {*stored})
             with contextlib.closing(compute(missing)) as computed:
-                for number in chain(there, computed):
+                for number in chain(stored, computed):
                     advance(job.designs(job.blocks[number]))
         assemble(kept.assembled, job.scene, job.sizes, chunks, f"linksweep.study({job.words})")
         seal(kept.assembled, job.result)

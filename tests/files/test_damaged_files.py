@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.files import apart
+from linksweep.files import isolated
 
 FLIPS = 300
 
@@ -140,7 +140,7 @@ def test_bits_flipped_in_the_structure_of_a_plain_file_are_survived(plain):
 def test_a_library_that_dies_or_hangs_is_told(program, said, plain, monkeypatch):
     run = subprocess.run
     monkeypatch.setattr(subprocess, "run", lambda command, **options: run([command[0], "-c", program], **options))
-    monkeypatch.setattr(apart, "LONGEST", 0.5 if "while" in program else 60.0)
+    monkeypatch.setattr(isolated, "LONGEST", 0.5 if "while" in program else 60.0)
     assert refusal(plain[0]) == f": cannot be read as NetCDF ({said}); a scene file ends in .toml"
 
 

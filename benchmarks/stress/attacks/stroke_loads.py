@@ -2,7 +2,7 @@
 
 Each is held against the table read at the position of the closed form, x = a·cos θ ± √(b² − (e − a·sin θ)²), with the
 way from its derivative; and its exact peaks against samples and both sides of every angle at which the slider passes a
-place of the table or turns round, told by bisection.
+place of the table or reverses, located by bisection.
 """
 
 from __future__ import annotations

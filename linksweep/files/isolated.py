@@ -1,6 +1,6 @@
 """Read NetCDF files without linksweep's seal in a separate process: HDF5 may crash or hang on a damaged one.
 
-``python -m linksweep.files.apart cycle.nc`` writes the file's variables to its standard output, in the form of
+``python -m linksweep.files.isolated cycle.nc`` writes the file's variables to its standard output, in the form of
 `linksweep.files.packed`.
 """
 
@@ -22,7 +22,7 @@ END = {0: 40, 1: 44, 2: 28, 3: 28}
 """Position of the file's length within an HDF5 file, by the version of the superblock."""
 
 
-def read_apart(path: Path) -> xr.Dataset:
+def read_isolated(path: Path) -> xr.Dataset:
     """Return all variables of a NetCDF file, as coordinates; ValueError that names the file where it cannot be read."""
     try:
         if not (reason := _cut_off(path)):
