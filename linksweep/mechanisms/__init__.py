@@ -1,4 +1,4 @@
-"""Which machines there are: each a frozen dataclass and a table of what can be computed of it.
+"""The machines: each a frozen dataclass, and a table of the quantities that can be computed of it.
 
 To add one, see `Mechanism`: derive from it and `register` the class.
 """

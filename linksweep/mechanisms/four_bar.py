@@ -82,11 +82,18 @@ class FourBar(Mechanism):
 
     Parameters
     ----------
-    crank, coupler, rocker : Link, Bar or Disk
-        Their first pins are A, B and D.
-    ground : length of the frame from A to D [m], DataArray allowed
-    branch : "open" (C to the left of the line B→D), "crossed", or "both" (adds the dimension `branch`)
-    ground_angle : angle of the line A→D to x [degree], DataArray allowed
+    crank : Link, Bar or Disk
+        Driven link; its first pin is A, its second B.
+    coupler : Link, Bar or Disk
+        Link from B to C; its first pin is B.
+    rocker : Link, Bar or Disk
+        Link from D to C; its first pin is D.
+    ground : float or DataArray
+        Length of the frame from A to D [m].
+    branch : str, default "open"
+        Assembly: "open" (C to the left of the line B→D), "crossed", or "both" (adds the dimension `branch`).
+    ground_angle : float or DataArray, default 0.0
+        Angle of the line A→D to x [degree].
 
     Raises
     ------
@@ -131,6 +138,13 @@ class FourBar(Mechanism):
     )
 
     def lengths(self) -> dict[str, Number]:
+        """Return the lengths of the four links.
+
+        Returns
+        -------
+        dict of str to float or DataArray
+            Lengths [m] by role.
+        """
         return {
             "crank": self.crank.length,
             "coupler": self.coupler.length,
@@ -155,7 +169,6 @@ class FourBar(Mechanism):
         ]
 
     def parameters(self) -> dict[str, Any]:
-        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
             **frame_parameters("ground", self.ground_angle),
@@ -167,44 +180,42 @@ class FourBar(Mechanism):
 
     @property
     def near_toggle_angle(self) -> Number:
-        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
 
     @property
     def strokes(self) -> dict[str, Stroke]:
-        """The rocker's angle."""
+        """Angle of the rocker, as a position that a load may follow."""
         lengths = self.crank.length, self.coupler.length, self.rocker.length, self.ground
         return {"rocker.angle": rocker_stroke(*lengths, self.ground_angle, BRANCH_SIGN[self.branch])}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        """All that can be computed for this drive and loads of these forms."""
         return _table(drive, loads, turned(self.ground_angle), self._goes_through)
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
-        """The nine unknowns of the 9×9, in the textbook's order."""
+        """Return the nine unknowns of the 9×9, in the textbook's order."""
         return (*UNKNOWN_FORCES, self.drives[drive])
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        """The 9×9 of document 2 (ME 470), row by row."""
-        torque = {role: self.drives[drive] if role == drive else None for role in self.links}
+        """Return the 9×9 of document 2 (ME 470), row by row."""
+        torque = {drive: self.drives[drive]}.get
         return (
-            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"]),
-            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
-            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque["rocker"]),
+            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank")),
+            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque("coupler")),
+            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque("rocker")),
         )
 
     def findings(self) -> Checks:
-        """What can be checked in closed form, and the numbers that each takes."""
         lengths = tuple(self.lengths().values())
         return (classes, lengths), (angles, (*lengths, self.ground_angle))
 
     def dead_centre_findings(self, drive: str) -> Checks:
-        """Where the coupler, or the rocker, stands still."""
-        found = {"coupler": coupler_dead_centres, "rocker": rocker_dead_centres}
-        return ((found[drive], (*self.lengths().values(), self.ground_angle)),) if drive in found else ()
+        """Return the check for angles at which coupler or rocker stands still."""
+        dead_centres = {"coupler": coupler_dead_centres, "rocker": rocker_dead_centres}
+        numbers = (*self.lengths().values(), self.ground_angle)
+        return ((dead_centres[drive], numbers),) if drive in dead_centres else ()
 
     def stroke_findings(self) -> Checks:
         """Return the closed forms of the rocker's swing, time ratio and reversals."""
@@ -218,7 +229,6 @@ class FourBar(Mechanism):
 
     @cached_property
     def closes_everywhere(self) -> bool:
-        """Whether every design closes at every angle with a margin that rounding cannot touch."""
         a, b, c, d = self.lengths().values()
         low = ((d - b) + (c - a)) * ((d - c) + (b - a))
         high = ((b - d) + (c - a)) * (b + c + d + a)
@@ -229,7 +239,7 @@ class FourBar(Mechanism):
 
     @cached_property
     def _goes_through(self) -> bool:
-        """Whether any design may be a parallelogram or a kite, which change sides; the others keep their bits."""
+        """True where a design may be a parallelogram or a kite, which change sides; other designs keep their bits."""
         if any(map(is_lazy, self.lengths().values())):
             return True
         a, b, c, d = self.lengths().values()
@@ -301,7 +311,7 @@ def _rates() -> list[Row | Total]:
 
 
 def _transmission() -> list[Row | Total]:
-    """What the rocker has of the crank's velocity and torque."""
+    """Return rows of the ratios of the rocker's velocity and torque to the crank's."""
     radii = ("crank_length", "rocker_length")
     return [
         *crank_pin_slope_rows(),
@@ -312,10 +322,10 @@ def _transmission() -> list[Row | Total]:
 
 
 def _forces(drive: str) -> list[Row | Total]:
-    """F43 from the two moment equations free of the drive's torque; the rest follows by addition.
+    """Return rows of F43, by the two moment equations without the drive's torque, and of the others, by addition.
 
-    The crank's torque comes from virtual work, which costs no pin force. That of another link, whose hold may vanish,
-    comes with F43, so that both have the same error.
+    The crank's torque comes from virtual work, which needs no pin force. The torque on another link, whose leverage may
+    vanish, comes with F43, so that both have the same error.
     """
     return [
         *(_crank_driven() if drive == "crank" else _driven_beyond_the_crank(drive)),
@@ -335,7 +345,7 @@ def _crank_driven() -> list[Row | Total]:
 
 
 def _driven_beyond_the_crank(drive: str) -> list[Row | Total]:
-    """The crank's moment equation takes the place of the driven link's."""
+    """Return rows in which the crank's moment equation takes the place of the driven link's."""
     free, ratio, torque = {
         "coupler": (("r4x", "r4y", "N4"), "ratio3", dyad_rrr.rrr_coupler_torque),
         "rocker": (("r3x", "r3y", "moment_r3"), "ratio4", dyad_rrr.rrr_rocker_torque),

@@ -26,7 +26,7 @@ from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
     wedging_by_crank,
 )
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
-from linksweep.mechanisms.mechanism import Mechanism, register
+from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.rows.crank import (
     BRANCH_SIGN,
@@ -41,13 +41,13 @@ from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, block_stroke
 
 BLOCK_LENGTH = 1.0
-"""Unit of the block's axes, which lie along and across the rocker's line."""
+"""Unit length of the block's axes, which lie along and across the rocker's line."""
 SLIDE_FORCES = {
     "F43n": ("contact_x", "contact_y", "block_contact_arm", "contact_arm"),
     "cylinder_force": ("r3x", "r3y", "block_line_arm", "line_arm"),
 }
-"""Per unit of forces on the block at B, along (r3x, r3y) or across with the friction that this brings: x, y, and the
-moments about the centres of gravity of block and rocker."""
+"""Names of components and moments per unit of a force on the block at B: x, y, and the moments about the centres of
+gravity of block and rocker. cylinder_force acts along (r3x, r3y), F43n across it together with its friction."""
 
 
 @register
@@ -57,21 +57,29 @@ class InvertedSliderCrank(Mechanism):
 
     Parameters
     ----------
-    crank : Link, Bar or Disk; its first pin is A, the block turns on its second, B
-    rocker : Link, Bar or Disk; its first pin is D. Its line is the direction in which the block slides, its centre of
-        gravity and its loads are polar from D and that direction; its length is a reference that no result depends on
-    ground : distance A-D [m]
-    block_mass : [kg]
-    block_inertia : about its centre of gravity [kg m²]; the block turns with the rocker
-    offset : distance of the line of sliding from D, to the left of the rocker's direction [m], either sign
-    branch : "open" (B ahead of D along the rocker), "crossed" (behind), or "both" (adds the dimension `branch`)
-    ground_angle : direction of the line A→D to x [degree]
-    block_cg_distance : distance of the block's centre of gravity from B [m]
-    block_cg_angle : angle of the centre of gravity from the rocker's direction, counter-clockwise [degree]
-    friction : coefficient of Coulomb friction between rocker and block
-
-    All numbers may be DataArrays of design dims. A load on "block" acts at a point from B, in axes along and across
-    the rocker's line.
+    crank : Link, Bar or Disk
+        Driven link; its first pin is A, and the block turns on its second, B.
+    rocker : Link, Bar or Disk
+        Link along which the block slides; its first pin is D. Its centre of gravity and its loads are polar from D and
+        the direction of sliding; its length is a reference on which no result depends.
+    ground : float or DataArray
+        Distance A-D [m].
+    block_mass : float or DataArray
+        Mass of the block [kg].
+    block_inertia : float or DataArray, default 0.0
+        Moment of inertia of the block about its centre of gravity [kg m²]; the block turns with the rocker.
+    offset : float or DataArray, default 0.0
+        Distance of the line of sliding from D, to the left of the rocker's direction [m], of either sign.
+    branch : str, default "open"
+        Assembly: "open" (B ahead of D along the rocker), "crossed" (behind), or "both" (adds the dimension `branch`).
+    ground_angle : float or DataArray, default 0.0
+        Direction of the line A→D to x [degree].
+    block_cg_distance : float or DataArray, default 0.0
+        Distance of the block's centre of gravity from B [m].
+    block_cg_angle : float or DataArray, default 0.0
+        Angle of that centre of gravity from the rocker's direction, counter-clockwise [degree].
+    friction : float or DataArray, default 0.0
+        Coefficient of Coulomb friction between rocker and block [1].
 
     Raises
     ------
@@ -80,8 +88,10 @@ class InvertedSliderCrank(Mechanism):
 
     Notes
     -----
-    The contact of rocker and block is a normal force F43n through B and a moment T43. Of the pin forces it takes the
-    place of F43x, F43y in the nine unknowns; those are given besides. Friction, −μ·|F43n|·sign(slide_velocity) on the
+    A load on "block" acts at a point from B, in axes along and across the rocker's line.
+
+    The contact of rocker and block is a normal force F43n through B and a moment T43. In the nine unknowns they take
+    the place of F43x, F43y, which are computed besides. Friction, −μ·|F43n|·sign(slide_velocity) on the
     block along the line, takes the size of the normal force alone: the moment T43, two more normal forces at the ends
     of the block, brings no friction of its own. It wedges where μ·|e/slide| ≥ 1, e the offset; with drive="rocker"
     where μ·|tan ψ| ≥ 1, ψ the angle of the crank to the line: status `jammed` where no force moves it on,
@@ -143,21 +153,21 @@ class InvertedSliderCrank(Mechanism):
     )
 
     def lengths(self) -> tuple[Number, Number, Number]:
-        """What decides how it moves: crank, ground, offset."""
+        """Return the lengths that alone decide the motion.
+
+        Returns
+        -------
+        tuple of float or DataArray
+            Crank, ground and offset [m].
+        """
         return self.crank.length, self.ground, self.offset
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: the offset is beyond the reach of crank and ground."""
         a, d, e = self.lengths()
-        if any(hasattr(number, "dims") for number in (a, d, e)) or abs(e) <= a + d:
-            return []
-        return [
-            f"offset = {e:.15g} m is {abs(e) - a - d:.6g} m beyond the reach of crank + ground: "
-            f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
-        ]
+        return reach_problems(e, a, d, "crank + ground")
 
     def parameters(self) -> dict[str, Any]:
-        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
         numbers: dict[str, Any] = {
             "ground_length": self.ground,
             **frame_parameters("ground", self.ground_angle),
@@ -173,35 +183,32 @@ class InvertedSliderCrank(Mechanism):
 
     @property
     def near_toggle_angle(self) -> Number:
-        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return self.ground_angle
 
     @property
     def strokes(self) -> dict[str, Stroke]:
-        """Where the block is along the rocker's line: of a cylinder, how far it is extended."""
+        """Position of the block along the rocker's line, or extension of a cylinder, which a load may follow."""
         return {"block.position": block_stroke(*self.lengths(), self.ground_angle, BRANCH_SIGN[self.branch])}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        """All that can be computed for this drive and loads of these forms."""
         return table(drive, loads, turned(self.ground_angle))
 
     def kinematics(self) -> tuple[str, ...]:
         return ("theta4", "omega4", "alpha4", "slide", "slide_velocity", "slide_acceleration")
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
-        """The nine unknowns of the 9×9: the contact of rocker and block as normal force and moment."""
+        """Return the nine unknowns of the 9×9: the contact of rocker and block as normal force and moment."""
         return ("F12x", "F12y", "F32x", "F32y", "F43n", "T43", "F14x", "F14y", self.drives[drive])
 
     def dynamics(self, drive: str) -> tuple[str, ...]:
-        """What a sweep gives besides the kinematics."""
         return (*self.unknowns(drive), "F43x", "F43y")
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        """The 9×9: the rows of document 2 (ME 470), the slide's forces along and across its line (r3x, r3y)."""
-        torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
-        crank = newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"])
+        """Return the 9×9: the rows of document 2 (ME 470), the slide's forces along and across its line (r3x, r3y)."""
+        torque = {drive: self.drives[drive]}.get
+        crank = newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank"))
         block = newton_euler_equations(3, {"F32": (-1.0, "R23")}, "T43")
-        rocker = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque["rocker"])
+        rocker = newton_euler_equations(4, {"F14": (1.0, "R14")}, torque("rocker"))
         rocker[2].coefficients["T43"] = -1.0
         for force in (name for name in self.unknowns(drive) if name in SLIDE_FORCES):
             x, y, about_block, about_rocker = SLIDE_FORCES[force]
@@ -212,7 +219,6 @@ class InvertedSliderCrank(Mechanism):
         return (*crank, *block, *rocker)
 
     def findings(self) -> Checks:
-        """What can be checked in closed form, and the numbers that each takes."""
         lengths = self.lengths()
         return (classes, lengths), (angles, (*lengths, self.ground_angle)), *self.stroke_findings()
 
@@ -227,18 +233,18 @@ class InvertedSliderCrank(Mechanism):
         return {"crank": -crank, "rocker": -rocker_and_block}
 
     def dead_centre_findings(self, drive: str) -> Checks:
-        """Where the block stands still on its line; where the rocker turns round."""
-        found = {"cylinder": dead_centres, "rocker": rocker_dead_centres}
-        return ((found[drive], (*self.lengths(), self.ground_angle)),) if drive in found else ()
+        """Return the check for angles at which the block stands still on its line, or the rocker turns round."""
+        checks = {"cylinder": dead_centres, "rocker": rocker_dead_centres}
+        return ((checks[drive], (*self.lengths(), self.ground_angle)),) if drive in checks else ()
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
-        """Also where friction wedges the block, by the moment equations free of the drive; a cylinder overcomes it."""
+        """Return also the check for wedging, by the moment equations without the drive; a cylinder overcomes it."""
         of_drive, numbers = super().driven_findings(motion), (*self.lengths(), self.ground_angle, self.friction)
         wedges = {"crank": wedging, "rocker": wedging_by_crank}
         return (*of_drive, *((wedges[drive], numbers) for drive in wedges if drive == motion["drive"]))
 
     def jumps(self) -> tuple[Number, ...]:
-        """Crank angles [degree] at which friction jumps: dead centres, where the block turns round on its line."""
+        """Return the crank angles [degree] at which friction jumps: where the block turns round on its line."""
         if not np.any(self.friction):
             return ()
         a, d, e = self.lengths()
@@ -246,11 +252,11 @@ class InvertedSliderCrank(Mechanism):
         return self.ground_angle + near, self.ground_angle + 180.0 + far
 
     def kinks(self) -> tuple[str, ...]:
-        """Friction has one where the normal force changes sides."""
+        """Return the normal force: friction has a kink where it changes sides."""
         return ("F43n",) if np.any(self.friction) else ()
 
     def always_ok(self, drive: str) -> bool:
-        """Whether the numbers alone say that every sample is ok: friction must not wedge the block either."""
+        """Return whether the numbers alone ensure status 0 at every sample, friction included."""
         a, d, e = self.lengths()
         nearest = abs(d - a)
         with np.errstate(over="ignore"):
@@ -259,7 +265,6 @@ class InvertedSliderCrank(Mechanism):
 
     @cached_property
     def closes_everywhere(self) -> bool:
-        """Whether every design closes at every angle with a margin that rounding cannot touch."""
         a, d, e = self.lengths()
         return bool(in_range(a) and in_range(d) and np.all(abs(d - a) - abs(e) > 1e-9 * (a + d)))
 

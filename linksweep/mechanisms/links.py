@@ -1,6 +1,6 @@
-"""Links: any, a rectangular bar, or a disk. All three have length, mass, inertia and a centre of gravity.
+"""Links: of any shape, a rectangular bar, or a disk. Each has length, mass, inertia and a centre of gravity.
 
-Mass and moment of inertia of a bar and of a disk are document 2's (ME 470): m(L² + w²)/12 and m r²/2.
+Source of mass and moment of inertia of bar and disk: document 2 (ME 470), m(L² + w²)/12 and m r²/2.
 """
 
 from __future__ import annotations
@@ -23,14 +23,21 @@ class Link(ByContent):
 
     Parameters
     ----------
-    length : distance between its two pins [m]
-    mass : [kg]
-    inertia : moment of inertia about its centre of gravity [kg m²]
-    cg_distance : distance of the centre of gravity from the first pin [m]
-    cg_angle : angle of the centre of gravity from the line of pins, counter-clockwise [degree]
+    length : float or DataArray
+        Distance between its two pins [m].
+    mass : float or DataArray
+        Mass [kg].
+    inertia : float or DataArray
+        Moment of inertia about the centre of gravity [kg m²].
+    cg_distance : float or DataArray, default 0.0
+        Distance of the centre of gravity from the first pin [m].
+    cg_angle : float or DataArray, default 0.0
+        Angle of the centre of gravity from the line of pins, counter-clockwise [degree].
 
-    Each may be an xarray.DataArray with named dims, except theta2. Values are checked by the mechanism that takes
-    the link, which knows it as crank, coupler or rocker: ValueError there.
+    Notes
+    -----
+    Each number may be an xarray.DataArray with named dims, except theta2. The mechanism that takes the link, as its
+    crank, coupler or rocker, checks the values, and raises ValueError where they are out of bounds.
 
     Examples
     --------
@@ -48,14 +55,24 @@ class Link(ByContent):
 
 @dataclass(frozen=True, eq=False)
 class Bar(ByContent):
-    """A uniform rectangular bar from pin to pin: m = ρ·L·w·t, I = m(L² + w²)/12, centre of gravity midway.
+    """A uniform rectangular bar from pin to pin.
+
+    Its mass is ρ·L·w·t, its moment of inertia m(L² + w²)/12 about the centre of gravity, midway between the pins.
 
     Parameters
     ----------
-    length, width, thickness : [m]; the width lies in the plane of motion
-    density : [kg/m³]
+    length : float or DataArray
+        Distance between its two pins [m].
+    width : float or DataArray
+        Width in the plane of motion [m].
+    thickness : float or DataArray
+        Thickness across the plane of motion [m].
+    density : float or DataArray
+        Density of the material [kg/m³].
 
-    Values are checked as those of a Link. Source: document 2 (ME 470), bar link.
+    Notes
+    -----
+    Values are checked like those of a `Link`. Source: document 2 (ME 470), bar link.
 
     Examples
     --------
@@ -71,35 +88,50 @@ class Bar(ByContent):
 
     @property
     def mass(self) -> Number:
+        """Mass [kg]."""
         return self.density * self.length * self.width * self.thickness
 
     @property
     def inertia(self) -> Number:
+        """Moment of inertia about the centre of gravity [kg m²]."""
         return self.mass * (self.length * self.length + self.width * self.width) / 12.0
 
     @property
     def cg_distance(self) -> Number:
+        """Distance of the centre of gravity from the first pin [m]."""
         return 0.5 * self.length
 
     @property
     def cg_angle(self) -> Number:
+        """Angle of the centre of gravity from the line of pins [degree]."""
         return 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Disk(ByContent):
-    """A uniform disk, its centre on the link's first pin or off it: m = ρ·πr²·t, I = m r²/2 about its centre.
+    """A uniform disk, centred on the link's first pin or off it.
+
+    Its mass is ρ·πr²·t, its moment of inertia m r²/2 about its centre.
 
     Parameters
     ----------
-    length : distance between its two pins [m]
-    radius, thickness : [m]
-    density : [kg/m³]
-    cg_distance : distance of the disk's centre, which is its centre of gravity, from the first pin [m]
-    cg_angle : angle of the centre from the line of pins, counter-clockwise [degree]
+    length : float or DataArray
+        Distance between its two pins [m].
+    radius : float or DataArray
+        Radius of the disk [m].
+    thickness : float or DataArray
+        Thickness of the disk [m].
+    density : float or DataArray
+        Density of the material [kg/m³].
+    cg_distance : float or DataArray, default 0.0
+        Distance of the disk's centre, which is its centre of gravity, from the first pin [m].
+    cg_angle : float or DataArray, default 0.0
+        Angle of the centre from the line of pins, counter-clockwise [degree].
 
-    Values are checked as those of a Link. Source: document 2 (ME 470), circle link, with its s and δ2 (p and δ3, u and
-    δ4).
+    Notes
+    -----
+    Values are checked like those of a `Link`. Source: document 2 (ME 470), circle link, with its s and δ2 (p and δ3, u
+    and δ4).
 
     Examples
     --------
@@ -124,10 +156,12 @@ class Disk(ByContent):
 
     @property
     def mass(self) -> Number:
+        """Mass [kg]."""
         return self.density * (math.pi * self.radius * self.radius) * self.thickness
 
     @property
     def inertia(self) -> Number:
+        """Moment of inertia about the centre of gravity [kg m²]."""
         return 0.5 * self.mass * self.radius * self.radius
 
 
@@ -153,7 +187,7 @@ def links_of(mechanism: Any) -> dict[str, AnyLink]:
 
 
 def link_parameters(role: str, link: AnyLink) -> dict[str, Number]:
-    """A link's numbers under the names that the physics wires by; its centre of gravity in the link's own axes."""
+    """Return the numbers of a link under the names that the physics takes; the centre of gravity in the link's axes."""
     return {
         f"{role}_length": link.length,
         f"{role}_mass": link.mass,
@@ -163,6 +197,6 @@ def link_parameters(role: str, link: AnyLink) -> dict[str, Number]:
 
 
 def cg_parameters(role: str, distance: Number, angle: Number) -> dict[str, Number]:
-    """Return a centre of gravity in its link's own axes, under the names that the physics wires by."""
+    """Return a centre of gravity in its link's own axes, under the names that the physics takes."""
     cos, sin = cos_sin(angle)
     return {f"{role}_cg_x": distance * cos, f"{role}_cg_y": distance * sin}

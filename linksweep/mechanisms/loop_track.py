@@ -26,15 +26,14 @@ UNKNOWNS = ("normal_force", "a_tangential")
 @register
 @dataclass(frozen=True, eq=False)
 class LoopTrack(Mechanism):
-    """A car, small against the loop, on the inside of a vertical loop; its drive pushes along the track.
+    """A car on the inside of a vertical loop, small against it, with a drive that pushes along the track.
 
     Parameters
     ----------
-    radius : of the loop [m]
-    mass : of the car [kg]
-
-    Both may be DataArrays of design dims. The index of its results is `theta`, the position on the loop [degree]: 0 at
-    the bottom, counter-clockwise, the way the car goes. It is a place on one lap from the bottom: 390 is 30.
+    radius : float or DataArray
+        Radius of the loop [m].
+    mass : float or DataArray
+        Mass of the car [kg].
 
     Raises
     ------
@@ -43,10 +42,14 @@ class LoopTrack(Mechanism):
 
     Notes
     -----
-    A scene gives `speed`, `thrust` and `profile`. With profile="constant" the car has that speed at every position,
-    while a_tangential is what the forces give there: the statement of document 3, lecture 17, example 17-4. Status is
-    left_track where the track would have to pull. With profile="energy" the speed is that at the bottom and follows
-    work and energy; from where the car first leaves the track, or stalls, there are no values for the rest of the lap.
+    The index of its results is `theta`, the position on the loop [degree]: 0 at the bottom, counter-clockwise, in the
+    direction of travel, on one lap from the bottom: 390 is 30.
+
+    The scene states `speed`, `thrust` and `profile`. With profile="constant" the car has that speed at every position,
+    while a_tangential is the acceleration that the forces cause there: the problem of document 3, lecture 17, example
+    17-4. Status is left_track where the track would have to pull. With profile="energy" it has that speed at the bottom
+    and follows work and energy; from where the car first leaves the track, or stalls, there are no values for the rest
+    of the lap.
 
     a_radial is positive towards the centre. The document prints +v²/R for it where it takes the outward normal as
     positive; the numbers are right.
@@ -95,11 +98,9 @@ class LoopTrack(Mechanism):
         return {"speed": "at every position" if constant else "at the bottom, then by work and energy"}
 
     def parameters(self) -> dict[str, Any]:
-        """The numbers that the physics wires by name."""
         return {"radius": self.radius, "mass": self.mass}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        """All that can be computed; nothing drives it but the scene's thrust."""
         return _table()
 
     def kinematics(self) -> tuple[str, ...]:
@@ -112,24 +113,25 @@ class LoopTrack(Mechanism):
         return ("normal_force",)
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        """The 2×2 of document 3, lecture 17, example 17-4: the identity, the right side already solved."""
+        """Return the 2×2 of document 3, lecture 17, example 17-4: the identity, its right side already solved."""
         return (
             Equation("sum F along n (inwards)", {"normal_force": 1.0}, "raw_force"),
             Equation("sum F along t over m", {"a_tangential": 1.0}, "raw_a_tangential"),
         )
 
     def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
-        """Where the car leaves the track or stalls [rad], from the bottom."""
+        """Return the function of the positions at which the car leaves the track or stalls."""
         return ((events, self._numbers(motion)),)
 
     def driven_findings(self, motion: Mapping[str, Number]) -> Checks:
-        """What becomes of the car in one lap."""
+        """Return the check for the outcome of one lap."""
         return ((lap, self._numbers(motion)),)
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("normal_force",)
 
     def _numbers(self, motion: Mapping[str, Number]) -> tuple[Number, ...]:
+        """Return the numbers that decide the motion of the car."""
         names = ("entry_speed", "thrust", "gravity_x", "gravity_y", "work_counts")
         return (self.radius, self.mass, *(motion[name] for name in names))
 

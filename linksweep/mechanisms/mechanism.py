@@ -223,8 +223,7 @@ class Mechanism(ByContent, ABC):
         return False
 
     def always_ok(self, drive: str) -> bool:
-        """Return whether the numbers alone ensure status 0 at every sample; a drive beyond the crank has dead
-        centres."""
+        """Return whether the numbers alone ensure status 0 at every sample; other drives than the crank do not."""
         return drive == "crank" and self.closes_everywhere
 
     def jumps(self) -> tuple[Number, ...]:
@@ -250,6 +249,16 @@ class Mechanism(ByContent, ABC):
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
         """Return the closed-form checks that depend on the motion and its drive."""
         return self.dead_centre_findings(motion["drive"])
+
+
+def reach_problems(offset: Number, first: Number, second: Number, names: str) -> list[str]:
+    """Return why a single design cannot be assembled: its offset is beyond the reach of two lengths."""
+    if any(hasattr(length, "dims") for length in (offset, first, second)) or abs(offset) <= first + second:
+        return []
+    return [
+        f"offset = {offset:.15g} m is {abs(offset) - first - second:.6g} m beyond the reach of {names}: "
+        f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
+    ]
 
 
 MECHANISMS: dict[str, type[Mechanism]] = {}

@@ -28,7 +28,7 @@ from linksweep.mechanisms.limits.slider_crank_limits import (
     wedging_by_crank,
 )
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
-from linksweep.mechanisms.mechanism import Mechanism, register
+from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
@@ -44,10 +44,11 @@ SLIDER = {
     "omega4": 0.0,
     "alpha4": 0.0,
 }
-"""The slider as a body that does not turn, so that any inertia would do; its axes lie along and across the guide."""
+"""Inputs of the slider as a body that does not turn; its axes lie along and across the guide."""
 
 
 def _guide(mechanism: Any) -> Guide:
+    """Return the guide of a slider-crank as plots draw it."""
     along = direction(mechanism.slide_angle)
     return Guide(float(mechanism.offset) * np.array([-along[1], along[0]]), along)
 
@@ -59,18 +60,24 @@ class SliderCrank(Mechanism):
 
     Parameters
     ----------
-    crank, rod : Link, Bar or Disk
-        Their first pins are A and B.
-    slider_mass : [kg]
-    offset : height of the guide over A, to the left of the guide's direction [m], either sign
-    friction : coefficient of Coulomb friction between slider and guide
-    branch : "open" (C ahead of B along the guide), "crossed" (behind), or "both" (adds the dimension `branch`)
-    slide_angle : direction of the guide to x [degree]
-    slider_cg_distance : distance of the slider's centre of gravity from its pin C [m]
-    slider_cg_angle : angle of the centre of gravity from the guide's direction, counter-clockwise [degree]
-
-    All numbers may be DataArrays of design dims. A load on "slider" acts at a point from C, in axes along and across
-    the guide.
+    crank : Link, Bar or Disk
+        Driven link; its first pin is A, its second B.
+    rod : Link, Bar or Disk
+        Connecting rod from B to C; its first pin is B.
+    slider_mass : float or DataArray
+        Mass of the slider [kg].
+    offset : float or DataArray, default 0.0
+        Height of the guide over A, to the left of the guide's direction [m], of either sign.
+    friction : float or DataArray, default 0.0
+        Coefficient of Coulomb friction between slider and guide [1].
+    branch : str, default "open"
+        Assembly: "open" (C ahead of B along the guide), "crossed" (behind), or "both" (adds the dimension `branch`).
+    slide_angle : float or DataArray, default 0.0
+        Direction of the guide to x [degree].
+    slider_cg_distance : float or DataArray, default 0.0
+        Distance of the slider's centre of gravity from its pin C [m].
+    slider_cg_angle : float or DataArray, default 0.0
+        Angle of that centre of gravity from the guide's direction, counter-clockwise [degree].
 
     Raises
     ------
@@ -79,12 +86,14 @@ class SliderCrank(Mechanism):
 
     Notes
     -----
+    A load on "slider" acts at a point from C, in axes along and across the guide.
+
     Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
     guide: status `jammed` where no force moves it on, `jammed_two_solutions` where the guide may press on either side
-    (rigid bodies do not tell which). The slider does not turn: where its centre of gravity lies changes `T14`, the
-    guide's moment on it, and the shaking moment; its moment of inertia would change nothing, and is no parameter. A
-    load that is a cycle of full turns of the crank (see `GasPressure`) is none in a design whose crank does not turn
-    fully: status `no_cycle`.
+    (the statics of rigid bodies allows both). The slider does not turn: the place of its centre of gravity changes
+    only `T14`, the guide's moment on it, and the shaking moment; its moment of inertia would change nothing, and is no
+    parameter. A load with a cycle of full turns of the crank (see `GasPressure`) has no value in a design whose crank
+    does not turn fully: status `no_cycle`.
 
     Examples
     --------
@@ -128,15 +137,9 @@ class SliderCrank(Mechanism):
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: crank and rod do not reach the guide."""
         a, b, e = self.crank.length, self.rod.length, self.offset
-        if any(hasattr(number, "dims") for number in (a, b, e)) or abs(e) <= a + b:
-            return []
-        return [
-            f"offset = {e:.15g} m is {abs(e) - a - b:.6g} m beyond the reach of crank + rod: "
-            f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
-        ]
+        return reach_problems(e, a, b, "crank + rod")
 
     def parameters(self) -> dict[str, Any]:
-        """The numbers that the physics wires by name; a Field where a dimension is the mechanism's own."""
         guide_cos, guide_sin, cos_lo, sin_lo = cos_sin_low_words(self.slide_angle)
         numbers: dict[str, Any] = {
             "offset": self.offset,
@@ -157,11 +160,9 @@ class SliderCrank(Mechanism):
 
     @property
     def near_toggle_angle(self) -> Number:
-        """Crank angle [degree] about which, and opposite to which, it comes nearest to a toggle."""
         return 90.0 + self.slide_angle
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        """All that can be computed for this drive and loads of these forms."""
         return table(drive, loads, turned(self.slide_angle))
 
     def kinematics(self) -> tuple[str, ...]:
@@ -174,7 +175,7 @@ class SliderCrank(Mechanism):
         return (*self.unknowns(drive), "T14")
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        """The 9×9: document 1's rows, with friction; the torque in the row of the driven link (document 3)."""
+        """Return the 9×9: document 1's rows, with friction; the torque in the row of the driven link (document 3)."""
         return (*self._newton_euler(drive)[:-1], FRICTION)
 
     def document_form(self, drive: str) -> tuple[tuple[str, ...], tuple[Equation, ...]]:
@@ -189,48 +190,50 @@ class SliderCrank(Mechanism):
 
     def _newton_euler(self, drive: str) -> tuple[Equation, ...]:
         """Return the three rows of each link; the guide's moment T14 is about C."""
-        torque = {role: self.drives[drive] if role == drive else None for role in self.drives}
+        torque = {drive: self.drives[drive]}.get
         return (
-            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque["crank"]),
-            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque["coupler"]),
+            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank")),
+            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque("coupler")),
             *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"),
         )
 
     @property
     def _lengths(self) -> tuple[Number, Number, Number]:
-        """Crank, rod and offset, which decide how it moves."""
+        """Lengths of crank and rod, and the offset, which alone decide the motion."""
         return self.crank.length, self.rod.length, self.offset
 
     def findings(self) -> Checks:
-        """What can be checked in closed form, and the numbers that each takes."""
         return (classes, self._lengths), (angles, (*self._lengths, self.slide_angle))
 
     def dead_centre_findings(self, drive: str) -> Checks:
-        """Where the rod does not turn."""
+        """Return the check for angles at which a driven rod does not turn."""
         return ((rod_dead_centres, (*self._lengths, self.slide_angle)),) if drive == "coupler" else ()
 
     def output_findings(self) -> Checks:
-        """Where the slider turns round."""
+        """Return the check for angles at which the slider turns round."""
         return ((slider_dead_centres, (*self._lengths, self.slide_angle)),)
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
-        """Also where friction wedges the slider, by the link whose moment equation is free of the drive."""
+        """Return also the check for wedging, by the link whose moment equation is without the drive."""
         if motion["drive"] == "coupler":
             return (*super().driven_findings(motion), (wedging_by_crank, (self.slide_angle, self.friction)))
         return ((wedging, (*self._lengths, self.slide_angle, self.friction)),)
 
     def jumps(self) -> tuple[Number, ...]:
-        """Crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
+        """Return the crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
         return self.dead_centres() if np.any(self.friction) else ()
 
     def kinks(self) -> tuple[str, ...]:
-        """Friction has one where the normal force changes sides."""
+        """Return the normal force: friction has a kink where it changes sides."""
         return ("normal_force",) if np.any(self.friction) else ()
 
     def dead_centres(self) -> tuple[Number, ...]:
-        """Crank angles [degree] with the rod in line with the crank: for each branch stretched, then folded.
+        """Compute the crank angles with the rod in line with the crank.
 
-        NaN in designs that have none. Stretched, C is farthest from A; folded, nearest.
+        Returns
+        -------
+        tuple of float or DataArray
+            Angles [degree], for each branch stretched (C farthest from A), then folded; NaN in designs without any.
         """
         signs = [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values()
         cylinders = (Cylinder(*self._lengths, self.slide_angle, sign) for sign in signs)
@@ -238,7 +241,7 @@ class SliderCrank(Mechanism):
 
     @property
     def strokes(self) -> dict[str, Stroke]:
-        """Where the slider is, and how far it still has to its outer dead centre."""
+        """Position of the slider, and its distance from the outer dead centre, which a load may follow."""
         return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
@@ -257,12 +260,11 @@ class SliderCrank(Mechanism):
 
     @cached_property
     def closes_everywhere(self) -> bool:
-        """Whether every design closes at every angle with a margin that rounding cannot touch."""
         b, height = self.rod.length, self.crank.length + abs(self.offset)
         return bool(in_range(b) and in_range(self.crank.length) and np.all(b - height > 1e-9 * (b + height)))
 
     def always_ok(self, drive: str) -> bool:
-        """Whether the numbers alone say that every sample is ok: friction must not wedge the slider either."""
+        """Return whether the numbers alone ensure status 0 at every sample, friction included."""
         b, height = self.rod.length, self.crank.length + abs(self.offset)
         with np.errstate(over="ignore"):
             wedges = np.square(self.friction * height) >= (b - height) * (b + height) * (1.0 - 1e-9)

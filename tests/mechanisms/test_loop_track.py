@@ -298,7 +298,7 @@ def test_the_plot_shows_the_force_and_where_it_ends():
     assert set(level.get_ydata()) == {3360.0}
     with pytest.raises(ValueError, match="several designs, over entry"):
         ls.plot.loop(ls.sweep(study()))
-    with pytest.raises(ValueError, match="no normal_force over theta"):
+    with pytest.raises(ValueError, match="no force of a track"):
         ls.plot.loop(ls.sweep(ls.example("press")))
 
 

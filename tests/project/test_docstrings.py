@@ -48,11 +48,6 @@ from linksweep.plot.kit.film import Film
 PACKAGE = Path(ls.__file__).parent
 
 NOT_YET = {
-    "Bar",
-    "Bar.cg_angle",
-    "Bar.cg_distance",
-    "Bar.inertia",
-    "Bar.mass",
     "Bearing",
     "Bearing.exponent",
     "Cycle.animate",
@@ -81,27 +76,10 @@ NOT_YET = {
     "DieselCycle.period",
     "DieselCycle.pressure",
     "DieselCycle.problems",
-    "Disk",
-    "Disk.inertia",
-    "Disk.mass",
     "Film",
     "Film.image",
     "Film.save",
     "Film.show",
-    "FourBar",
-    "FourBar.always_ok",
-    "FourBar.closes_everywhere",
-    "FourBar.coordinates",
-    "FourBar.dead_centre_findings",
-    "FourBar.dynamics",
-    "FourBar.findings",
-    "FourBar.kinematics",
-    "FourBar.kinks",
-    "FourBar.lengths",
-    "FourBar.output_findings",
-    "FourBar.parameters",
-    "FourBar.peak_quantities",
-    "FourBar.table",
     "GasPressure",
     "GasPressure.approaches",
     "GasPressure.changing",
@@ -111,21 +89,6 @@ NOT_YET = {
     "GasPressure.period",
     "GasPressure.problems",
     "GasPressure.sampled",
-    "InvertedSliderCrank",
-    "InvertedSliderCrank.always_ok",
-    "InvertedSliderCrank.closes_everywhere",
-    "InvertedSliderCrank.coordinates",
-    "InvertedSliderCrank.dead_centre_findings",
-    "InvertedSliderCrank.dynamics",
-    "InvertedSliderCrank.findings",
-    "InvertedSliderCrank.kinematics",
-    "InvertedSliderCrank.lengths",
-    "InvertedSliderCrank.output_findings",
-    "InvertedSliderCrank.parameters",
-    "InvertedSliderCrank.peak_quantities",
-    "InvertedSliderCrank.strokes",
-    "InvertedSliderCrank.table",
-    "Link",
     "Load",
     "Load.approaches",
     "Load.changing",
@@ -135,23 +98,6 @@ NOT_YET = {
     "Load.over_positions",
     "Load.problems",
     "Load.sampled",
-    "LoopTrack",
-    "LoopTrack.always_ok",
-    "LoopTrack.coordinates",
-    "LoopTrack.document_form",
-    "LoopTrack.driven",
-    "LoopTrack.driven_findings",
-    "LoopTrack.dynamics",
-    "LoopTrack.equations",
-    "LoopTrack.findings",
-    "LoopTrack.jumps",
-    "LoopTrack.kinematics",
-    "LoopTrack.kinks",
-    "LoopTrack.output_findings",
-    "LoopTrack.parameters",
-    "LoopTrack.peak_quantities",
-    "LoopTrack.table",
-    "LoopTrack.unknowns",
     "MultiCylinder.sweep",
     "Normal",
     "Normal.around",
@@ -160,22 +106,6 @@ NOT_YET = {
     "OttoCycle.period",
     "OttoCycle.pressure",
     "OttoCycle.problems",
-    "SliderCrank",
-    "SliderCrank.always_ok",
-    "SliderCrank.closes_everywhere",
-    "SliderCrank.coordinates",
-    "SliderCrank.dead_centre_findings",
-    "SliderCrank.dead_centres",
-    "SliderCrank.dynamics",
-    "SliderCrank.findings",
-    "SliderCrank.kinematics",
-    "SliderCrank.output_findings",
-    "SliderCrank.parameters",
-    "SliderCrank.peak_quantities",
-    "SliderCrank.strokes",
-    "SliderCrank.table",
-    "SliderCrank.turns_fully",
-    "SliderCrank.unknowns",
     "Spring",
     "Spring.approaches",
     "Spring.ends",
@@ -271,7 +201,7 @@ def classes() -> dict[str, type]:
 def members(cls: type) -> dict[str, object]:
     """Return the public methods and properties of a class that the package defines."""
     own = {
-        name: inspect.getattr_static(cls, name)
+        name: documented(cls, name)
         for base in reversed(cls.__mro__)
         if base.__module__.startswith("linksweep")
         for name in vars(base)
@@ -282,6 +212,12 @@ def members(cls: type) -> dict[str, object]:
         for name, member in own.items()
         if not name.startswith("_") and (inspect.isfunction(member) or isinstance(member, kinds))
     }
+
+
+def documented(cls: type, name: str) -> object:
+    """Return a member, or the one that it overrides if it has no docstring of its own, as `help` does."""
+    overrides = [vars(base)[name] for base in cls.__mro__ if name in vars(base)]
+    return next((member for member in overrides if member.__doc__), overrides[0])
 
 
 def prescribed(cls: type, name: str) -> bool:
@@ -385,7 +321,7 @@ def test_docstring(name):
 
 SHRINKING = {
     "analysis": (28, 6),
-    "mechanisms": (27, 57),
+    "mechanisms": (1, 8),
     "plot": (18, 0),
     "results": (14, 2),
     "scene": (57, 43),
