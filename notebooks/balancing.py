@@ -33,7 +33,7 @@ feeder = ls.FourBar(
     ground=0.20,
 )
 scene = ls.Scene(feeder, omega2=2 * np.pi * 600 / 60)  # 600 rpm, nothing but inertia
-shaking = ls.sweep(scene, outputs=["Fsx", "Fsy", "Fs", "Ms"])
+shaking = ls.sweep(scene, of=["Fsx", "Fsy", "Fs", "Ms"])
 ls.plot.hodograph(shaking)
 # %% [markdown]
 # The shaking force is −Σ m·a of the moving links: what they do to the frame, beside their weight. It changes direction and size
@@ -63,7 +63,7 @@ full = ls.counterweights(scene, radius=0.06)
 for weight in full:
     print(f"{weight.link}: {weight.mass:.3f} kg at {100 * weight.at[0]:.0f} cm, {weight.at[1]:.0f}°")
 balanced = ls.with_counterweights(scene, full)
-left_over = float(ls.sweep(balanced, outputs=["Fs"]).Fs.max()) / float(shaking.Fs.max())
+left_over = float(ls.sweep(balanced, of=["Fs"]).Fs.max()) / float(shaking.Fs.max())
 print(f"what is left of the shaking force: {left_over:.0e}")
 
 # %% [markdown]
@@ -77,7 +77,7 @@ sizes = ("Fs_peak", "Ms_peak", "T12_peak", "F12_peak", "F32_peak", "F43_peak", "
 
 def relative(after, of=sizes):
     """Sizes after balancing, relative to those before."""
-    table = ls.compare(scene, after, of)
+    table = ls.compare(scene, after, of=of)
     return {name: float(table[name].sel(balance="after") / table[name].sel(balance="before")) for name in of}
 
 
@@ -175,7 +175,7 @@ fig, (left, right) = plt.subplots(1, 2, figsize=(10, 4.4), layout="constrained")
 fractions = (0.0, 0.5, 1.0)
 for k, fraction in enumerate(fractions):
     throw = ls.with_counterweights(running, ls.counterweights(running, radius=0.04, fraction=fraction))
-    path = ls.sweep(throw, outputs=["Fsx", "Fsy"])
+    path = ls.sweep(throw, of=["Fsx", "Fsy"])
     left.plot(path.Fsx / 1e3, path.Fsy / 1e3, label=f"{100 * fraction:.0f} % balanced")
     order = ls.orders(path, ["Fsx", "Fsy"], n=3).sel(order=[1, 2])
     bars = order[["Fsx_amplitude", "Fsy_amplitude"]].to_dataarray().transpose("order", ...).values.ravel()

@@ -87,7 +87,7 @@ for ax in (left, right):
 # so that its answer does not depend on steps):
 
 # %%
-pin_c = ls.sweep(conveyor, outputs=["F43", "omega3", "omega4"])
+pin_c = ls.sweep(conveyor, of=["F43", "omega3", "omega4"])
 turns = abs(pin_c.omega3 - pin_c.omega4) / conveyor.omega2 * 0.5  # degrees of the pin in each half degree of the crank
 P = float(((pin_c.F43**3 * turns).sum() / turns.sum()) ** (1 / 3))
 L10 = (14_000 / P) ** 3  # million revolutions

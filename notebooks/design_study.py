@@ -130,7 +130,7 @@ print(fitting.sizes["design"], "of them fit")
 # Pareto front: along it, less of one costs more of the other.
 
 # %%
-fitting.linksweep.scatter("bearing_load", "T12_peak", color="rocker.length")
+fitting.linksweep.scatter(x="bearing_load", y="T12_peak", color="rocker.length")
 # %%
 front = ls.pareto(fitting, minimize=["bearing_load", "T12_peak"])
 front[["bearing_load", "T12_peak", "swing", "transmission_angle"]].linksweep.to_pandas().round(3)
@@ -175,7 +175,7 @@ print(f"{time.perf_counter() - start:.1f} s")
 # %%
 def told(scene):
     """What one wants to know of a design."""
-    machine, worst, rocker = scene.mechanism, ls.peaks(scene), ls.sweep(scene, outputs=["theta4"]).theta4
+    machine, worst, rocker = scene.mechanism, ls.peaks(scene), ls.sweep(scene, of=["theta4"]).theta4
     return {
         **{f"{link} [mm]": 1000 * getattr(machine, link).length for link in ("crank", "coupler", "rocker")},
         "ground [mm]": 1000 * machine.ground,

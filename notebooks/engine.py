@@ -134,12 +134,12 @@ print(f"power delivered: {mean * scene.omega2 / 1e3:.1f} kW at 3000 rpm")
 
 # %%
 ideal = replace(scene, mechanism=replace(engine, friction=0.0))
-delivered_work = -float(ls.sweep(ideal, 7200, ["T12"]).T12.mean()) * 4 * np.pi  # 720° are 4π
+delivered_work = -float(ls.sweep(ideal, 7200, of=["T12"]).T12.mean()) * 4 * np.pi  # 720° are 4π
 r, gamma = otto.compression_ratio, otto.gamma
 compressed = otto.intake_pressure * r**gamma
 heat = (otto.peak_pressure - compressed) * swept / (r - 1) / (gamma - 1)
 closed_form = (1 - r ** (1 - gamma)) * heat
-residual = float(abs(ls.sweep(scene, outputs=["power_residual"]).power_residual).max())
+residual = float(abs(ls.sweep(scene, of=["power_residual"]).power_residual).max())
 print(f"work of a cycle from the torque:   {delivered_work:.3f} J")
 print(f"work of a cycle in closed form:    {closed_form:.3f} J")
 print(f"friction takes {100 * (1 - mean * 4 * np.pi / closed_form):.1f} % of it")

@@ -113,7 +113,7 @@ page.sel(theta2=[0, 45, 90])[["K1", "K2", "K3", "K4", "K5", *"ABCDEF"]].to_dataf
 theta3 = 2 * np.arctan((-E - np.sqrt(E**2 - 4 * D * F)) / (2 * D))
 theta4 = 2 * np.arctan((-B - np.sqrt(B**2 - 4 * A * C)) / (2 * A))
 mu = np.degrees(theta4 - theta3)
-cycle = ls.sweep(pusher, theta2, ["transmission_angle", "transmission_angle_signed"])
+cycle = ls.sweep(pusher, theta2, of=["transmission_angle", "transmission_angle_signed"])
 assert np.allclose(mu, cycle.transmission_angle_signed)
 
 fig, ax = plt.subplots(figsize=(8, 3.2), layout="constrained")
@@ -150,7 +150,7 @@ aG2 = acceleration(s, t2, omega2, alpha2)
 aG3 = acceleration(a, t2, omega2, alpha2) + acceleration(p, theta3, omega3, alpha3)
 aG4 = acceleration(u, theta4, omega4, alpha4)
 
-ours = ls.sweep(pusher, theta2, ["omega3", "omega4", "alpha3", "alpha4", "aG3x", "aG4y"])
+ours = ls.sweep(pusher, theta2, of=["omega3", "omega4", "alpha3", "alpha4", "aG3x", "aG4y"])
 for name, sheet in {"omega4": omega4, "alpha3": alpha3, "aG3x": aG3.real, "aG4y": aG4.imag}.items():
     print(f"{name}: up to {abs(sheet).max():8.3f}, apart by {float(abs(sheet - ours[name]).max()):.0e}")
 
@@ -168,7 +168,7 @@ def polar(length, angle):
 
 R12, R23, R14 = -polar(s, t2), -polar(p, theta3), -polar(u, theta4)
 R32, R43, R34 = polar(a, t2) + R12, polar(b, theta3) + R23, polar(c, theta4) + R14
-ours = ls.sweep(pusher, theta2, ["R43x", "R34y"])
+ours = ls.sweep(pusher, theta2, of=["R43x", "R34y"])
 assert np.allclose(R43.real, ours.R43x) and np.allclose(R34.imag, ours.R34y)
 FP3, FP4 = -10j * pound * gravity, -25 * pound * gravity
 RP3 = polar(3.5 * inch, theta3 + np.radians(20)) + R23
@@ -203,7 +203,7 @@ def solved(weight3=0.0, weight4=0.0):
 
 
 unknowns = ["F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12"]
-ours = ls.sweep(pusher, theta2, unknowns).to_dataframe()[unknowns]
+ours = ls.sweep(pusher, theta2, of=unknowns).to_dataframe()[unknowns]
 print(f"largest {abs(ours).max().max():.1f} N; sheet and linksweep apart by {abs(solved() - ours).max().max():.0e}")
 
 # %% [markdown]
@@ -212,7 +212,7 @@ print(f"largest {abs(ours).max().max():.1f} N; sheet and linksweep apart by {abs
 
 # %%
 heavy = replace(pusher, gravity=(0.0, -gravity))
-ours = ls.sweep(heavy, theta2, unknowns).to_dataframe()[unknowns]
+ours = ls.sweep(heavy, theta2, of=unknowns).to_dataframe()[unknowns]
 with_weights = solved(m3 * gravity, m4 * gravity)
 with_weights[:, 1] += m2 * gravity  # the crank's own hangs in pin A alone
 print(f"sheet and linksweep apart by {abs(with_weights - ours).max().max():.0e}")
@@ -242,7 +242,7 @@ cycle.linksweep.mechanism(theta2=float(worst.F12_peak_at), forces=True)
 
 # %%
 for step in (30, 10, 1):
-    seen = ls.sweep(heavy, 360 // step, list(pins.values()))
+    seen = ls.sweep(heavy, 360 // step, of=list(pins.values()))
     short = {pin: 100 * (1 - float(seen[f].max() / worst[f"{f}_peak"])) for pin, f in pins.items()}
     print(f"every {step:2}°: " + ", ".join(f"pin {pin} {missing:5.2f} % short" for pin, missing in short.items()))
 
@@ -266,7 +266,7 @@ limit = 60 * pound * gravity
 fastest = {pin: float(ls.speed_limit(heavy, f, below=limit).omega2_limit) * 30 / np.pi for pin, f in pins.items()}
 first = min(fastest, key=fastest.get)
 print({pin: f"{rpm:.0f} rpm" for pin, rpm in fastest.items()})
-ls.plot.over_speed(heavy, pins[first], np.linspace(0, 1.3, 27) * fastest[first] * np.pi / 30, below=limit)
+ls.plot.over_speed(heavy, pins[first], speeds=np.linspace(0, 1.3, 27) * fastest[first] * np.pi / 30, below=limit)
 # %% [markdown]
 # Five times as fast, before inertia, which at first even relieves it, has brought pin A to its 60 lbf. The sheet's question is
 # answered, for this speed and the others.

@@ -97,7 +97,7 @@ dense = ls.sweep(scene, solver="dense")
 largest = float(worst["F43_peak"])
 unknowns = ["F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y"]
 difference = max(float(abs(cycle[name] - dense[name]).max()) for name in unknowns) / largest
-residual = ls.sweep(scene, outputs=["power_residual"]).power_residual
+residual = ls.sweep(scene, of=["power_residual"]).power_residual
 print(f"fast against dense, relative to the largest force: {difference:.1e}")
 print(f"power balance, relative to the largest term:       {float(abs(residual).max()):.1e}")
 assert difference < 1e-12

@@ -64,7 +64,7 @@ ls.sweep(page).linksweep.mechanism(theta2=45.0, forces=True)
 # %%
 printed = {"theta3": 20.0, "theta4": 117.4, "omega3": 12.82, "omega4": -6.20, "alpha3": -39.6, "alpha4": 482.5}
 printed |= {"aG3x": -36.725, "aG3y": -22.609, "aG4x": -22.624, "aG4y": -14.124}  # m/s²
-at_45 = ls.sweep(page, theta2=[45.0], outputs=list(printed)).isel(theta2=0)
+at_45 = ls.sweep(page, theta2=[45.0], of=list(printed)).isel(theta2=0)
 motion = pd.DataFrame({"printed": printed, "computed": {name: float(at_45[name]) for name in printed}})
 motion["off by [%]"] = 100 * (motion.printed / motion.computed - 1)
 motion.round(3)
@@ -184,7 +184,7 @@ draw(ax, as_in_symbols, "row 3 as the symbols have it", marked=[2])
 # energy, which is not among the nine equations. What the drive feeds in, T12·ω2, must be what kinetic energy and height take up:
 
 # %%
-balance = ls.sweep(page, theta2=[45.0], outputs=["power", "inertia_power", "gravity_power"]).isel(theta2=0)
+balance = ls.sweep(page, theta2=[45.0], of=["power", "inertia_power", "gravity_power"]).isel(theta2=0)
 taken_up = -float(balance.inertia_power + balance.gravity_power)
 for said, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symbols}.items():
     torque = np.linalg.solve(system, rhs)[8]
@@ -192,7 +192,7 @@ for said, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symbo
 
 # %% [markdown]
 # 16 W flow back into the motor at this instant, and only the first torque says so. linksweep makes this check for every sample of
-# every design with `outputs=["power_residual"]`.
+# every design with `of=["power_residual"]`.
 #
 # ## Does it turn?
 #
@@ -220,7 +220,7 @@ pump = ls.Scene(machine, omega2=20.0, loads=[ls.Load("slider", force=-200.0)])
 
 def as_printed(theta2, mended=False):
     """The page's slider-crank at a crank angle [degree]: matrix and right side in F12, F23, F34, F14 and T12."""
-    now = ls.sweep(pump, [theta2], ["theta3", "alpha3", "aG3x", "aG3y", "a_slider", "v_slider"]).isel(theta2=0)
+    now = ls.sweep(pump, [theta2], of=["theta3", "alpha3", "aG3x", "aG3y", "a_slider", "v_slider"]).isel(theta2=0)
     rod = machine.rod
     theta, phi = np.radians(theta2), -np.radians(float(now.theta3))
     AB, half = machine.crank.length, rod.length / 2
@@ -253,7 +253,7 @@ print("rank of the page's matrix:", np.linalg.matrix_rank(as_printed(60.0)[0]))
 
 # %%
 angles = [60.0, 150.0, 240.0, 330.0]
-ours = ls.sweep(pump, angles, ["F14y", "T12"]).drop_vars("status").to_pandas()
+ours = ls.sweep(pump, angles, of=["F14y", "T12"]).drop_vars("status").to_pandas()
 ours["T12, page mended"] = [np.linalg.solve(*as_printed(theta2, mended=True))[8] for theta2 in angles]
 ours.round(3)
 

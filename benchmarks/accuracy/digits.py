@@ -82,7 +82,7 @@ FAMILIES: dict[str, Family] = {
 
 
 def _linksweep(designs: Designs, solver: str = "fast") -> Results:
-    cycle = ls.sweep(designs.scene(), [designs.theta2], [*FORCES, "T12", *OMEGAS], solver=solver)
+    cycle = ls.sweep(designs.scene(), [designs.theta2], of=[*FORCES, "T12", *OMEGAS], solver=solver)
     cycle = cycle.rename(T12="drive")
     return {name: values(cycle, name, len(designs)) for name in (*FORCES, "drive", *OMEGAS, "status")}
 

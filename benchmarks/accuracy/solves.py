@@ -117,7 +117,9 @@ def _error(q: Design, theta2: Array, values: Array) -> float:
 def _sweep(q: Design, theta2: Array, outputs: tuple[str, ...] = NINE, **how) -> Bound:
     even = np.array_equal(theta2, peers.grid(len(theta2)))
     angles = len(theta2) if even else theta2
-    return Bound(partial(ls.sweep, scene(q), angles, outputs, threads=1, **how), lambda cycle: stacked(cycle, outputs))
+    return Bound(
+        partial(ls.sweep, scene(q), angles, of=outputs, threads=1, **how), lambda cycle: stacked(cycle, outputs)
+    )
 
 
 def _kernel(q: Design, theta2: Array) -> Bound:

@@ -62,7 +62,7 @@ def measure(job: str, count: int, rounds: int) -> None:
 
 def _call(job: str, count: int) -> Call:
     if job == "angle":
-        return partial(ls.sweep, scene(GENERAL), count, NINE)
+        return partial(ls.sweep, scene(GENERAL), count, of=NINE)
     return partial(ls.peaks, scene(batch(count, *ALL)))
 
 
@@ -79,8 +79,8 @@ def peak_memory() -> float:
 # --------------------------------------------------------------------------------------------- compiling
 
 REQUESTS = {
-    "omega3, omega4": partial(ls.sweep, scene(GENERAL), 72, ["omega3", "omega4"]),
-    "the nine unknowns": partial(ls.sweep, scene(GENERAL), 72, NINE),
+    "omega3, omega4": partial(ls.sweep, scene(GENERAL), 72, of=["omega3", "omega4"]),
+    "the nine unknowns": partial(ls.sweep, scene(GENERAL), 72, of=NINE),
     "kinematics too, two loads": partial(ls.sweep, scene(GENERAL, LOADS), 72),
     "exact peaks": partial(ls.peaks, scene(GENERAL)),
 }

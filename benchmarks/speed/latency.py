@@ -62,7 +62,7 @@ def _errors(n_angles: int, *results: xr.Dataset) -> list[float]:
     """Return each warm job's error against a dense solve; the press, which carries a load, by linksweep's own."""
     sweep, press, anew, peaks_ds = results
     nine = peers.numpy_lapack(GENERAL, peers.grid(n_angles))
-    dense_press = ls.sweep(ls.example("press"), n_angles, NINE, solver="dense")
+    dense_press = ls.sweep(ls.example("press"), n_angles, of=NINE, solver="dense")
     alone = replace(GENERAL, a=np.full((1, 1), GENERAL.a))
     return [
         peers.difference(stacked(sweep), nine),

@@ -43,7 +43,7 @@ def rows(size: Size) -> list[Row]:
     with way("compiled"):
         for name, machine in SCENES.items():
             unknowns = machine.mechanism.unknowns(machine.drive)
-            sweep = partial(ls.sweep, machine, size.angles, unknowns, threads=1)
+            sweep = partial(ls.sweep, machine, size.angles, of=unknowns, threads=1)
             calls[name] = kernel_of(sweep).call
             dense = stacked(sweep(solver="dense"), unknowns)
             error[name] = peers.difference(stacked(sweep(), unknowns), dense)

@@ -72,7 +72,7 @@ def _compared(jobs: Mapping, compared: Iterable[tuple], to_time: Callable[[Call]
     with way("compiled"):
         for name, (design, names, loads) in jobs.items():
             machine = scene(design, loads)
-            sweep = partial(ls.sweep, machine, size.angles, names, threads=1)
+            sweep = partial(ls.sweep, machine, size.angles, of=names, threads=1)
             calls[name] = to_time(sweep)
             error[name] = peers.difference(stacked(sweep(), names), _reference(machine, design, names, size.angles))
             work[name] = plan(machine.table, names, machine.inputs.forms).operations("theta2").total()
@@ -90,7 +90,7 @@ def _friction(size: Size) -> Row:
     with way("compiled"):
         for name, machine in machines.items():
             unknowns = machine.mechanism.unknowns(machine.drive)
-            sweep = partial(ls.sweep, machine, size.angles, unknowns, threads=1)
+            sweep = partial(ls.sweep, machine, size.angles, of=unknowns, threads=1)
             calls[name] = kernel_of(sweep).call
             error[name] = peers.difference(stacked(sweep(), unknowns), stacked(sweep(solver="dense"), unknowns))
             work[name] = plan(machine.table, unknowns, machine.inputs.forms).operations("theta2").total()
@@ -102,7 +102,7 @@ def _friction(size: Size) -> Row:
 def _reference(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:
     """Return the variables by numpy; with loads, or if more than forces is requested, by linksweep's dense solver."""
     if machine.loads or not {*names} <= {*NINE, "omega3", "omega4"}:
-        return stacked(ls.sweep(machine, n_angles, names, solver="dense"), names)
+        return stacked(ls.sweep(machine, n_angles, of=names, solver="dense"), names)
     if names == ("omega3", "omega4"):
         return peers.numpy_rates(design, peers.grid(n_angles))
     return peers.numpy_lapack(design, peers.grid(n_angles))[[NINE.index(name) for name in names]]

@@ -22,8 +22,8 @@ def rows(size: Size) -> list[Row]:
     return [
         _row(f"ls.peaks, exact, {number:,} crank-rockers", partial(ls.peaks, rockers), few(size), goal=1.7),
         _row("ls.peaks", partial(ls.peaks, many, theta2=size.turn), size, size.designs * size.turn),
-        _row("ls.sweep, many designs", partial(ls.sweep, many, size.turn, NINE), size, size.designs * size.turn),
-        _row("ls.sweep, one design", partial(ls.sweep, one, size.angles, NINE), size, size.angles),
+        _row("ls.sweep, many designs", partial(ls.sweep, many, size.turn, of=NINE), size, size.designs * size.turn),
+        _row("ls.sweep, one design", partial(ls.sweep, one, size.angles, of=NINE), size, size.angles),
     ]
 
 

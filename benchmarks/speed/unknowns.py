@@ -20,8 +20,8 @@ def rows(size: Size) -> list[Row]:
     theta2, machine = peers.grid(size.angles), scene(GENERAL)
     sweep = partial(ls.sweep, theta2=size.angles, threads=1)
     sweeps = {
-        SWEEP: partial(sweep, machine, outputs=NINE),
-        ANEW: lambda: sweep(scene(GENERAL), outputs=NINE),
+        SWEEP: partial(sweep, machine, of=NINE),
+        ANEW: lambda: sweep(scene(GENERAL), of=NINE),
         DEFAULT: partial(sweep, machine),
     }
     calls = sweeps | {

@@ -22,7 +22,7 @@ def means(machines: int, seed: int) -> Array:
     for k in range(0, machines, BATCH):
         random = np.random.default_rng([seed, k])
         for designs in (_crank_rocker(random, BATCH // 2), _engine(random, BATCH // 2)):
-            torque = ls.sweep(designs.scene(), ANGLES, ["T12"]).T12.transpose("design", "theta2").values
+            torque = ls.sweep(designs.scene(), ANGLES, of=["T12"]).T12.transpose("design", "theta2").values
             parts.append(np.abs(torque.mean(axis=1)) / np.abs(torque).max(axis=1) / EPS)
     return np.concatenate(parts)
 

@@ -70,7 +70,7 @@ def answers(designs: Designs, threads: int | None = None) -> xr.Dataset:
     scene = designs.scene()
     drive = scene.mechanism.drives[scene.drive]
     names = (*FORCES, drive, "error_bound", "power_residual")
-    return ls.sweep(scene, [designs.theta2], outputs=names, threads=threads).rename({drive: "drive"})
+    return ls.sweep(scene, [designs.theta2], of=names, threads=threads).rename({drive: "drive"})
 
 
 def _driven(designs: Designs) -> str:

@@ -152,7 +152,7 @@ def _animate(options: argparse.Namespace) -> None:
     mpl.use("Agg")
     from linksweep.plot.animation import animate
 
-    animate(one_design(options.scene), options.frames).save(options.output)
+    animate(one_design(options.scene), frames=options.frames).save(options.output)
     print(f"written: {options.output}")
 
 
@@ -162,8 +162,8 @@ def _bearings(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
-    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2)))
-    show(options, lambda: plot.bearings(sweep(scene, theta2), options.frame))
+    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
+    show(options, lambda: plot.bearings(sweep(scene, theta2), frame=options.frame))
 
 
 def _breakdown(options: argparse.Namespace) -> None:
@@ -190,11 +190,11 @@ def _balance(options: argparse.Namespace) -> None:
     from linksweep import plot
 
     scene = one_design(options.scene)
-    weights = counterweights(scene, options.radius, options.fraction)
+    weights = counterweights(scene, radius=options.radius, fraction=options.fraction)
     balanced = with_counterweights(scene, weights)
     drive = scene.mechanism.drives[scene.drive]
     pins = [f"F{i}{j}_peak" for i, j in scene.mechanism.pins.values()]
-    table = compare(scene, balanced, [*(name.format(drive=drive) for name in BALANCED), *pins])
+    table = compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
     print(summaries.weight_lines(weights))
     print(summaries.balance_table(table))
     show(options, lambda: plot.balance(scene, balanced))
@@ -203,7 +203,7 @@ def _balance(options: argparse.Namespace) -> None:
 def _orders(options: argparse.Namespace) -> None:
     from linksweep import plot
 
-    ds = orders(sweep(one_design(options.scene), outputs=options.of), options.of, options.n)
+    ds = orders(sweep(one_design(options.scene), outputs=options.of), options.of, n=options.n)
     _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
     print(summaries.order_table(ds, options.of))
     show(options, lambda: plot.orders(ds))
@@ -213,7 +213,7 @@ def _flywheel(options: argparse.Namespace) -> None:
     from linksweep import plot
 
     scene = one_design(options.scene)
-    ds = flywheel(scene, options.fluctuation)
+    ds = flywheel(scene, fluctuation=options.fluctuation)
     _require_whole(options.scene, ds["speed"])
     print(summaries.drive_table(duty(scene), ds))
     show(options, lambda: plot.torque_with_flywheel(ds))

@@ -90,10 +90,12 @@ def _parser() -> argparse.ArgumentParser:
 
     cycle = commands.add_parser("sweep", help="one revolution to a file, and to a figure")
     cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    cycle.add_argument("--theta2", type=int, default=720, metavar="N", help="number of crank angles (720)")
+    cycle.add_argument(
+        "--theta2", "--theta", dest="angles", type=int, default=720, metavar="N", help="number of angles (720)"
+    )
     cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
     cycle.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
-    cycle.add_argument("--outputs", type=_names, help="names of the variables wanted, separated by commas")
+    cycle.add_argument("--of", "--outputs", type=_names, help="names of quantities, separated by commas")
     cycle.set_defaults(run=_sweep)
 
     worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
@@ -125,7 +127,7 @@ def _add_study(commands: Any) -> None:
     many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
     many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
-    many.add_argument("--of", type=_names, nargs="+", help="names of the quantities wanted")
+    many.add_argument("--of", type=_names, nargs="+", help="names of quantities")
     chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
     many.set_defaults(run=_study)
@@ -154,10 +156,10 @@ def _demo(options: argparse.Namespace) -> None:
 
 def _sweep(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
-    cycle = sweep(scene, theta2=options.theta2, outputs=options.outputs)
+    cycle = sweep(scene, options.angles, of=options.of)
     figure = None
     if options.plot:  # it shows all pin forces, whatever is asked for in the file
-        figure = _figure(cycle if options.outputs is None else sweep(scene, theta2=options.theta2))
+        figure = _figure(cycle if options.of is None else sweep(scene, options.angles))
     save(cycle, options.output)
     print(f"written: {options.output}")
     if figure is not None:
@@ -185,7 +187,7 @@ def _study(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
     there = options.output.exists()
     of = None if options.of is None else [name for names in options.of for name in names]
-    with study(scene, options.output, of, options.chunk) as ds:
+    with study(scene, options.output, of=of, chunk=options.chunk) as ds:
         print(study_report(ds, scene.mechanism))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
@@ -197,7 +199,7 @@ def _check(options: argparse.Namespace) -> None:
 
 def _report(options: argparse.Namespace) -> None:
     part = tuple(options.theta2) if options.theta2 else None
-    report(load_scene(options.scene), options.output, options.title or options.scene.stem, part)
+    report(load_scene(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
     print(f"written: {options.output}")
 
 

@@ -55,13 +55,13 @@ class Frame(NamedTuple):
 
 
 def animate(
-    ds_or_scene: xr.Dataset | Scene | MultiCylinder, frames: int = 72, point: tuple[float, float] | None = None
+    scene: xr.Dataset | Scene | MultiCylinder, *, frames: int = 72, point: tuple[float, float] | None = None
 ) -> Film:
     """Make a film of a mechanism over its cycle: forces as arrows at the pins, and where they are on their curves.
 
     Parameters
     ----------
-    ds_or_scene : Dataset, Scene or MultiCylinder
+    scene : Dataset, Scene or MultiCylinder
         A scene of one design, or a Dataset from `linksweep.sweep` that holds it: of its angles, if they are not a whole
         cycle.
     frames : int
@@ -89,18 +89,18 @@ def animate(
     """
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
     require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
-    if isinstance(ds_or_scene, MultiCylinder):
+    if isinstance(scene, MultiCylinder):
         from linksweep.plot.cylinder_film import film_of_cylinders  # here: it takes what is below
 
         refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
         with small_type():
-            return film_of_cylinders(ds_or_scene.in_memory, frames)
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
-    angles: Any = SAMPLES if isinstance(ds_or_scene, Scene) else ds_or_scene[scene.mechanism.index].values
+            return film_of_cylinders(scene.in_memory, frames)
+    one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
+    angles: Any = SAMPLES if isinstance(scene, Scene) else scene[one.mechanism.index].values
     with small_type():
-        if scene.mechanism.track:
-            return _of_track(scene, scene.mechanism.track, angles, frames)
-        return _of_crank(scene, drawing_of(scene.mechanism), angles, frames, point)
+        if one.mechanism.track:
+            return _of_track(one, one.mechanism.track, angles, frames)
+        return _of_crank(one, drawing_of(one.mechanism), angles, frames, point)
 
 
 # -------------------------------------------------------------------------------------------------- which angles
@@ -170,7 +170,7 @@ def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: A
     from linksweep.plot.kit.film import Film
 
     outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
-    cycle = sweep(scene, angles, [*outputs, "omega2"])
+    cycle = sweep(scene, angles, of=[*outputs, "omega2"])
     signals.require_one_design(cycle[name] for name in outputs)
     shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
     figure, machine, curves = panels()
@@ -196,7 +196,7 @@ def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: A
 
 def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
     """Return the frames at those of these angles that have a result."""
-    cycle = sweep(scene, angles, [f"{force}{axis}" for force in drawing.forces for axis in "xy"])
+    cycle = sweep(scene, angles, of=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     good = np.flatnonzero(signals.spread(cycle["status"], len(angles)) == 0)
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
@@ -290,10 +290,10 @@ def _of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
     from linksweep.plot.kit.film import Film
 
     names, index = [track.force, track.speed], {scene.mechanism.index: signals.INDEX}
-    cycle = sweep(scene, angles, names).rename(index)
+    cycle = sweep(scene, angles, of=names).rename(index)
     signals.require_one_design(cycle[name] for name in names)
     at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
-    shots = sweep(scene, at, names).rename(index)
+    shots = sweep(scene, at, of=names).rename(index)
     force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
     figure, ax, curve = panels()
     radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))

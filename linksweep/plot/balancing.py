@@ -25,7 +25,7 @@ ROUNDING = 1e-9  # N or N m
 SHAKING = ("Fsx", "Fsy", "Ms")
 
 
-def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
+def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     """Plot two scenes on one page, as before and after balancing.
 
     Parameters
@@ -60,7 +60,8 @@ def balance(before: Scene, after: Scene, theta2: int = 720) -> Figure:
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces
     cycles = {
-        name: sweep(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in (("before", before), ("after", after))
+        name: sweep(scene, theta2, of=[*SHAKING, drive, *pins])
+        for name, scene in (("before", before), ("after", after))
     }
     worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
     with small_type():

@@ -59,7 +59,7 @@ class Mark(NamedTuple):
     name_at_peak: str
 
 
-def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
+def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None = None) -> Axes:
     """Plot the magnitudes of forces in the joints [N] over the crank angle [degree], each peak with value and angle.
 
     Parameters
@@ -67,7 +67,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     ds : Dataset
         From `linksweep.sweep`, with magnitudes (F32) or components (F32x, F32y), of one design; of a single force
         also up to six designs along one dimension, one line each.
-    names : iterable of str, optional
+    of : iterable of str, optional
         The forces, such as ["F32", "F43"]; by default those of all pins, and of the guide, that are in
         the Dataset.
     ax : matplotlib Axes, optional
@@ -92,7 +92,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     """
     signals.require_angles(ds)
     ds = with_peaks(ds)
-    wanted = force_names(ds, names)
+    wanted = force_names(ds, of)
     found = {name: signals.magnitude(ds, name) for name in wanted}
     if len(wanted) > 1:
         signals.require_one_design(found.values())
@@ -119,7 +119,7 @@ def forces(ds: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None =
     return ax
 
 
-def torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     """Plot the torque of the drive (T12, T13 or T14) [N m] over the crank angle [degree], largest and smallest marked.
 
     Of a cylinder that drives, its force [N].
@@ -176,7 +176,7 @@ def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     forces = drawing_of_results(ds).forces
     wanted = [name for name in forces if signals.has_pin(ds, name)]
     if not wanted:
-        raise ValueError(f"the Dataset has no pin force: sweep with outputs=[..., {', '.join(map(repr, forces))}]")
+        raise ValueError(f"the Dataset has no pin force: sweep with of=[..., {', '.join(map(repr, forces))}]")
     return wanted
 
 

@@ -47,7 +47,7 @@ def film_of_cylinders(machine: MultiCylinder, frames: int) -> Film:
     """Return a film over the engine's cycle: every cylinder with the forces in its pins, and the torque of them all."""
     from linksweep.plot.kit.film import Film
 
-    cycle = machine.sweep(SAMPLES, outputs=["T12"])
+    cycle = machine.sweep(SAMPLES, of=["T12"])
     signals.require_one_design([cycle["T12"]])
     angles = np.arange(frames) * (machine.period / frames)
     cylinders = [_turned(machine, k) for k in range(len(machine.crank_angles))]

@@ -34,12 +34,12 @@ ROUNDING = 1e-9  # of the largest torque: the mean of one that does no work
 TICK = 90.0  # degrees of the crank between named points
 
 
-def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
+def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     """Plot the crank's speed over the cycle with a flywheel, its largest and least.
 
     Parameters
     ----------
-    found : Dataset
+    ds : Dataset
         From `linksweep.flywheel`, of one design.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
@@ -59,17 +59,17 @@ def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
     >>> ls.plot.flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05)).get_ylabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
-    refuse([] if "speed" in found else ["found has no speed: take what ls.flywheel returns"])
-    signals.require_angles(found)
-    angles, speed = signals.revolution(found, found["speed"])
-    refuse([] if np.isfinite(speed).all() else ["found has no speed at some angle: it stalls, or does not turn fully"])
+    refuse([] if "speed" in ds else ["ds has no speed: take what ls.flywheel returns"])
+    signals.require_angles(ds)
+    angles, speed = signals.revolution(ds, ds["speed"])
+    refuse([] if np.isfinite(speed).all() else ["ds has no speed at some angle: it stalls, or does not turn fully"])
     ax = axes_or_new(ax)
     grid(ax)
     middle = 0.5 * (np.max(speed) + np.min(speed))
     ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
     ax.plot(angles, speed, color=BLUE, label="_speed")
     _extremes(ax, angles, speed)
-    size, fluctuation = float(found["flywheel_inertia"]), float(found["fluctuation"])
+    size, fluctuation = float(ds["flywheel_inertia"]), float(ds["fluctuation"])
     ax.set_title(f"flywheel {signals.number(size)} kg m², fluctuation {100.0 * fluctuation:.3g} %", loc="left")
     crank_angles(ax, angles)
     ax.margins(y=0.18)
@@ -77,12 +77,12 @@ def flywheel(found: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def torque_with_flywheel(found: xr.Dataset) -> Figure:
+def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     """Plot the drive's torque without and with a flywheel, and the speed of the crank with it.
 
     Parameters
     ----------
-    found : Dataset
+    ds : Dataset
         From `linksweep.flywheel`, of one design.
 
     Returns
@@ -107,15 +107,15 @@ def torque_with_flywheel(found: xr.Dataset) -> Figure:
 
     with small_type():
         figure, (above, below) = plt.subplots(2, 1, figsize=(7.1, 5.4), layout="constrained")
-        flywheel(found, below)
-        _torques(above, found)
+        flywheel(ds, ax=below)
+        _torques(above, ds)
     return figure
 
 
 def _torques(ax: Axes, found: xr.Dataset) -> None:
     """Draw the torque at constant speed around the constant torque, excess and lack shaded."""
     steady = replace(scene_of(found, whole=False), alpha2=0.0)
-    cycle = sweep(steady, found[signals.INDEX].values, ["reduced_torque"])
+    cycle = sweep(steady, found[signals.INDEX].values, of=["reduced_torque"])
     angles, without = signals.revolution(cycle, cycle["reduced_torque"])
     constant = float(found["drive_torque"])
     grid(ax)
@@ -141,12 +141,12 @@ def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
         label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} rad/s", BLUE))
 
 
-def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
+def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
     """Plot the torque that a motor must give over its speed, beside the most that it can.
 
     Parameters
     ----------
-    found : Dataset
+    ds : Dataset
         From `linksweep.motor_load`, of one design.
     motor : Motor
         The same.
@@ -171,11 +171,9 @@ def motor_load(found: xr.Dataset, motor: Motor, ax: Axes | None = None) -> Axes:
     >>> ls.plot.motor_load(found, servo).get_xlabel()
     'motor speed [rad/s]'
     """
-    refuse([] if "motor_torque" in found else ["found has no motor_torque: take what ls.motor_load returns"])
-    signals.require_angles(found)
-    _, speed, torque, margin = signals.revolution(
-        found, found["motor_speed"], found["motor_torque"], found["torque_margin"]
-    )
+    refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])
+    signals.require_angles(ds)
+    _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])
     ax = axes_or_new(ax)
     grid(ax)
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0

@@ -50,7 +50,8 @@ class Side(NamedTuple):
 
 def heat_map(
     ds: xr.Dataset,
-    name: str,
+    of: str,
+    *,
     x: str | None = None,
     y: str | None = None,
     maximize: bool = False,
@@ -63,7 +64,7 @@ def heat_map(
     ----------
     ds : Dataset
         Over designs, as from `linksweep.peaks`.
-    name : str
+    of : str
         The result, such as "F32_peak"; it depends on two dims.
     x, y : str, optional
         What lies along the axes: a dim, or a parameter over it ("crank.length"). Default: the second dim along x, the
@@ -96,20 +97,20 @@ def heat_map(
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('coupler length [m]', 'crank length [m]')
     """
-    across, up = _sides(ds, name, x, y)
+    across, up = _sides(ds, of, x, y)
     _require_on_map(ds, contours, across, up)
-    values = _field(ds[name], across, up)
+    values = _field(ds[of], across, up)
     status = _status(ds, across, up)
     ok = np.isfinite(values) & _kept(ds, across, up)
-    refuse([] if ok.any() else [none_ok(ds, [name])])
+    refuse([] if ok.any() else [none_ok(ds, [of])])
     ax = axes_or_new(ax)
     limits = span(values[ok])
     colored = np.ma.masked_where(~ok, values)
     mesh = ax.pcolormesh(across.edges, up.edges, colored, cmap="viridis", norm=norm(limits), rasterized=True)
-    color_bar(ax, mesh, column(ds[name], values[ok]), limits)
-    handles = [_best(ax, ds[name], across, up, np.where(ok, values, np.nan), maximize)]
+    color_bar(ax, mesh, column(ds[of], values[ok]), limits)
+    handles = [_best(ax, ds[of], across, up, np.where(ok, values, np.nan), maximize)]
     if contours is True:  # the colour bar says what they are
-        _contours(ax, ds[name], across, up, ok)
+        _contours(ax, ds[of], across, up, ok)
     elif contours:
         handles.append(_contours(ax, ds[contours], across, up, ok))
     handles += _not_ok(ax, across, up, _reasons(ds, status, ok))
@@ -121,7 +122,7 @@ def heat_map(
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
     """Return the axes x and y."""
     require_study(ds)
-    refuse(variable_problems(ds, "name", name, numbers=True))
+    refuse(variable_problems(ds, "of", name, numbers=True))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])
     known = {**{dim: dim for dim in dims}, **_along(ds, dims)}

@@ -25,14 +25,14 @@ ROOM = 1.3  # of the largest value, for the legend
 HATCHES = ("", "///", "\\\\\\", "...")
 
 
-def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = None) -> Axes:
+def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) -> Axes:
     """Plot what loads a pin over the revolution: the shares of its sources stacked, their sum as a line.
 
     Parameters
     ----------
-    shares : Dataset
+    ds : Dataset
         From `linksweep.breakdown`, of one design.
-    name : str, optional
+    of : str, optional
         The force or torque; by default the first in it.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
@@ -54,15 +54,15 @@ def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = Non
     >>> ls.plot.breakdown(ls.breakdown(ls.example("press"), "F32")).get_ylabel()
     'share in $F_{32}$ [N]'
     """
-    known = [str(key) for key, item in shares.data_vars.items() if "source" in item.dims]
-    refuse([] if known else ["shares has no sources: take what ls.breakdown returns"])
-    name = known[0] if name is None else name
-    refuse(name_problems("name", name, known))
-    signals.require_one_design([shares[name].isel(source=0)])
-    signals.require_angles(shares)
+    known = [str(key) for key, item in ds.data_vars.items() if "source" in item.dims]
+    refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
+    of = known[0] if of is None else of
+    refuse(name_problems("of", of, known))
+    signals.require_one_design([ds[of].isel(source=0)])
+    signals.require_angles(ds)
     ax = axes_or_new(ax)
     grid(ax)
-    rows = [(str(s), signals.revolution(shares, shares[name].sel(source=s))) for s in shares["source"].values]
+    rows = [(str(s), signals.revolution(ds, ds[of].sel(source=s))) for s in ds["source"].values]
     rows = [(source, row) for source, row in rows if np.nanmax(np.abs(row[1]), initial=0.0) > 0.0]
     bases: dict[float, Any] = {1.0: 0.0, -1.0: 0.0}
     for k, (source, (angles, values)) in enumerate(rows):
@@ -71,13 +71,13 @@ def breakdown(shares: xr.Dataset, name: str | None = None, ax: Axes | None = Non
             top = base + np.where(values * sign > 0.0, values, 0.0)
             ax.fill_between(angles, base, top, **look, linewidth=0.0, label=source if sign > 0.0 else None, alpha=0.85)
             bases[sign] = top
-    angles, whole = signals.revolution(shares, shares[name].sum("source", skipna=False))
+    angles, whole = signals.revolution(ds, ds[of].sum("source", skipna=False))
     ax.plot(angles, whole, color=style.BLACK, linewidth=1.6, label="sum")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     crank_angles(ax, angles)
     _usual_size(ax, angles, whole, {sign: np.asarray(base) for sign, base in bases.items()})
-    shade_gaps(ax, shares, shares[name].sum("source", skipna=False))
-    ax.set_ylabel(f"share in {signals.symbol(name) or name} [{signals.unit(shares[name], 'N')}]")
+    shade_gaps(ax, ds, ds[of].sum("source", skipna=False))
+    ax.set_ylabel(f"share in {signals.symbol(of) or of} [{signals.unit(ds[of], 'N')}]")
     ax.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
 
@@ -94,7 +94,7 @@ def _usual_size(ax: Axes, angles: np.ndarray, whole: np.ndarray, stacks: dict[fl
     ax.set_title("off scale beside a gap", loc="left", fontsize="small", color=GREY)
 
 
-def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, ax: Axes | None = None) -> Axes:
+def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None, ax: Axes | None = None) -> Axes:
     """Plot the exact peak of a force or torque over the speed of the crank, with the highest speed that keeps a limit.
 
     Parameters
@@ -133,7 +133,7 @@ def over_speed(scene: Scene, of: str, speeds: Any, below: float | None = None, a
     worst = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
     refuse([] if np.isfinite(worst).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
     rest = float(peaks(at_rest, of=[of])[name])
-    limit = None if below is None else float(speed_limit(scene, of, below).omega2_limit)
+    limit = None if below is None else float(speed_limit(scene, of, below=below).omega2_limit)
     ax = axes_or_new(ax)
     grid(ax)
     symbol, units = signals.symbol(of) or of, signals.unit(worst, "N")

@@ -26,14 +26,14 @@ LABELLED = 90.0  # degrees between marks with a number
 BEYOND = 1.1  # of the largest load shown: loads larger than that are off the scale
 
 
-def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | None = None) -> Axes:
+def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes | None = None) -> Axes:
     """Plot the bearing load diagram of a pin: the force's components [N] against each other over a revolution.
 
     Parameters
     ----------
     ds : Dataset
         From `linksweep.sweep`, with the components of the force (F32x, F32y), of one design.
-    pin : str
+    of : str
         The force, as "Fij": of link i on link j.
     frame : {"ground", "journal", "bearing"}
         Axes of the components: "ground", or those of the link that has the "journal" or the "bearing", that turn with
@@ -61,28 +61,28 @@ def bearing(ds: xr.Dataset, pin: str = "F32", frame: str = "ground", ax: Axes | 
     refuse(choice_problems("frame", frame, (*FRAMES, "link")))
     signals.require_angles(ds)
     ds = with_peaks(ds)
-    angles, x, y = _locus(ds, pin, frame)
+    angles, x, y = _locus(ds, of, frame)
     drawing = drawing_of_results(ds)
-    link = drawing.link_of(pin, frame)
+    link = drawing.link_of(of, frame)
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
     usual = signals.scale([size], [largest])
     _cross(ax)
-    ax.plot(x, y, color=BLUE, label=f"_locus {pin}")
-    units = signals.unit(signals.components(ds, pin)[0], "N")
+    ax.plot(x, y, color=BLUE, label=f"_locus {of}")
+    units = signals.unit(signals.components(ds, of)[0], "N")
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
-        tip = _peak(ax, pin, largest, signals.tip(x, y), units, usual)
+        tip = _peak(ax, of, largest, signals.tip(x, y), units, usual)
     _ticks(ax, angles, x, y, usual)
     near = size <= BEYOND * usual
     _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
-    ax.set_xlabel(f"{_axis(drawing, pin, link, 'x')} [{units}]")
-    ax.set_ylabel(f"{_axis(drawing, pin, link, 'y')} [{units}]")
+    ax.set_xlabel(f"{_axis(drawing, of, link, 'x')} [{units}]")
+    ax.set_ylabel(f"{_axis(drawing, of, link, 'y')} [{units}]")
     return ax
 
 
-def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
+def bearings(ds: xr.Dataset, *, frame: str = "ground") -> Figure:
     """Plot the bearing load diagrams of all pins in one figure, each like `bearing` in a panel of its own.
 
     Parameters
@@ -106,7 +106,7 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
     Examples
     --------
     >>> import linksweep as ls
-    >>> figure = ls.sweep(ls.example("press")).linksweep.bearings("journal")
+    >>> figure = ls.sweep(ls.example("press")).linksweep.bearings(frame="journal")
     >>> [ax.get_title(loc="left") for ax in figure.axes][0]
     'Load of pin A: $F_{12}$'
     """
@@ -120,7 +120,7 @@ def bearings(ds: xr.Dataset, frame: str = "ground") -> Figure:
     with small_type():
         figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
         for force, panel in zip(forces, panels.flat, strict=False):
-            bearing(ds, force, frame, panel)
+            bearing(ds, force, frame=frame, ax=panel)
             panel.set_title(f"Load of {drawing.joint_text(force)}: {signals.symbol(force)}", loc="left")
         if len(forces) % 2:
             _to_one_scale(panels[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
@@ -159,7 +159,7 @@ def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tu
     if name not in ds:
         scene = scene_of(ds, whole=False)
         standing = getattr(scene.mechanism, name, None)
-        angles = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, [name])
+        angles = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, of=[name])
         ds = ds.assign({name: angles[name]})
     angle = np.radians(signals.revolution(ds, ds[name])[1])
     cos, sin = np.cos(angle), np.sin(angle)

@@ -38,8 +38,9 @@ class Shape(NamedTuple):
 
 
 def mechanism(
-    ds_or_scene: xr.Dataset | Scene,
+    scene: xr.Dataset | Scene,
     theta2: float = 45.0,
+    *,
     ax: Axes | None = None,
     point: tuple[float, float] | None = None,
     forces: bool = False,
@@ -48,7 +49,7 @@ def mechanism(
 
     Parameters
     ----------
-    ds_or_scene : Dataset or Scene
+    scene : Scene or Dataset
         A scene of one design, or a Dataset from `linksweep.sweep` that holds it.
     theta2 : float
         Crank angle [degree].
@@ -77,7 +78,7 @@ def mechanism(
     >>> ls.plot.mechanism(ls.example("press"), theta2=30.0, forces=True).get_xlabel()
     'x [m]'
     """
-    scene = ds_or_scene if isinstance(ds_or_scene, Scene) else scene_of(ds_or_scene, whole=False)
+    scene = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     drawing = drawing_of(scene.mechanism)
     angle = _angle(theta2)
     places = positions(scene, drawing, [angle])
@@ -113,7 +114,7 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     turn = np.arange(CURVE) * (360.0 / CURVE)
-    cycle = sweep(geometry, theta2=[*turn, *angles], outputs=outputs)
+    cycle = sweep(geometry, theta2=[*turn, *angles], of=outputs)
     signals.require_one_design(cycle.values())
     return cycle
 

@@ -23,14 +23,14 @@ BEYOND = 1.1  # of the largest force shown: forces larger than that are off the 
 LABELLED = 90.0  # degrees between dots with a number
 
 
-def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
+def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes:
     """Plot the path of a vector's tip over the revolution: of the shaking force [N], or of a pin force.
 
     Parameters
     ----------
     ds : Dataset
         From `linksweep.sweep`, with the components (Fsx, Fsy) of one design.
-    name : str
+    of : str
         The vector, its components without x and y.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
@@ -48,14 +48,14 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.plot.hodograph(ls.sweep(ls.example("press"), outputs=["Fsx", "Fsy"])).get_xlabel()
+    >>> ls.plot.hodograph(ls.sweep(ls.example("press"), of=["Fsx", "Fsy"])).get_xlabel()
     'shaking force $F_{sx}$ [N]'
     """
     signals.require_angles(ds)
-    missing = [part for part in (f"{name}x", f"{name}y") if part not in ds]
-    refuse([f"ds has no {part}: sweep with outputs=[..., {part!r}]" for part in missing])
+    missing = [part for part in (f"{of}x", f"{of}y") if part not in ds]
+    refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
     ds = with_peaks(ds)
-    angles, x, y = signals.revolution(ds, ds[f"{name}x"], ds[f"{name}y"])
+    angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])
     ax = axes_or_new(ax, figsize=(5.6, 5.2))
     ax.set_aspect("equal", adjustable="datalim")
     grid(ax)
@@ -65,14 +65,14 @@ def hodograph(ds: xr.Dataset, name: str = "Fs", ax: Axes | None = None) -> Axes:
     largest = signals.peak(angles, size)
     usual = signals.scale([size], [largest])
     near = [np.where(size <= BEYOND * usual, part, np.nan) for part in (x, y)]
-    ax.plot(*near, color=BLUE, label=f"_path {name}")
+    ax.plot(*near, color=BLUE, label=f"_path {of}")
     _dots(ax, angles, *near)
     if largest and largest.value > 0.0:
-        _largest(ax, name, largest, signals.tip(x, y), usual, signals.unit(ds[f"{name}x"], "N"))
+        _largest(ax, of, largest, signals.tip(x, y), usual, signals.unit(ds[f"{of}x"], "N"))
     ax.margins(0.14)
     for axis, set_label in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
-        words = "shaking force " if name == "Fs" else "force "
-        set_label(f"{words}$F_{{{name[1:]}{axis}}}$ [{signals.unit(ds[name + axis], 'N')}]")
+        words = "shaking force " if of == "Fs" else "force "
+        set_label(f"{words}$F_{{{of[1:]}{axis}}}$ [{signals.unit(ds[of + axis], 'N')}]")
     return ax
 
 
@@ -102,14 +102,14 @@ def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, usual: 
     label(ax, *tip, *((line, VERMILION) for line in lines))
 
 
-def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
+def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None = None) -> Axes:
     """Plot the amplitudes of orders as bars, those of several signals side by side.
 
     Parameters
     ----------
-    found : Dataset
+    ds : Dataset
         From `linksweep.orders`, of one design.
-    names : iterable of str, optional
+    of : iterable of str, optional
         The signals; by default all in it. They must have one unit.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
@@ -127,24 +127,24 @@ def orders(found: xr.Dataset, names: Iterable[str] | None = None, ax: Axes | Non
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.orders(ls.sweep(ls.example("engine"), outputs=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
+    >>> found = ls.orders(ls.sweep(ls.example("engine"), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
     >>> ls.plot.orders(found).get_ylabel()
     'amplitude [N]'
     """
-    known = [str(key).removesuffix(ENDING) for key in found.data_vars if str(key).endswith(ENDING)]
-    wanted = known if names is None else [names] if isinstance(names, str) else list(names)
-    refuse([f"names: there are no orders of {name}; there are {', '.join(known)}" for name in {*wanted} - {*known}])
-    chosen = [found[name + ENDING] for name in wanted]
+    known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
+    wanted = known if of is None else [of] if isinstance(of, str) else list(of)
+    refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*wanted} - {*known}])
+    chosen = [ds[name + ENDING] for name in wanted]
     units = {amplitude.attrs["units"] for amplitude in chosen}
     several = "must share one unit: plot each alone"
-    refuse([f"names = {wanted}: {several}"] if len(units) > 1 else [])
-    refuse([] if 0 < len(wanted) <= len(COLORS) else [f"names: one to {len(COLORS)} signals, not {len(wanted)}"])
-    refuse([f"{a.name} is over {a.dims}: plot one design, as found.isel(...)" for a in chosen if a.ndim > 1])
+    refuse([f"of = {wanted}: {several}"] if len(units) > 1 else [])
+    refuse([] if 0 < len(wanted) <= len(COLORS) else [f"of: one to {len(COLORS)} signals, not {len(wanted)}"])
+    refuse([f"{a.name} is over {a.dims}: plot one design, as ds.isel(...)" for a in chosen if a.ndim > 1])
     from matplotlib.ticker import MaxNLocator
 
     ax = axes_or_new(ax)
     grid(ax)
-    order = found["order"].values
+    order = ds["order"].values
     step = order[1] - order[0] if len(order) > 1 else 1.0
     width = 0.8 * step / len(wanted)
     for k, (name, amplitude) in enumerate(zip(wanted, chosen, strict=True)):

@@ -43,6 +43,7 @@ ROOM = 0.04  # of an axis, beyond its scale
 
 def scatter(
     ds: xr.Dataset,
+    *,
     x: str,
     y: str,
     color: str | None = None,
@@ -83,7 +84,7 @@ def scatter(
     --------
     >>> import linksweep as ls
     >>> made = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}, n=64)
-    >>> ax = ls.plot.scatter(ls.peaks(made, of=["F32", "T12"]), "F32_peak", "T12_peak")
+    >>> ax = ls.plot.scatter(ls.peaks(made, of=["F32", "T12"]), x="F32_peak", y="T12_peak")
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('$F_{32}$ peak [N]', '$T_{12}$ peak [N m]')
     """
@@ -158,7 +159,8 @@ def _scale(ax: Axes, which: str, item: Column, keep: np.ndarray) -> None:
 
 def parallel_coordinates(
     ds: xr.Dataset,
-    names: Iterable[str] | None = None,
+    of: Iterable[str] | None = None,
+    *,
     color: str | None = None,
     maximize: bool = False,
     best: int = 5,
@@ -170,7 +172,7 @@ def parallel_coordinates(
     ----------
     ds : Dataset
         Over designs, as from `linksweep.peaks`.
-    names : iterable of str, optional
+    of : iterable of str, optional
         What the axes show, from left to right; by default the parameters that vary, then the peaks.
     color : str, optional
         The objective; by default the last of the names.
@@ -201,7 +203,7 @@ def parallel_coordinates(
     '$T_{12}$ peak\\n[N m]'
     """
     require_study(ds)
-    of_axes = _axis_names(ds) if names is None else requested("names", names)
+    of_axes = _axis_names(ds) if of is None else requested("of", of)
     refuse(_problems(ds, of_axes, color, best))
     designs = designs_of(ds, of_axes if color is None else [*of_axes, color])
     objective = designs.columns[of_axes[-1] if color is None else color]
@@ -225,10 +227,10 @@ def parallel_coordinates(
 
 
 def _problems(ds: xr.Dataset, names: list[str], color: Any, best: Any) -> list[str]:
-    problems = [problem for name in names for problem in variable_problems(ds, "names", name)]
+    problems = [problem for name in names for problem in variable_problems(ds, "of", name)]
     problems += [] if color is None else variable_problems(ds, "color", color)
     if not 2 <= len(names) <= MOST_AXES:
-        problems.append(f"names: there are {len(names)}, {names}; must be from 2 to {MOST_AXES}")
+        problems.append(f"of: there are {len(names)}, {names}; must be from 2 to {MOST_AXES}")
     return problems + ([] if best == 0 else count_problems("best", best))
 
 

@@ -97,7 +97,7 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
 def _drive(machine: MultiCylinder) -> Markup:
     work = duty(machine)
     fluctuations = xr.DataArray(np.array(FLUCTUATIONS), dims="target")
-    size = flywheel(machine, fluctuations)["flywheel_inertia"]
+    size = flywheel(machine, fluctuation=fluctuations)["flywheel_inertia"]
     rows = [
         ("mean torque", number(float(work["effort_mean"]), "N m")),
         ("mean power", number(float(work["power_mean"]), "W")),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -63,21 +62,25 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
     what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
     title = f"{what} θ₂ = {where:.1f}°"
-    yield Picture(title, SIZE, lambda ax: plot.mechanism(results.scene, where, ax, forces=True))
+    yield Picture(title, SIZE, lambda ax: plot.mechanism(results.scene, where, ax=ax, forces=True))
     yield Picture("Forces in the joints", SIZE, lambda ax: plot.forces(ds, ax=ax))
     kind = signals.drive_kind(signals.drive_name(ds)).capitalize()
-    yield Picture(kind, SIZE, lambda ax: plot.torque(ds, ax))
+    yield Picture(kind, SIZE, lambda ax: plot.torque(ds, ax=ax))
     if not bounded:  # there, it is the nearness of the toggle that loads the pin
         return
-    shares = breakdown(results.scene, force, results.cycle[signals.INDEX].values[::STEPS])
+    shares = breakdown(results.scene, force, theta2=results.cycle[signals.INDEX].values[::STEPS])
     title = f"Where the load of {drawing.joint_text(force)} comes from: {symbol(force)}"
-    yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax)))
+    yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax=ax)))
 
 
 def _of_bearings(results: Results, drawing: Drawing) -> Iterator[Picture]:
     for force in drawing.pin_forces:
         title = f"Load of {drawing.joint_text(force)}: {symbol(force)}"
-        yield Picture(title, SQUARE, partial(plot.bearing, results.cycle, force, "ground"))
+        yield Picture(title, SQUARE, _bearing(results, force))
+
+
+def _bearing(results: Results, force: str) -> Callable[[Axes], Axes]:
+    return lambda ax: plot.bearing(results.cycle, force, ax=ax)
 
 
 def _of_shaking(results: Results) -> Iterator[Picture]:
@@ -96,7 +99,7 @@ def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
     pins = drawing.pin_forces
     force = max(pins, key=lambda name: float(peaks[f"{name}_peak"]))
     at = float(peaks[f"{force}_peak_at"])
-    if np.isfinite(peaks[f"{force}_peak"]) and not sweep(results.scene, [at], ["status"])["status"].any():
+    if np.isfinite(peaks[f"{force}_peak"]) and not sweep(results.scene, [at], of=["status"])["status"].any():
         return force, at
     largest = {
         name: signals.peak(*signals.revolution(results.cycle, signals.magnitude(results.cycle, name))) for name in pins

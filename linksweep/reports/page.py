@@ -43,6 +43,7 @@ SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count coun
 def report(
     scene: Scene | xr.Dataset | MultiCylinder,
     path: str | os.PathLike[str],
+    *,
     title: str | None = None,
     theta2: tuple[float, float] | None = None,
 ) -> None:

@@ -77,7 +77,7 @@ class Results(NamedTuple):
 def results_of(scene: Scene, part: Range | None = None) -> Results:
     """Compute all results that the report shows of a scene of one design."""
     theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
-    cycle = sweep(scene, theta2, _outputs(scene))
+    cycle = sweep(scene, theta2, of=_outputs(scene))
     worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
     results = Results(scene, part, cycle, worst, check(scene))
     if not results.linkage or part is not None:
@@ -128,4 +128,4 @@ def _exact(scene: Scene) -> xr.Dataset:
 
 def _flywheel(scene: Scene) -> xr.Dataset:
     fluctuations: Any = np.array(FLUCTUATIONS)
-    return flywheel(scene, xr.DataArray(fluctuations, {"target": fluctuations}, "target"))
+    return flywheel(scene, fluctuation=xr.DataArray(fluctuations, {"target": fluctuations}, "target"))

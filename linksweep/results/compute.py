@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.validate import name_problems, refuse
+from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
@@ -29,6 +29,22 @@ def requested(path: str, names: Any) -> list[str]:
     wrong = [name for name in listed if not isinstance(name, str)]
     refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
     return list(dict.fromkeys(listed))
+
+
+def either(**values: Any) -> tuple[str, Any]:
+    """Return name and value of the one parameter, of several for one thing, that is not None; refuse two of them."""
+    named = {name: value for name, value in values.items() if value is not None}
+    refuse([f"{' and '.join(named)}: are for one thing; give one of them"] if len(named) > 1 else [])
+    return next(iter((named or values).items()))
+
+
+def angles_of(scene: Scene, **angles: Any) -> Any:
+    """Return the angles of a request; ValueError where they have the name of another machine's index."""
+    name, value = either(**angles)
+    index, kind = scene.mechanism.index, type(scene.mechanism).__name__
+    foreign = value is not None and name not in ("angles", index)
+    refuse([f"{name} = {quote(value)}: the results of a {kind} are over {index}: write {index}="] if foreign else [])
+    return value
 
 
 def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) -> list[str]:

@@ -16,9 +16,11 @@ from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import (
     angles_missing,
+    angles_of,
     assembly_of,
     changing_pace,
     compute,
+    either,
     only_where,
     planned,
     quantity_problems,
@@ -58,11 +60,13 @@ class Request(NamedTuple):
 def peaks(
     scene: Scene | MultiCylinder,
     of: str | Iterable[str] | None = None,
+    *,
     theta2: ArrayLike | None = None,
-    threads: int | None = None,
+    theta: ArrayLike | None = None,
     solver: str = "fast",
+    threads: int | None = None,
 ) -> xr.Dataset:
-    """Worst case of each quantity over the continuous revolution.
+    """Return the worst case of each quantity over the continuous revolution, and where it is.
 
     Exact: samples that are dense where a mechanism comes near a toggle find every rise, and between them the plan is
     evaluated until nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the
@@ -74,25 +78,34 @@ def peaks(
 
     Parameters
     ----------
-    scene : Scene; or a MultiCylinder, whose quantities are those of its `sweep`, and "F32" and the like, the forces in
-        the pins of each cylinder, over the dim `cylinder`
-    of : names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much
-        larger the peak could be than what was found (inf where a function changes too quickly to be followed),
-        "F32_samples" how many crank angles were looked at. Default: all pins and the torque
-    theta2 : None; or a count of angles, or any array of angles [degree], for the largest of these samples instead
-    threads : at most so many (default: all cores); the numbers do not depend on it
-    solver : "fast" or, with theta2, "superposed", as in `linksweep.sweep`
+    scene : Scene or MultiCylinder
+        A machine, and what happens to it. Quantities of several cylinders are those of `MultiCylinder.sweep`, and the
+        pin forces of each cylinder, "F32" and the like, over the dim `cylinder`.
+    of : str or iterable of str, optional
+        Names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much larger
+        the peak could be than the one returned (inf where a function changes too quickly to be followed), "F32_samples"
+        how many crank angles were evaluated. By default all pins and the torque.
+    theta2 : int or array of angles, optional
+        A count of crank angles, or the angles themselves [degree], for the largest of these samples instead.
+    theta : int or array of angles, optional
+        The positions of a car in a loop, in place of theta2.
+    solver : {"fast", "superposed"}
+        As in `linksweep.sweep`; "superposed" is for samples.
+    threads : int, optional
+        The most threads to use; by default all cores. Results do not depend on it.
 
     Returns
     -------
-    Dataset over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity
-    `T12_max`, `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution
-    (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
+    Dataset
+        Over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity `T12_max`,
+        `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution (peaks
+        are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
 
     Raises
     ------
     ValueError
-        For an unknown name or angles that are no angles; for exact peaks that are to be superposed.
+        For an unknown name, angles that are no angles or have the name of another machine's index, and for exact peaks
+        that are to be superposed.
 
     Notes
     -----
@@ -106,25 +119,22 @@ def peaks(
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
     """
-    refuse([*count_problems("threads", threads), *_solver_problems(solver, theta2)])
+    word, angles = either(theta2=theta2, theta=theta)
+    refuse([*count_problems("threads", threads), *_solver_problems(solver, angles)])
     if isinstance(scene, MultiCylinder):
-        from linksweep.results.cylinders.cylinder_peaks import (
-            peaks_of_cylinders,  # here: it takes the peaks of one cylinder
-        )
+        from linksweep.results.cylinders.cylinder_peaks import peaks_of_cylinders  # here: it imports this module
 
-        refuse(
-            []
-            if theta2 is None
-            else [f"theta2 = {quote(theta2)}: must be left out: peaks of several cylinders are exact"]
-        )
+        exact = "must be left out: peaks of several cylinders are exact"
+        refuse([] if angles is None else [f"{word} = {quote(angles)}: {exact}"])
         return peaks_of_cylinders(scene.in_memory, of, threads)
     require_scene(scene)
+    angles = angles_of(scene, theta2=theta2, theta=theta)
     names = None if of is None else requested("of", of)
     items = _requests(scene, names)
-    result = _exact(scene, items, threads) if theta2 is None else _of_samples(scene, theta2, items, threads, solver)
-    angles = "" if theta2 is None else f", theta2={len(result.grid.angles)}"
+    result = _exact(scene, items, threads) if angles is None else _of_samples(scene, angles, items, threads, solver)
+    grid = "" if angles is None else f", {result.grid.dim}={len(result.grid.angles)}"
     by = "" if solver == "fast" else f", solver={solver!r}"
-    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{angles}{by})"
+    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{grid}{by})"
     return _dataset(scene, items, result, command, threads)
 
 
@@ -137,10 +147,10 @@ def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int |
     return _dataset(scene, items, result, f"linksweep.peaks(scene, of={names})", threads)
 
 
-def _solver_problems(solver: Any, theta2: Any) -> list[str]:
+def _solver_problems(solver: Any, angles: Any) -> list[str]:
     problems = choice_problems("solver", solver, SOLVERS)
     missing = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
-    return problems or ([missing] if solver == "superposed" and theta2 is None else [])
+    return problems or ([missing] if solver == "superposed" and angles is None else [])
 
 
 Averages = dict[Power, Field]
@@ -226,11 +236,11 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     return Result(scene.at_one_angle, grid, with_dead_centres(scene, assembly), largest, averages)
 
 
-def _of_samples(scene: Scene, theta2: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
+def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
     """Return the largest of a grid's samples, as they are."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
-    grid = in_order(crank_grid(theta2, scene.period, scene.mechanism.index))
+    grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))
     sampled = scene.at(grid)
     largest = {signal: Reduction("largest_sample", signal) for signal in _signals(items)}
     powers = _powers(items)

@@ -61,7 +61,7 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     grid = crank_grid(angles, both.period, both.mechanism.index)
     fields = compute(both.at(grid), grid, tuple(formulas))
     order = (*both.inputs.sizes, grid.dim)
-    page = sweep(both, angles, list(roots))
+    page = sweep(both, angles, of=list(roots))
     coefficients = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
     for name, formula in roots.items():
         page[name].attrs["long_name"] += f"; {formula}"

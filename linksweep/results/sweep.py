@@ -10,47 +10,75 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse
-from linksweep.results.compute import blank, compute, quantity_problems, requested, require_scene, sample_status
+from linksweep.results.compute import (
+    angles_of,
+    blank,
+    compute,
+    either,
+    quantity_problems,
+    requested,
+    require_scene,
+    sample_status,
+)
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import described
 from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
+COUNT = 720
+"""Angles of a turn where none are named."""
 SOLVERS = ("fast", "superposed", "dense")
 
 
 @by_blocks(of_samples=True)
 def sweep(
     scene: Scene,
-    theta2: ArrayLike = 720,
+    angles: ArrayLike | None = None,
+    *,
+    theta2: ArrayLike | None = None,
+    theta: ArrayLike | None = None,
+    of: str | Iterable[str] | None = None,
     outputs: str | Iterable[str] | None = None,
     solver: str = "fast",
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Sweep a scene over crank angles.
+    """Compute the kinematics and forces of a scene at many crank angles.
 
     Parameters
     ----------
     scene : Scene
-    theta2 : a count N, for the grid arange(N)·360/N, or any array of angles [degree]; where a load takes two turns, as
-        in a four-stroke engine, the grid is arange(N)·720/N. For a car in a loop these are positions, `theta`
-    outputs : names of the variables wanted; only what they need is computed. Default: the kinematics and the nine
-        unknowns
-    solver : "fast" (the 9×9 eliminated by hand), "superposed" (the same; along a design dim that carries masses, loads,
-        speeds … over one geometry it adds up a few cycles, which is faster and rounds a little otherwise) or "dense"
-        (the full 9×9 by LAPACK with partial pivoting, as a check)
-    threads : at most so many (default: all cores); the numbers do not depend on it
+        A machine, and what happens to it.
+    angles : int or array of angles, default 720
+        A count N, for the grid arange(N)·360/N (·720/N where a load takes two turns, as in a four-stroke engine), or
+        the angles themselves [degree]. ``sweep(scene, 360)``, or by the name of the machine's index, as follows.
+    theta2 : int or array of angles, optional
+        The angles of the crank.
+    theta : int or array of angles, optional
+        The positions of a car in a loop, 0 at the bottom.
+    of : str or iterable of str, optional
+        Names of quantities, as `linksweep.quantities` lists them: only what they need is computed. By default the
+        kinematics and the unknown forces and torque.
+    outputs : str or iterable of str, optional
+        Another name of `of`.
+    solver : {"fast", "superposed", "dense"}
+        "fast": the 9×9 eliminated by hand. "superposed": along a design dim of masses, loads, speeds … over one
+        geometry a few cycles are added up, which is faster and rounds a little differently. "dense": the full 9×9 by
+        LAPACK with partial pivoting, as a check.
+    threads : int, optional
+        The most threads to use; by default all cores. Results do not depend on it.
 
     Returns
     -------
-    Dataset over (design dims…, theta2). Each variable has only the dims that it depends on; units and sign in its
-    attributes. `status` says what happened at each sample; where it is not 0 (ok) the values are NaN.
+    Dataset
+        Over (design dims…, theta2); each variable has only the dims that it depends on, with unit and sign in its
+        attributes. `status` says what happened at each sample; where it is not 0 (ok), values are NaN.
 
     Raises
     ------
     ValueError
-        For an unknown name or angles that are no angles; for an `error_bound` of what is superposed.
+        For an unknown name, angles that are no angles or have the name of another machine's index, and for an
+        `error_bound` of superposed sums.
 
     Notes
     -----
@@ -61,14 +89,17 @@ def sweep(
     --------
     >>> import linksweep as ls
     >>> scene = ls.example("press")
-    >>> cycle = ls.sweep(scene, theta2=360, outputs=["T12", "F32"])
+    >>> cycle = ls.sweep(scene, theta2=360, of=["T12", "F32"])
     >>> dict(cycle.sizes), cycle.T12.units
     ({'theta2': 360}, 'N m')
     """
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
-    grid = crank_grid(theta2, scene.period, scene.mechanism.index)
-    names = default_names(scene) if outputs is None else _names(scene, requested("outputs", outputs))
+    word, quantities = either(of=of, outputs=outputs)
+    names = default_names(scene) if quantities is None else _names(scene, word, requested(word, quantities))
+    angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
+    angles = COUNT if angles is None else angles
+    grid = crank_grid(angles, scene.period, scene.mechanism.index)
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
@@ -78,7 +109,7 @@ def sweep(
         known = solution if solver == "dense" else {"cond": solution["cond"]}
     fields = compute(sampled, grid, names, threads, known, solver)
     blank(fields, status)
-    command = _command(theta2, None if outputs is None else names, solver)
+    command = _command(grid.dim, angles, None if quantities is None else names, solver)
     return described(scene, sampled, grid, fields, status, command)
 
 
@@ -87,18 +118,18 @@ def default_names(scene: Scene) -> tuple[str, ...]:
     return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
 
 
-def _names(scene: Scene, names: list[str]) -> tuple[str, ...]:
+def _names(scene: Scene, word: str, names: list[str]) -> tuple[str, ...]:
     known = [*scene.table.quantity, "status"]
-    refuse([problem for name in names for problem in quantity_problems("outputs", name, known, scene)])
+    refuse([problem for name in names for problem in quantity_problems(word, name, known, scene)])
     return tuple(name for name in names if name != "status")
 
 
 def _bound_missing(names: Iterable[str], solver: str) -> list[str]:
-    said = 'outputs: error_bound is of what solver="fast" does, not of superposed sums: leave one of the two out'
-    return [said] if solver == "superposed" and "error_bound" in names else []
+    problem = 'of: error_bound is of what solver="fast" does, not of superposed sums: leave one of the two out'
+    return [problem] if solver == "superposed" and "error_bound" in names else []
 
 
-def _command(theta2: Any, names: Iterable[str] | None, solver: str) -> str:
-    angles = theta2 if isinstance(theta2, int | np.integer) else f"<{np.size(theta2)} angles>"
-    wanted = "" if names is None else f", outputs={list(names)}"
-    return f"linksweep.sweep(scene, theta2={angles}{wanted}" + (")" if solver == "fast" else f", solver={solver!r})")
+def _command(index: str, angles: Any, names: Iterable[str] | None, solver: str) -> str:
+    grid = angles if isinstance(angles, int | np.integer) else f"<{np.size(angles)} angles>"
+    of = "" if names is None else f", of={list(names)}"
+    return f"linksweep.sweep(scene, {index}={grid}{of}" + (")" if solver == "fast" else f", solver={solver!r})")

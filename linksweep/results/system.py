@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from linksweep.base.conversion import to_float64
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms.rows.bodies import Equation
-from linksweep.results.compute import blank, compute, require_scene, sample_status
+from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
 from linksweep.results.dataset import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import laid
@@ -23,20 +24,36 @@ System = tuple[tuple[str, ...], tuple[Equation, ...]]
 """Unknowns and equations."""
 
 
-def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
-    """The square Newton–Euler system of a scene, as the textbook prints it.
+def system(
+    scene: Scene,
+    angles: ArrayLike | None = None,
+    *,
+    theta2: ArrayLike | None = None,
+    theta: ArrayLike | None = None,
+    form: str = "reduced",
+) -> xr.Dataset:
+    """Return the square Newton–Euler system of a scene, as the textbook prints it.
 
     Parameters
     ----------
     scene : Scene
-    theta2 : crank angle or angles [degree]; a single number is an angle here, not a count
-    form : "reduced", nine equations, or "document", a slider-crank's with T14 and its row, as document 3 prints them:
-        nine without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one form
+        A machine, and what happens to it.
+    angles : float or array of angles
+        Angle or angles [degree]; a single number is an angle here, not a count. ``system(scene, 45.0)``, or by the name
+        of the machine's index, as follows.
+    theta2 : float or array of angles, optional
+        The angles of the crank.
+    theta : float or array of angles, optional
+        The positions of a car in a loop.
+    form : {"reduced", "document"}
+        "reduced": nine equations. "document": a slider-crank's with T14 and its row, as document 3 prints them: nine
+        without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one form.
 
     Returns
     -------
-    Dataset with `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy
-    are in N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
+    Dataset
+        With `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy are in
+        N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
 
     Sources, with their misprints mended:
 
@@ -71,8 +88,11 @@ def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
     """
     require_scene(scene)
     refuse(choice_problems("form", form, FORMS))
+    index = scene.mechanism.index
+    angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
+    refuse([f"{index} is missing: give an angle or angles, in degrees"] if angles is None else [])
     scene = in_memory(scene)
-    grid = crank_grid(as_angles(theta2), scene.period, scene.mechanism.index)
+    grid = crank_grid(as_angles(angles), scene.period, index)
     sampled = scene.at(grid)
     status = sample_status(sampled, grid)
     unknowns, equations = of_form(scene, form)
@@ -89,7 +109,7 @@ def system(scene: Scene, theta2: Any, *, form: str = "reduced") -> xr.Dataset:
         "equation": xr.Variable("equation", [equation.label for equation in equations]),
         "unknown": xr.Variable("unknown", list(unknowns)),
     }
-    command = f"linksweep.system(scene, theta2={theta2}, form={form!r})"
+    command = f"linksweep.system(scene, {index}={angles}, form={form!r})"
     return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
 
 

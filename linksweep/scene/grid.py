@@ -17,17 +17,17 @@ from linksweep.scene.units import unit_problems
 NAMES = ("cos2", "sin2", "cos2_lo", "sin2_lo", "radians2")
 
 
-def crank_grid(theta2: Any, period: float, dim: str = "theta2") -> Grid:
-    """The grid of a count (arange(N)·360/N) or of given angles [degree], in degrees or as quantities of pint.
+def crank_grid(angles: Any, period: float, dim: str = "theta2") -> Grid:
+    """Return the grid of a count (arange(N)·360/N) or of angles themselves, in degrees or as quantities of pint.
 
-    Raises ValueError for anything else.
+    Raises ValueError for anything else, naming the parameter `dim`.
     """
-    if isinstance(theta2, int | np.integer) and not isinstance(theta2, bool | np.timedelta64):
-        if theta2 < 1:
-            raise ValueError(f"theta2 = {quote(theta2)}: a count of angles must be at least 1")
-        require_memory(f"{dim} = {quote(theta2)}", 8.0 * theta2 * (1 + len(NAMES)))
-        return _uniform(int(theta2), period, dim)
-    return _grid(_angles(theta2), 0.0, dim)
+    if isinstance(angles, int | np.integer) and not isinstance(angles, bool | np.timedelta64):
+        if angles < 1:
+            raise ValueError(f"{dim} = {quote(angles)}: a count of angles must be at least 1")
+        require_memory(f"{dim} = {quote(angles)}", 8.0 * angles * (1 + len(NAMES)))
+        return _uniform(int(angles), period, dim)
+    return _grid(_angles(angles, dim), 0.0, dim)
 
 
 def whole_turns(angles: np.ndarray, turn: float) -> float | None:
@@ -43,21 +43,21 @@ def _uniform(count: int, period: float, dim: str) -> Grid:
     return _grid(np.arange(count) * (period / count), period, dim)
 
 
-def _angles(theta2: Any) -> np.ndarray:
-    refuse(unit_problems("theta2", getattr(theta2, "attrs", {}).get("units"), "angle"))
+def _angles(values: Any, name: str) -> np.ndarray:
+    refuse(unit_problems(name, getattr(values, "attrs", {}).get("units"), "angle"))
     try:
-        angles = np.asarray(all_to_float64(theta2, "angle"))
+        angles = np.asarray(all_to_float64(values, "angle"))
     except ValueError:  # rows that differ in length
         angles = np.empty(0)
     if angles.dtype.kind not in "fiu" or angles.ndim > 1 or angles.size == 0:
-        raise ValueError(f"theta2 = {quote(theta2)}: must be a count of angles, or a list of angles in degrees")
+        raise ValueError(f"{name} = {quote(values)}: must be a count of angles, or a list of angles in degrees")
     if angles.ndim == 0:
-        raise ValueError(f"theta2 = {quote(theta2)}: a count is a whole number; for one angle write [{angles}]")
+        raise ValueError(f"{name} = {quote(values)}: a count is a whole number; for one angle write [{angles}]")
     angles = angles.astype(float)
     sound = np.isfinite(angles)
     if not sound.all():
         k = int(np.argmin(sound))
-        raise ValueError(f"theta2[{k}] = {angles[k]}: every angle must be a finite number of degrees")
+        raise ValueError(f"{name}[{k}] = {angles[k]}: every angle must be a finite number of degrees")
     return angles
 
 

@@ -56,6 +56,7 @@ SHOWN_AFTER = 1.0
 def study(
     scene: Any,
     path: str | os.PathLike[str],
+    *,
     of: Iterable[str] | None = None,
     chunk: int | None = None,
     threads: int | None = None,
@@ -119,7 +120,7 @@ def study(
     ending_of(path, (".nc",), ADVICE)
     client = client_of(client)
     scene = in_memory(scene)
-    usual = CHUNK if scene.steady or "theta2" in options else SLOW_CHUNK
+    usual = CHUNK if scene.steady or scene.mechanism.index in options else SLOW_CHUNK
     job = Job(scene, None if of is None else requested("of", of), options, int(chunk or usual))
     target = target_of(path)
     if not target.exists():

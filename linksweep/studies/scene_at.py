@@ -15,12 +15,12 @@ from linksweep.scene.designs.choose import chosen, design_labels, places
 from linksweep.scene.scene import Scene
 
 
-def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, **labels: Any) -> Scene:
+def scene_at(ds: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, **labels: Any) -> Scene:
     """Select one design of a study as a scene of plain numbers.
 
     Parameters
     ----------
-    study : Dataset or Scene
+    ds : Dataset or Scene
         Dataset of linksweep over designs (peaks, a cycle, a Pareto front), or a scene over designs.
     where : mapping, default None
         Labels by dim, for names that are no Python words.
@@ -47,12 +47,12 @@ def scene_at(study: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, 
     True
     """
     request = {**(where or {}), **labels}
-    if isinstance(study, Scene):
-        return chosen(study, request)
-    if not isinstance(study, xr.Dataset):
-        raise ValueError(f"study = {quote(study)}: must be a Dataset of linksweep, or a Scene")
-    known = _labels(study)
-    one = study.isel(places({dim: label for dim, label in request.items() if dim in known}, known))
+    if isinstance(ds, Scene):
+        return chosen(ds, request)
+    if not isinstance(ds, xr.Dataset):
+        raise ValueError(f"ds = {quote(ds)}: must be a Dataset of linksweep, or a Scene")
+    known = _labels(ds)
+    one = ds.isel(places({dim: label for dim, label in request.items() if dim in known}, known))
     scene = scene_of(one)
     remaining = {dim: label for dim, label in request.items() if dim not in known}
     return chosen(scene, remaining | _chosen_already(scene, one, request))

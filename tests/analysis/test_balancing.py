@@ -180,14 +180,14 @@ def test_the_loads_stay_what_they_are():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: ls.counterweights(LOOP, 0.1), "which has no links"),
-        (lambda: ls.counterweights(PRESS, 0.0), "radius = 0 m: must be greater than 0"),
-        (lambda: ls.counterweights(PRESS, {"crank": 0.05}), "radius.rocker: missing; give it"),
-        (lambda: ls.counterweights(PRESS, 0.05, fraction=0.5), "fraction = 0.5: must be left out"),
+        (lambda: ls.counterweights(LOOP, radius=0.1), "which has no links"),
+        (lambda: ls.counterweights(PRESS, radius=0.0), "radius = 0 m: must be greater than 0"),
+        (lambda: ls.counterweights(PRESS, radius={"crank": 0.05}), "radius.rocker: missing; give it"),
+        (lambda: ls.counterweights(PRESS, radius=0.05, fraction=0.5), "fraction = 0.5: must be left out"),
         (lambda: ls.Counterweight("crank", -1.0), "mass = -1 kg: must be at least 0"),
         (lambda: ls.with_counterweights(PRESS, [ls.Counterweight("rod", 1.0)]), "counterweights.link = 'rod'"),
         (lambda: ls.with_counterweights(PRESS, [3.0]), "counterweights = 3.0: must be a Counterweight"),
-        (lambda: ls.regressor(PRESS, ["F32"]), "outputs: nothing is named 'F32'"),
+        (lambda: ls.regressor(PRESS, ["F32"]), "of: nothing is named 'F32'"),
         (lambda: ls.regressor(ls.example("engine"), ["T12"]), "friction is not 0"),
         (lambda: ls.regressor(LOOP, ["speed"]), "scene is of a LoopTrack"),
     ],
@@ -296,13 +296,19 @@ def test_what_cannot_be_bettered_is_left_alone():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: ls.best_counterweights(PRESS, {"F32_max": 1.0}, 0.05), "minimize: nothing is named 'F32_max'"),
-        (lambda: ls.best_counterweights(PRESS, {}, 0.05), "minimize = {}: must be weights by name"),
-        (lambda: ls.best_counterweights(PRESS, {"Fs_rms": -1.0}, 0.05), "minimize.Fs_rms = -1: must be greater than 0"),
-        (lambda: ls.best_counterweights(PRESS, {"Fs_rms": 1.0}, 0.05, most=0.0), "most = 0 kg: must be greater than 0"),
+        (lambda: ls.best_counterweights(PRESS, {"F32_max": 1.0}, radius=0.05), "minimize: nothing is named 'F32_max'"),
+        (lambda: ls.best_counterweights(PRESS, {}, radius=0.05), "minimize = {}: must be weights by name"),
+        (
+            lambda: ls.best_counterweights(PRESS, {"Fs_rms": -1.0}, radius=0.05),
+            "minimize.Fs_rms = -1: must be greater than 0",
+        ),
+        (
+            lambda: ls.best_counterweights(PRESS, {"Fs_rms": 1.0}, radius=0.05, most=0.0),
+            "most = 0 kg: must be greater than 0",
+        ),
         (
             lambda: ls.best_counterweights(
-                replace(PRESS, omega2=xr.DataArray([1.0, 2.0], dims="s")), {"Fs_rms": 1.0}, 1.0
+                replace(PRESS, omega2=xr.DataArray([1.0, 2.0], dims="s")), {"Fs_rms": 1.0}, radius=1.0
             ),
             "scene has designs over s: give one",
         ),

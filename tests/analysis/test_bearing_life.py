@@ -32,7 +32,7 @@ def pressing(*lengths, omega2=SPEED) -> ls.Scene:
 
 def life_at(scene, pin="C", theta2=720, **bearing) -> xr.Dataset:
     words = {"capacity": CAPACITY} | bearing
-    return ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, ls.Bearing(**words)), theta2).sel(pin=pin)
+    return ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, ls.Bearing(**words)), theta2=theta2).sel(pin=pin)
 
 
 def mu(lengths, degrees):
@@ -126,7 +126,7 @@ def test_a_design_alone_has_the_bits_that_it_has_among_others():
 @pytest.mark.parametrize("theta2", [36, 720])
 @pytest.mark.parametrize("lengths", [(0.12, 0.15, 0.25, 0.2), (0.08, 0.12, 0.11, 0.22)])
 def test_a_toggle_leaves_no_life(lengths, theta2):
-    found = ls.bearings(pressing(*lengths), dict.fromkeys("ABCD", BALL), theta2)
+    found = ls.bearings(pressing(*lengths), dict.fromkeys("ABCD", BALL), theta2=theta2)
     assert (found.life_status == 3).all()
     assert (found.L10 == 0.0).all()
     assert (found.L10h == 0.0).all()

@@ -189,7 +189,7 @@ def test_angles_without_a_result_are_left_out():
 
 @pytest.mark.parametrize("frame", ["ground", "journal", "bearing"])
 def test_load_diagrams_show_these_forces(frame):
-    figure = ls.sweep(PRESS, theta2=90).linksweep.bearings(frame)
+    figure = ls.sweep(PRESS, theta2=90).linksweep.bearings(frame=frame)
     found = ls.bearings(PRESS, theta2=90).sel(frame=frame)
     for ax, (pin, force) in zip(figure.axes, zip("ABCD", ("F12", "F32", "F43", "F14"), strict=True), strict=True):
         (locus,) = (line for line in ax.get_lines() if line.get_label() == f"_locus {force}")
@@ -206,12 +206,12 @@ def test_load_diagrams_show_these_forces(frame):
     ("call", "said"),
     [
         (lambda: ls.bearings(LOOP), "which has no pins"),
-        (lambda: ls.bearings(PRESS, {"E": ls.Bearing()}), "given: nothing is named 'E'"),
-        (lambda: ls.bearings(PRESS, {"A": 3.0}), "given.A = 3.0: must be a Bearing"),
-        (lambda: ls.bearings(PRESS, 3.0), "given = 3.0: must be as"),
+        (lambda: ls.bearings(PRESS, {"E": ls.Bearing()}), "pins: nothing is named 'E'"),
+        (lambda: ls.bearings(PRESS, {"A": 3.0}), "pins.A = 3.0: must be a Bearing"),
+        (lambda: ls.bearings(PRESS, 3.0), "pins = 3.0: must be as"),
         (lambda: ls.Bearing(diameter=-0.02), "diameter = -0.02 m: must be greater than 0"),
         (lambda: ls.Bearing(kind="needle"), "kind = 'needle': must be one of ball, roller"),
-        (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "found: must be what ls.bearings returns"),
+        (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "ds: must be what ls.bearings returns"),
     ],
 )
 def test_refusals(call, said):

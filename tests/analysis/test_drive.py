@@ -221,7 +221,9 @@ def test_what_is_asked_for_is_what_results(scene):
 
 
 def test_a_torque_that_never_changes_needs_no_flywheel():
-    found = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[ls.Load("crank", torque=-4.0)]), 0.01)
+    found = ls.flywheel(
+        ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[ls.Load("crank", torque=-4.0)]), fluctuation=0.01
+    )
     np.testing.assert_allclose([found.drive_torque, found.flywheel_inertia], [4.0, 0.0], atol=1e-12)
 
 

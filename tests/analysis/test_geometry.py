@@ -109,7 +109,7 @@ POINTS = [
 def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
     """By time, from positions beside each angle: dθ2/dt = ω2, and d²θ2/dt² = α2."""
     angles, step = np.arange(5.0, 360.0, 30.0), 1e-2
-    here, left, right = (ls.coupler_curve(scene, at, angles + s, link) for s in (0.0, -step, step))
+    here, left, right = (ls.coupler_curve(scene, at, theta2=angles + s, link=link) for s in (0.0, -step, step))
     turn = np.radians(step)
     for axis in "xy":
         p, v, a = (here[f"{name}{axis}"].values for name in ("P", "vP", "aP"))
@@ -135,7 +135,7 @@ def test_hoekens_straight_line():
     """Hoeken's linkage (Norton, chapter 3): crank 1, ground 2, coupler and rocker 2.5; the tip, as far again beyond C,
     runs along a line to within a hundredth of the crank for nearly half a turn."""
     hoeken = four_bar(1.0, 2.5, 2.5, 2.0)
-    curve = ls.coupler_curve(hoeken, (5.0, 0.0), np.arange(100.0, 261.0, 5.0))
+    curve = ls.coupler_curve(hoeken, (5.0, 0.0), theta2=np.arange(100.0, 261.0, 5.0))
     assert float(np.ptp(curve.Py.values)) < 0.01
     assert float(np.ptp(curve.Px.values)) > 3.0
 

@@ -145,7 +145,9 @@ def test_functions_see_all_pins_and_the_torque_or_what_is_asked_for():
     seen = []
     both = ls.objective(PRESS, MAY_BE, minimize=lambda peaks: seen.append(set(peaks)) or peaks.F32_peak, theta2=8)
     assert {"F12_peak", "F32_peak", "F43_peak", "F14_peak", "T12_peak"} <= seen[-1]
-    asked = ls.objective(PRESS, MAY_BE, lambda peaks: seen.append(set(peaks)) or peaks.F32_peak, of=["F32"], theta2=8)
+    asked = ls.objective(
+        PRESS, MAY_BE, minimize=lambda peaks: seen.append(set(peaks)) or peaks.F32_peak, of=["F32"], theta2=8
+    )
     assert both([0.2, 0.2]) == asked([0.2, 0.2])
     assert seen[-1] == {"F32_peak", "F32_peak_at", "status"}
 

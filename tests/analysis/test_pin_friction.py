@@ -34,7 +34,7 @@ def test_the_force_in_a_massless_rod_touches_both_friction_circles():
     radius = {"B": np.sin(np.arctan(0.1)) * 0.015, "C": np.sin(np.arctan(0.2)) * 0.010}
     pins = {"B": ls.Bearing(diameter=0.03, friction=0.1), "C": ls.Bearing(diameter=0.02, friction=0.2)}
     scene = massless(ls.Load("slider", force=-1000.0))
-    found = ls.pin_friction(scene, pins, theta2=720, outputs=["F43x", "F43y", "F43", "theta3", "omega3", "omega2"])
+    found = ls.pin_friction(scene, pins, theta2=720, of=["F43x", "F43y", "F43", "theta3", "omega3", "omega2"])
     theta3 = np.radians(found.theta3)
     across = np.cos(theta3) * found.F43y - np.sin(theta3) * found.F43x
     at_b, at_c = np.sign(found.omega2 - found.omega3), np.sign(found.omega3)
@@ -55,7 +55,7 @@ def test_the_force_in_a_massless_rod_touches_both_friction_circles():
 def test_energy_in_is_energy_out_and_friction(scene):
     """Friction takes just what the drive gives more than without it; at a steady speed, over a cycle."""
     pins = dict.fromkeys(scene.mechanism.pins, RUBBING)
-    with_friction = ls.pin_friction(scene, pins, theta2=360, outputs=["power"])
+    with_friction = ls.pin_friction(scene, pins, theta2=360, of=["power"])
     without = ls.sweep(scene, theta2=360, outputs=["power"])
     ok = (without.status == 0) & (with_friction.convergence == 0)
     more = (with_friction.power - without.power).where(ok)
@@ -70,7 +70,7 @@ def test_efficiency_of_the_engine():
     ideal = replace(ENGINE, mechanism=replace(ENGINE.mechanism, friction=0.0))
     gas = -float(ls.sweep(ideal, outputs=["power"]).power.mean())
     for scene in (ideal, ENGINE):
-        arrives = -float(ls.pin_friction(scene, pins, outputs=["power"]).power.mean())
+        arrives = -float(ls.pin_friction(scene, pins, of=["power"]).power.mean())
         assert float(ls.pin_friction(scene, pins).efficiency) == pytest.approx(arrives / gas, rel=1e-9)
         assert 0.8 < arrives / gas < 1.0
 
@@ -111,9 +111,9 @@ def test_its_scene_is_the_one_with_friction_as_loads():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"B": ls.Bearing(diameter=0.01)}, "given: no pin has friction"),
-        ({"B": ls.Bearing(friction=0.1)}, "given.B has friction but no diameter: give it"),
-        ({"X": RUBBING}, "given: nothing is named 'X'"),
+        ({"B": ls.Bearing(diameter=0.01)}, "pins: no pin has friction"),
+        ({"B": ls.Bearing(friction=0.1)}, "pins.B has friction but no diameter: give it"),
+        ({"X": RUBBING}, "pins: nothing is named 'X'"),
     ],
 )
 def test_refusals(given, said):

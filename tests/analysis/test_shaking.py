@@ -132,7 +132,7 @@ def test_the_moment_about_d_has_no_arm_of_the_pin_there():
 def test_about_many_points():
     ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 36, outputs=SHAKING)
     x = xr.DataArray([0.0, 0.1], dims="x")
-    about = ls.shaking_moment(ds, (x, 0.0))
+    about = ls.shaking_moment(ds, about=(x, 0.0))
     np.testing.assert_array_equal(about.isel(x=0), ds.Ms)
     np.testing.assert_allclose(about.isel(x=1), ds.Ms - 0.1 * ds.Fsy)
 
@@ -156,10 +156,10 @@ def test_its_peak_is_that_of_the_continuous_revolution():
 
 def test_what_it_refuses():
     ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 12, outputs=SHAKING)
-    with pytest.raises(ValueError, match="ds has no Ms: sweep with outputs="):
+    with pytest.raises(ValueError, match="ds has no Ms: sweep with of="):
         ls.shaking_moment(ds.drop_vars("Ms"))
     with pytest.raises(ValueError, match=r"about = 3.0: must be a pair \(x, y\)"):
-        ls.shaking_moment(ds, 3.0)
+        ls.shaking_moment(ds, about=3.0)
     with pytest.raises(ValueError, match="ds has no Fsy"):
         ls.plot.hodograph(ds.drop_vars("Fsy"))
 

@@ -260,7 +260,7 @@ def test_geometry_that_never_closes(capsys):
         (["peaks", "press.toml", "--theta2", "-3"], "theta2 = -3: a count of angles must be at least 1"),
         (
             ["sweep", "press.toml", "-o", "c.nc", "--outputs", "t12"],
-            "outputs: nothing is named 't12'; did you mean",
+            "of: nothing is named 't12'; did you mean",
         ),
         (["sweep", "press.toml", "-o", "no/c.nc"], "no/c.nc: there is no folder no; make it first"),
         (["demo", "-o", "no/demo"], "no/demo.nc: there is no folder no; make it first"),
@@ -324,7 +324,7 @@ def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
             r"c.xyz: its ending must be \.png or \.pdf or \.svg",
         ),
         (["peaks", "press.toml", "--of", " ,"], 2, "argument --of: must be names, separated by commas"),
-        (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2: invalid int value: 'many'"),
+        (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2/--theta: invalid int value: 'many'"),
     ],
 )
 def test_help_and_usage(arguments, code, said, capsys):

@@ -98,7 +98,9 @@ def test_balance(told):
 
 def test_a_fraction_of_an_engine_is_balanced(told):
     rows = told("balance", "engine.toml", *RADIUS, "--fraction", "1")
-    assert number(rows["crank"][0]) == pytest.approx(ls.counterweights(ENGINE, 0.06, fraction=1.0)[0].mass, rel=1e-4)
+    assert number(rows["crank"][0]) == pytest.approx(
+        ls.counterweights(ENGINE, radius=0.06, fraction=1.0)[0].mass, rel=1e-4
+    )
 
 
 def test_orders(told):

@@ -49,7 +49,7 @@ def scene(random, speeds: dict[str, int], masses: dict[str, int]) -> ls.Scene:
 
 
 def results(of: ls.Scene) -> list[xr.Dataset]:
-    return [ls.sweep(of, 12, OF), ls.peaks(of, of=OF), ls.peaks(of, of=OF, theta2=12)]
+    return [ls.sweep(of, 12, of=OF), ls.peaks(of, of=OF), ls.peaks(of, of=OF, theta2=12)]
 
 
 @pytest.mark.parametrize("count", [18, 19, 20, 30])

@@ -54,7 +54,7 @@ def test_superposed_cycles_are_those_of_the_textbooks_matrix(swept, way, monkeyp
 @pytest.mark.parametrize("swept", SWEPT)
 def test_superposed_peaks_are_the_largest_of_superposed_cycles(swept):
     machine = scene(batch(5, *SWEPT[swept]), LOADS)
-    cycle = ls.sweep(machine, TURN, ["F32", "T12"], solver="superposed")
+    cycle = ls.sweep(machine, TURN, of=["F32", "T12"], solver="superposed")
     peaks = ls.peaks(machine, ["F32", "T12"], theta2=TURN, solver="superposed")
     np.testing.assert_allclose(peaks.F32_peak, cycle.F32.max("theta2"), rtol=1e-15)
     np.testing.assert_allclose(peaks.T12_peak, abs(cycle.T12).max("theta2"), rtol=1e-15)
@@ -73,7 +73,7 @@ def test_linear_numbers_along_several_dims():
     machine = scene(GENERAL)
     coupler = replace(machine.mechanism.coupler, mass=masses)
     machine = replace(machine, mechanism=replace(machine.mechanism, coupler=coupler), omega2=speeds)
-    plain, summed = (ls.sweep(machine, TURN, ["T12", "F43"], solver=solver) for solver in ("fast", "superposed"))
+    plain, summed = (ls.sweep(machine, TURN, of=["T12", "F43"], solver=solver) for solver in ("fast", "superposed"))
     xr.testing.assert_allclose(plain, summed, rtol=1e-13, atol=1e-10)
     request, fewer = plans(machine, "T12")
     assert work(fewer, "mass", "speed") < work(request, "mass", "speed") / 5
@@ -85,7 +85,7 @@ def test_other_machines_over_their_speed(name):
     machine = ls.example(name)
     machine = replace(machine, omega2=machine.omega2 * xr.DataArray([0.3, 1.0, 2.0], dims="speed"))
     forces = machine.mechanism.unknowns(machine.drive)
-    plain, summed = (ls.sweep(machine, TURN, forces, solver=solver) for solver in ("fast", "superposed"))
+    plain, summed = (ls.sweep(machine, TURN, of=forces, solver=solver) for solver in ("fast", "superposed"))
     for force in forces:
         largest = abs(plain[force]).max().item()
         np.testing.assert_allclose(summed[force], plain[force], rtol=0.0, atol=1e-13 * largest)
@@ -136,7 +136,7 @@ def test_a_study_takes_the_word_along(tmp_path):
     [
         (lambda s: ls.peaks(s, solver="superposed"), r'solver = "superposed": is for samples.*give theta2'),
         (lambda s: ls.peaks(s, theta2=9, solver="dense"), r"solver = 'dense': must be one of fast, superposed"),
-        (lambda s: ls.sweep(s, 9, ["error_bound"], solver="superposed"), r"outputs: error_bound is of what"),
+        (lambda s: ls.sweep(s, 9, of=["error_bound"], solver="superposed"), r"of: error_bound is of what"),
     ],
 )
 def test_what_cannot_be_superposed_is_refused(call, said):

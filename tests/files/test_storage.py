@@ -53,7 +53,7 @@ def moving() -> ls.Scene:
 SCENES = {"plain": plain, "batch": batch, "moving": moving}
 JOBS = {
     "sweep": lambda scene: ls.sweep(scene, 12),
-    "sweep at angles": lambda scene: ls.sweep(scene, SOME, ["F32", "cond", "power_residual"]),
+    "sweep at angles": lambda scene: ls.sweep(scene, SOME, of=["F32", "cond", "power_residual"]),
     "peaks": lambda scene: ls.peaks(scene, theta2=12),
     "means": lambda scene: ls.peaks(scene, of=["F32_mean", "omega4_rms"], theta2=12),
     "system": lambda scene: ls.system(scene, SOME),
@@ -141,10 +141,10 @@ def test_the_scene_of_a_file_gives_equal_arrays(scene, job, tmp_path):
 def test_functions_come_back_whole_however_few_angles_were_swept():
     scene = scene_of(ls.sweep(moving(), 12))
     assert scene.omega2.dims == ("theta2",)
-    finer = ls.sweep(scene, 240, ["T12"]).T12
-    np.testing.assert_array_equal(finer, ls.sweep(moving(), 240, ["T12"]).T12)
-    between = ls.sweep(scene, 7 * 240, ["T12"]).T12
-    np.testing.assert_allclose(between, ls.sweep(moving(), 7 * 240, ["T12"]).T12, rtol=0.0, atol=1e-7)
+    finer = ls.sweep(scene, 240, of=["T12"]).T12
+    np.testing.assert_array_equal(finer, ls.sweep(moving(), 240, of=["T12"]).T12)
+    between = ls.sweep(scene, 7 * 240, of=["T12"]).T12
+    np.testing.assert_allclose(between, ls.sweep(moving(), 7 * 240, of=["T12"]).T12, rtol=0.0, atol=1e-7)
 
 
 def test_a_design_taken_from_a_batch_still_knows_its_scene():

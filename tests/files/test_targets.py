@@ -24,7 +24,7 @@ WRITERS = {
     "save": (".nc", lambda path: ls.save(ls.check(ls.example("press")), path)),
     "CSV": (".csv", lambda path: ls.peaks(ls.example("press"), theta2=8).linksweep.to_csv(path)),
     "report": (".html", lambda path: ls.report(ls.example("loop"), path)),
-    "film": (".gif", lambda path: ls.plot.animate(ls.example("press"), 2).save(path)),
+    "film": (".gif", lambda path: ls.plot.animate(ls.example("press"), frames=2).save(path)),
     "figure": (".png", lambda path: write_figure(ls.sweep(ls.example("loop"), 8).linksweep.cycle(), path)),
     "study": (".nc", lambda path: ls.study(ls.example("press"), path, of=["T12"])),
 }
@@ -92,7 +92,7 @@ ENGINE = ls.example("engine")
         (lambda path: ls.save(ENGINE, path), ".toml or .nc"),
         (lambda path: ls.check(ENGINE).linksweep.to_csv(path), ".csv"),
         (lambda path: ls.study(ENGINE, path), ".nc: a study file is NetCDF; ls.open_study"),
-        (lambda path: ls.plot.animate(ENGINE, 2).save(path), ".gif or .html"),
+        (lambda path: ls.plot.animate(ENGINE, frames=2).save(path), ".gif or .html"),
         (lambda path: ls.report(ENGINE, path), ".html or .htm: a report is a page"),
     ],
 )

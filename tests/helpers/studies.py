@@ -130,10 +130,10 @@ def content(folder: Path) -> dict[str, bytes]:
 
 def stopped_study(folder: Path, patch) -> tuple[Path, bytes]:
     """A study of `many` that was stopped after three of its ten chunks; and the file that it should become."""
-    ls.study(many(), folder / "whole.nc", ["F32"], chunk=6)
+    ls.study(many(), folder / "whole.nc", of=["F32"], chunk=6)
     path = folder / "study.nc"
     with patch.context() as until_then:
         stop_after(3, until_then)
         with pytest.raises(KeyboardInterrupt, match=r"^stopped; 3 of 10 chunks are done: to go on from there, run the"):
-            ls.study(many(), path, ["F32"], chunk=6)
+            ls.study(many(), path, of=["F32"], chunk=6)
     return path, (folder / "whole.nc").read_bytes()

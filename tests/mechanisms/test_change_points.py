@@ -168,7 +168,7 @@ def test_accelerations_beside_a_fold_keep_their_digits(shape):
 def test_a_parallelogram_turns_as_its_crank_does():
     """Its coupler keeps its direction, and its rocker turns with the crank: all the way round, beside the folds too."""
     theta2 = np.concatenate([[*beside(0.0, [1e-6, 1e-4]), *beside(180.0, [1e-6, 1e-4])], np.arange(1.0, 360.0, 7.0)])
-    cycle = ls.sweep(to_scene(flat((0.2, 0.5, 0.2, 0.5))), np.sort(theta2), ["omega3", "omega4", "alpha3", "alpha4"])
+    cycle = ls.sweep(to_scene(flat((0.2, 0.5, 0.2, 0.5))), np.sort(theta2), of=["omega3", "omega4", "alpha3", "alpha4"])
     for name, expected in (("omega3", 0.0), ("omega4", 3.0), ("alpha3", 0.0), ("alpha4", -2.0)):
         np.testing.assert_allclose(cycle[name], expected, rtol=0.0, atol=1e-14, err_msg=name)
 

@@ -55,7 +55,7 @@ def test_example_17_4_from_exact_arithmetic():
         "a_total": mp.hypot(a_radial, a_tangential),
         "a_total_angle": 120 - mp.degrees(mp.atan2(a_tangential, a_radial)),
     }
-    found = ls.sweep(EXAMPLE, theta2=[30.0], outputs=ALL)
+    found = ls.sweep(EXAMPLE, theta=[30.0], outputs=ALL)
     for name, value in expected.items():
         assert float(found[name][0]) == pytest.approx(float(value), rel=1e-13), name
     # as printed, with the digits of the page and a few more
@@ -70,13 +70,13 @@ def test_the_system_is_the_page():
     np.testing.assert_array_equal(page.matrix, np.eye(2))
     right = [700.0 * (9.81 * np.cos(np.pi / 6.0) + 100.0**2 / 30.0), -9.81 * 0.5 + 10_000.0 / 700.0]
     np.testing.assert_allclose(page.rhs, right, rtol=1e-14)
-    dense, fast = (ls.sweep(EXAMPLE, theta2=90, solver=solver) for solver in ("dense", "fast"))
+    dense, fast = (ls.sweep(EXAMPLE, theta=90, solver=solver) for solver in ("dense", "fast"))
     xr.testing.assert_allclose(dense, fast, rtol=1e-15)
 
 
 def test_exact_at_the_quarters():
     """Bottom, side, top, side, in rational numbers."""
-    found = ls.sweep(EXAMPLE, theta2=4)
+    found = ls.sweep(EXAMPLE, theta=4)
     centripetal, g, push = Fraction(10000, 30), Fraction(9.81), Fraction(10000, 700)
     force = [700 * (centripetal + part) for part in (g, 0, -g, 0)]
     np.testing.assert_allclose(found.normal_force, [float(value) for value in force], rtol=4e-16)
@@ -90,7 +90,7 @@ def test_speed_follows_the_work_of_thrust_and_gravity():
     """v dv = a_T R dθ, integrated with 50 digits, in gravity at any angle."""
     for scene in random_scenes(6):
         R, m, v0, F, gx, gy = map(mp.mpf, numbers(scene))
-        cycle = ls.sweep(scene, theta2=48)
+        cycle = ls.sweep(scene, theta=48)
         there = cycle.where(cycle.status == 0, drop=True)
         assert there.sizes["theta"] > 2
         for theta in there.theta.values[:: max(1, there.sizes["theta"] // 4)]:
@@ -105,7 +105,7 @@ def test_speed_follows_the_work_of_thrust_and_gravity():
 
 def test_theta_is_a_place_on_one_lap():
     scene = energy(45.0, 3000.0)
-    once, again = ls.sweep(scene, theta2=[30.0, 330.0]), ls.sweep(scene, theta2=[390.0, -30.0])
+    once, again = ls.sweep(scene, theta=[30.0, 330.0]), ls.sweep(scene, theta=[390.0, -30.0])
     for name in ("speed", "normal_force", "a_tangential"):
         np.testing.assert_allclose(again[name], once[name], rtol=1e-14)
 
@@ -154,7 +154,7 @@ def test_status_is_what_the_way_there_says():
         force = squared / R - (gy * np.cos(a) - gx * np.sin(a))
         failed = (squared < 0.0) | (force < 0.0)
         k = int(np.argmax(failed)) if failed.any() else len(a)
-        status = ls.sweep(scene, theta2=720).status.values
+        status = ls.sweep(scene, theta=720).status.values
         word = 0 if k == len(a) else 2 if squared[k] < 0.0 else 1
         expected = np.where(np.arange(720) * 100 < k, 0, word)
         differ = np.flatnonzero(status != expected)
@@ -178,7 +178,7 @@ def test_the_least_entry_speed_is_the_least():
 
 def test_peaks_are_those_of_the_whole_lap():
     for scene in random_scenes(12, seed=7):
-        fine = ls.sweep(scene, theta2=36_000, outputs=["normal_force", "speed", "a_tangential"])
+        fine = ls.sweep(scene, theta=36_000, outputs=["normal_force", "speed", "a_tangential"])
         coarse = ls.peaks(scene, of=["normal_force", "speed", "a_tangential"])
         for name, samples in fine.data_vars.items():
             if name != "status":

@@ -263,7 +263,7 @@ def test_peaks_are_unbounded_where_it_jams():
 
 def test_breakdown_has_the_share_of_friction():
     scene = working()
-    shares = ls.breakdown(scene, "F43x", 36)
+    shares = ls.breakdown(scene, "F43x", theta2=36)
     total = ls.sweep(scene, 36).F43x
     np.testing.assert_allclose(shares.F43x.sum("source"), total, rtol=1e-9)
     smooth = ls.sweep(working(friction=0.0), 36).F43x

@@ -25,7 +25,7 @@ def places(ax, name):
 
 @pytest.mark.parametrize("k", [0, 3])
 def test_throws_stand_side_by_side_where_their_cranks_are(k):
-    film = ls.plot.animate(FOUR, 12)
+    film = ls.plot.animate(FOUR, frames=12)
     film.show(k)
     *throws, curve = film.figure.axes
     assert (len(film), len(throws)) == (12, 4)
@@ -42,7 +42,7 @@ def test_throws_stand_side_by_side_where_their_cranks_are(k):
 
 
 def test_banks_stand_about_one_crank():
-    film = ls.plot.animate(TWIN, 8)
+    film = ls.plot.animate(TWIN, frames=8)
     film.show(2)
     throw, _ = film.figure.axes
     np.testing.assert_allclose(places(throw, "B"), [(-RADIUS, 0.0)] * 2, atol=1e-12)  # 180 degrees, and one throw
@@ -62,7 +62,7 @@ def test_a_report_tells_what_the_results_do(tmp_path):
     text = path.read_text(encoding="utf-8")
     worst, mains = ls.peaks(FOUR, of=["T12", "Fs", "F32"]), ls.bearings(FOUR)
     shown = [worst.T12_min, worst.Fs_peak, worst.F32_peak[2], *mains.F_peak, *mains.equivalent_load]
-    for value in [*shown, ls.flywheel(FOUR, 0.02).flywheel_inertia, ls.duty(FOUR).work_fed]:
+    for value in [*shown, ls.flywheel(FOUR, fluctuation=0.02).flywheel_inertia, ls.duty(FOUR).work_fed]:
         assert f'value="{float(value)!r}"' in text
     assert text.count("<img") == 4
 

@@ -160,7 +160,7 @@ def test_ticks_of_a_coarse_sweep_lie_on_the_drawn_curve():
 @pytest.mark.parametrize("pin", PINS)
 def test_link_axes_keep_the_magnitude(cycles, pin):
     ground, link = (
-        np.hypot(*line(plot.bearing(cycles["press"], pin, frame), f"_locus {pin}").get_data())
+        np.hypot(*line(plot.bearing(cycles["press"], pin, frame=frame), f"_locus {pin}").get_data())
         for frame in ("ground", "link")
     )
     np.testing.assert_allclose(link, ground, rtol=1e-12)
@@ -172,13 +172,13 @@ def test_the_force_on_a_massless_link_without_loads_lies_along_it(pin, massless)
     links[massless] = ls.Link(length=links[massless].length, mass=0.0, inertia=0.0)
     scene = ls.Scene(ls.FourBar(*links, ground=0.20), 30.0, loads=[ls.Load("rocker", torque=-12.0)] * (massless == 1))
     ds = ls.sweep(scene, outputs=[f"{pin}x", f"{pin}y"])  # without the link's angle
-    x, y = line(plot.bearing(ds, pin, "link"), f"_locus {pin}").get_data()
+    x, y = line(plot.bearing(ds, pin, frame="link"), f"_locus {pin}").get_data()
     assert np.abs(y).max() < 1e-12 * np.abs(x).max()
 
 
 def test_crank_axes_at_90_degrees_and_the_reaction(cycles):
     ds = cycles["press"].sel(theta2=[60.0, 90.0, 120.0])
-    x, y = line(plot.bearing(ds, "F32", "link"), "_locus F32").get_data()
+    x, y = line(plot.bearing(ds, "F32", frame="link"), "_locus F32").get_data()
     at = np.flatnonzero(np.isin(with_peaks(ds).theta2, ds.theta2))
     x, y = x[at], y[at]
     np.testing.assert_allclose((x[1], y[1]), (ds.F32y[1], -ds.F32x[1]), rtol=1e-12)
@@ -304,7 +304,7 @@ def test_what_is_missing_is_named(cycles):
     ds = cycles["press"]
     kinematics = ds[["theta3", "status"]]
     for draw, word in ((plot.forces, "F12"), (plot.torque, "T12"), (plot.bearing, "F32x"), (plot.cycle, "F12")):
-        with pytest.raises(ValueError, match=f"sweep with outputs=.*{word}"):
+        with pytest.raises(ValueError, match=f"sweep with of=.*{word}"):
             draw(kinematics)
     with pytest.raises(ValueError, match="pin = 'F33': must be one of F12"):
         plot.bearing(ds, "F33")

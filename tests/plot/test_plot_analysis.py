@@ -29,14 +29,14 @@ def test_the_torque_with_a_flywheel_is_the_mean_of_that_without():
 
 def test_a_flywheel_that_does_not_turn_fully_is_refused():
     found = ls.flywheel(SWING, fluctuation=0.02)
-    with pytest.raises(ValueError, match="found has no speed at some angle: it stalls, or does not turn fully"):
+    with pytest.raises(ValueError, match="ds has no speed at some angle: it stalls, or does not turn fully"):
         ls.plot.flywheel(found)
 
 
 @pytest.mark.parametrize("frame", ["ground", "journal"])
 def test_three_pins_are_compared_in_a_fourth_panel(frame):
     cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))
-    figure = cycle.linksweep.bearings(frame)
+    figure = cycle.linksweep.bearings(frame=frame)
     *panels, together = figure.axes
     assert together.get_title(loc="left") == "All to one scale [N]"
     for panel, force in zip(panels, ("F12", "F32", "F43"), strict=True):
@@ -62,7 +62,7 @@ def test_shares_that_grow_without_bound_leave_the_rest_to_be_seen():
     ("below", "said"), [(2000.0, "kept up to "), (100.0, "kept at none")], ids=["beyond the axis", "not even at rest"]
 )
 def test_a_limit_that_is_not_on_the_axis_is_said_in_the_legend(below, said):
-    ax = ls.plot.over_speed(PRESS, "F32", np.linspace(5.0, 30.0, 6), below=below)
+    ax = ls.plot.over_speed(PRESS, "F32", speeds=np.linspace(5.0, 30.0, 6), below=below)
     legend = [text.get_text() for text in ax.get_legend().get_texts()]
     assert said in legend[-1] and legend[-1].startswith(f"limit, {below:#.4g}".rstrip("."))
     assert texts(ax) == []
@@ -72,7 +72,7 @@ def test_a_limit_that_is_not_on_the_axis_is_said_in_the_legend(below, said):
 
 def test_peaks_without_bound_are_not_an_empty_plot():
     with pytest.raises(ValueError, match="F32 grows without bound at every speed"):
-        ls.plot.over_speed(SWING, "F32", [10.0, 20.0])
+        ls.plot.over_speed(SWING, "F32", speeds=[10.0, 20.0])
 
 
 def test_what_is_balanced_away_is_shown_as_nothing():

@@ -156,7 +156,7 @@ def test_the_guides_moment_is_no_drive_torque(drive, torque):
     ax = plot.torque(ds)
     assert f"_{{{torque[1:]}}}" in ax.get_ylabel()
     assert line(ax, f"_peak {torque}").get_ydata()[0] in (with_peaks(ds)[torque].max(), *ax.get_ylim())
-    with pytest.raises(ValueError, match=f"no {torque}: sweep with outputs=.*'{torque}'"):
+    with pytest.raises(ValueError, match=f"no {torque}: sweep with of=.*'{torque}'"):
         plot.torque(ds[["T14", "status"]])
 
 
@@ -170,7 +170,7 @@ def test_guide_axes_part_normal_force_and_friction(cycles):
     for name in ("engine", "crossed"):
         scene, angles = SCENES[name], with_peaks(cycles[name]).theta2.values
         expected = ls.sweep(scene, angles, outputs=["friction_force", "normal_force"])
-        ax = plot.bearing(cycles[name], "F14", "link")
+        ax = plot.bearing(cycles[name], "F14", frame="link")
         x, y = line(ax, "_locus F14").get_data()
         np.testing.assert_allclose(x[:-1], expected.friction_force, atol=1e-9 * np.abs(y).max())
         np.testing.assert_allclose(y[:-1], expected.normal_force, atol=1e-9 * np.abs(y).max())
@@ -181,10 +181,10 @@ def test_guide_axes_part_normal_force_and_friction(cycles):
 def test_the_rods_axes_and_the_rockers():
     rod = ls.Link(0.2, mass=0.0, inertia=0.0)
     scene = ls.Scene(ls.SliderCrank(ls.Bar(0.06, **BAR), rod, slider_mass=0.8, friction=0.1), 30.0)
-    x, y = line(plot.bearing(ls.sweep(scene), "F43", "link"), "_locus F43").get_data()
+    x, y = line(plot.bearing(ls.sweep(scene), "F43", frame="link"), "_locus F43").get_data()
     assert np.abs(y).max() < 1e-12 * np.abs(x).max()  # a massless rod is pulled along itself
     ds = ls.sweep(SCENES["offset rocker"])
-    x, y = line(plot.bearing(ds, "F34", "link"), "_locus F34").get_data()
+    x, y = line(plot.bearing(ds, "F34", frame="link"), "_locus F34").get_data()
     assert np.abs(x).max() < 1e-12 * np.abs(y).max()  # the block presses squarely on the rocker
 
 
@@ -260,8 +260,8 @@ def test_one_design_of_many_is_drawn_by_its_own_slide_angle():
     loads = [ls.Load("slider", force=(-50.0, 0.0), frame="link")]
     many = ls.sweep(ls.Scene(slider_crank(slide_angle=angles), 20.0, loads=loads))
     with pytest.raises(ValueError, match=r"slide \(2\)"):
-        plot.bearing(many, "F14", "link")
-    x, y = line(plot.bearing(many.isel(slide=1), "F14", "link"), "_locus F14").get_data()
+        plot.bearing(many, "F14", frame="link")
+    x, y = line(plot.bearing(many.isel(slide=1), "F14", frame="link"), "_locus F14").get_data()
     assert np.abs(x).max() < 1e-9 * np.abs(y).max()  # without friction the guide pushes across itself
 
 

@@ -175,7 +175,7 @@ def test_contours_lie_where_their_values_are():
 
 def test_a_scatter_shows_every_design_and_the_front_by_its_definition():
     ds = sample(200)
-    ax = ls.plot.scatter(ds, "F32_peak", "T12_peak")
+    ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
     np.testing.assert_array_equal(ax.collections[0].get_offsets(), np.stack([ds.F32_peak, ds.T12_peak], axis=-1))
     points = [(float(x), float(y)) for x, y in zip(ds.F32_peak, ds.T12_peak, strict=True)]
     front = sorted(p for p in points if not any(q[0] <= p[0] and q[1] <= p[1] and q != p for q in points))
@@ -188,12 +188,12 @@ def test_a_scatter_shows_every_design_and_the_front_by_its_definition():
 
 def test_more_can_be_better_in_a_scatter():
     ds = sample(50)
-    ax = ds.linksweep.scatter("crank.length", "T12_peak", maximize="crank.length")
+    ax = ds.linksweep.scatter(x="crank.length", y="T12_peak", maximize="crank.length")
     drawn = ax.lines[0].get_xydata()
     front = ls.pareto(ds, minimize=["T12_peak"], maximize=["crank.length"])
     assert sorted(map(tuple, drawn)) == sorted(zip(front["crank.length"].values, front.T12_peak.values, strict=True))
     assert (np.diff(drawn[:, 0]) <= 0.0).all()
-    assert not ls.plot.scatter(ds, "F32_peak", "T12_peak", front=False).lines
+    assert not ls.plot.scatter(ds, x="F32_peak", y="T12_peak", front=False).lines
 
 
 def test_colours_and_what_is_left_out_of_a_scatter():
@@ -201,7 +201,7 @@ def test_colours_and_what_is_left_out_of_a_scatter():
     ds["status"][:5] = [2, 2, 3, 2, 1]
     ds["T12_peak"][4] = np.nan
     ds["F32_peak"][5] = np.inf
-    ax = ls.plot.scatter(ds, "F32_peak", "T12_peak", color="crank.length")
+    ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak", color="crank.length")
     np.testing.assert_array_equal(ax.collections[0].get_array(), ds["crank.length"][6:])
     assert len(ax.collections[0].get_offsets()) == 24
     assert colour_bar(ax).get_ylabel() == "crank length [m]"
@@ -211,16 +211,16 @@ def test_colours_and_what_is_left_out_of_a_scatter():
 def test_a_scatter_keeps_the_front_on_its_scale_and_takes_a_logarithmic_one_for_many_sizes():
     ds = sample(100)
     ds["F32_peak"][7], ds["T12_peak"][7] = 1.0, 1e6  # alone out there, but on the front
-    ax = ls.plot.scatter(ds, "F32_peak", "T12_peak")
+    ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
     assert ax.get_xscale() == ax.get_yscale() == "log"
     assert ax.get_xlim()[0] < 1.0 and ax.get_ylim()[1] > 1e6
     ds["F32_peak"][8], ds["T12_peak"][7] = 1e6, 150.0
-    assert ls.plot.scatter(ds, "F32_peak", "T12_peak").get_xlim()[1] < 1000.0
+    assert ls.plot.scatter(ds, x="F32_peak", y="T12_peak").get_xlim()[1] < 1000.0
 
 
 def test_very_many_designs_are_thinned_and_said_to_be():
     ds = sample(100_000)
-    ax = ls.plot.scatter(ds, "F32_peak", "T12_peak")
+    ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
     shown = {tuple(point) for point in ax.collections[0].get_offsets().data}
     assert len(shown) == 20_000
     assert shown <= set(zip(ds.F32_peak.values, ds.T12_peak.values, strict=True))
@@ -297,7 +297,7 @@ def test_plots_are_drawn_where_they_are_told_and_a_real_study_is_one():
     may_be = {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}
     study = ls.peaks(ls.sample(ls.example("press"), may_be, n=16), of=["F32", "T12"], theta2=36)
     figure, (left, right) = plt.subplots(1, 2)
-    assert ls.plot.scatter(study, "F32_peak", "T12_peak", ax=left) is left
+    assert ls.plot.scatter(study, x="F32_peak", y="T12_peak", ax=left) is left
     assert ls.plot.parallel_coordinates(study, ax=right) is right
     assert axis_names(right)[:2] == ["coupler length\n[m]", "rocker length\n[m]"]
     figure.canvas.draw()
@@ -312,12 +312,15 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
     ("draw", "said"),
     [
         (lambda: ls.plot.heat_map(3, "F32_peak"), "ds = 3: must be a Dataset over designs, as from ls.peaks"),
-        (lambda: ls.plot.heat_map(GRID, "F32_peek"), "name: nothing is named 'F32_peek'; did you mean \"F32_peak\"?"),
+        (lambda: ls.plot.heat_map(GRID, "F32_peek"), "of: nothing is named 'F32_peek'; did you mean \"F32_peak\"?"),
         (
             lambda: ls.plot.heat_map(GRID, "F32_peak", x="crank.lenght"),
             "x: nothing is named 'crank.lenght'; did you mean",
         ),
-        (lambda: ls.plot.heat_map(GRID, "F32_peak", "crank", "rpm"), "x = 'crank' and y = 'rpm' both lie along crank"),
+        (
+            lambda: ls.plot.heat_map(GRID, "F32_peak", x="crank", y="rpm"),
+            "x = 'crank' and y = 'rpm' both lie along crank",
+        ),
         (
             lambda: ls.plot.heat_map(SAMPLE, "F32_peak"),
             "F32_peak depends on design: a heat map takes a result over two dims; plot.scatter and",
@@ -346,25 +349,25 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
             "name: word holds <U32 values, which must be numbers",
         ),
         (lambda: ls.plot.heat_map(OVER_ANGLE, "F32"), "name: F32 depends on theta2, and must not; ls.peaks"),
-        (lambda: ls.plot.scatter(SAMPLE, "F32", "T12_peak"), "x: nothing is named 'F32'; there are F32_peak, "),
-        (lambda: ls.plot.scatter(SAMPLE, "F32_peak", "T12_peak", color=3), "color: nothing is named 3"),
+        (lambda: ls.plot.scatter(SAMPLE, x="F32", y="T12_peak"), "x: nothing is named 'F32'; there are F32_peak, "),
+        (lambda: ls.plot.scatter(SAMPLE, x="F32_peak", y="T12_peak", color=3), "color: nothing is named 3"),
         (
-            lambda: ls.plot.scatter(SAMPLE, "F32_peak", "T12_peak", maximize=["crank.length"]),
+            lambda: ls.plot.scatter(SAMPLE, x="F32_peak", y="T12_peak", maximize=["crank.length"]),
             "maximize: crank.length is neither x nor y",
         ),
         (
-            lambda: ls.plot.scatter(SAMPLE.isel(design=0), "F32_peak", "T12_peak"),
+            lambda: ls.plot.scatter(SAMPLE.isel(design=0), x="F32_peak", y="T12_peak"),
             "ds holds one design: give it a dimension of designs",
         ),
         (
-            lambda: ls.plot.scatter(SAMPLE.assign(T12_peak=SAMPLE.T12_peak * np.nan), "F32_peak", "T12_peak"),
+            lambda: ls.plot.scatter(SAMPLE.assign(T12_peak=SAMPLE.T12_peak * np.nan), x="F32_peak", y="T12_peak"),
             "no design is ok and has a finite F32_peak and T12_peak (status: 8 ok)",
         ),
         (
             lambda: ls.plot.parallel_coordinates(SAMPLE, ["F32_peak"]),
-            "names: there are 1, ['F32_peak']; must be from 2",
+            "of: there are 1, ['F32_peak']; must be from 2",
         ),
-        (lambda: ls.plot.parallel_coordinates(SAMPLE, ["F32_peak", "no"]), "names: nothing is named 'no'"),
+        (lambda: ls.plot.parallel_coordinates(SAMPLE, ["F32_peak", "no"]), "of: nothing is named 'no'"),
         (lambda: ls.plot.parallel_coordinates(SAMPLE, best=-1), "best = -1: must be a whole number"),
         (lambda: ls.plot.parallel_coordinates(SAMPLE, color="colour"), "color: nothing is named 'colour'"),
     ],

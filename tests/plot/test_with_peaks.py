@@ -49,7 +49,7 @@ def test_every_figure_marks_what_the_table_says(count):
         assert f"$F_{{{pin[1:]}}}$ {number(float(worst[f'{pin}_peak']))} at" in said
         if pin != "F14":
             assert f" = {number(float(worst[f'{pin}_peak']))}" in said_at_peaks(ls.plot.bearing(cycle, pin), "N")
-    shaking = ls.sweep(scene, count, ["Fsx", "Fsy"])
+    shaking = ls.sweep(scene, count, of=["Fsx", "Fsy"])
     fs = number(float(ls.peaks(scene, of=["Fs"]).Fs_peak))
     assert f"$F_{{s}}$ = {fs}" in said_at_peaks(ls.plot.hodograph(shaking), "N")
 
@@ -116,7 +116,7 @@ def test_a_part_that_ends_at_a_toggle_or_beyond():
     assert np.isposinf(beyond.F32_peak) and float(beyond.F32_peak_at) == pytest.approx(toggle, abs=1e-6)
     assert int(beyond.status) == 3
     beside = peaks_of_part(scene, ["F32"], (10.0, toggle - 1e-3))
-    last = ls.sweep(scene, [toggle - 1e-3], ["F32"]).F32
+    last = ls.sweep(scene, [toggle - 1e-3], of=["F32"]).F32
     assert float(beside.F32_peak) == pytest.approx(float(last[0]), rel=1e-9)
     assert float(beside.F32_peak_at) == pytest.approx(toggle - 1e-3, abs=1e-9)
 
@@ -125,7 +125,7 @@ def test_a_part_that_ends_at_a_toggle_or_beyond():
 def test_unbounded_peaks_are_marked_where_they_are_whatever_the_samples(count):
     scene = double_rocker()
     toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
-    cycle = ls.sweep(scene, count, [*scene.mechanism.dynamics("crank"), "Fsx", "Fsy"])
+    cycle = ls.sweep(scene, count, of=[*scene.mechanism.dynamics("crank"), "Fsx", "Fsy"])
     where = {angle_text(toggle), angle_text(360.0 - toggle)}
     for drawn, units in (
         (ls.plot.forces, "N"),

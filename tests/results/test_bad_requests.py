@@ -168,26 +168,26 @@ def test_crank_angles_of_a_request(theta2, message):
     ],
 )
 def test_crank_angles_that_are_some(theta2, angles):
-    assert ls.sweep(SCENE, theta2, ["F32"]).theta2.values.tolist() == angles
+    assert ls.sweep(SCENE, theta2, of=["F32"]).theta2.values.tolist() == angles
 
 
 @pytest.mark.parametrize(
     ("request_", "message"),
     [
-        (lambda: ls.sweep(SCENE, 8, ["T21"]), "outputs: nothing is named 'T21'; did you mean \"T12\"?"),
-        (lambda: ls.sweep(SCENE, 8, "t12"), "outputs: nothing is named 't12'; did you mean \"T12\"?"),
+        (lambda: ls.sweep(SCENE, 8, of=["T21"]), "of: nothing is named 'T21'; did you mean \"T12\"?"),
+        (lambda: ls.sweep(SCENE, 8, of="t12"), "of: nothing is named 't12'; did you mean \"T12\"?"),
         (
-            lambda: ls.sweep(SCENE, 8, ["T12", "omega_4"]),
-            "outputs: nothing is named 'omega_4'; did you mean \"omega4\"?",
+            lambda: ls.sweep(SCENE, 8, of=["T12", "omega_4"]),
+            "of: nothing is named 'omega_4'; did you mean \"omega4\"?",
         ),
-        (lambda: ls.sweep(SCENE, 8, ["wibble"]), "outputs: nothing is named 'wibble'; there are theta3, theta4, "),
-        (lambda: ls.sweep(SCENE, 8, [5]), "outputs = 5: must be names of quantities"),
-        (lambda: ls.sweep(SCENE, 8, [""]), "outputs: nothing is named ''; there are theta3, theta4, "),
+        (lambda: ls.sweep(SCENE, 8, of=["wibble"]), "of: nothing is named 'wibble'; there are theta3, theta4, "),
+        (lambda: ls.sweep(SCENE, 8, of=[5]), "of = 5: must be names of quantities"),
+        (lambda: ls.sweep(SCENE, 8, of=[""]), "of: nothing is named ''; there are theta3, theta4, "),
         (lambda: ls.peaks(SCENE, ["F23y", "F32_maen"]), "of: nothing is named 'F32_maen'; there are theta3, theta4, "),
         (lambda: ls.peaks(SCENE, "T13"), 'of: T13 belongs to drive="coupler"; with drive="crank" give T12'),
         (
-            lambda: ls.sweep(replace(SCENE, drive="rocker"), 8, ["T12"]),
-            'outputs: T12 belongs to drive="crank"; with drive="rocker" give T14',
+            lambda: ls.sweep(replace(SCENE, drive="rocker"), 8, of=["T12"]),
+            'of: T12 belongs to drive="crank"; with drive="rocker" give T14',
         ),
         (
             lambda: ls.peaks(replace(SCENE, drive="coupler"), ["T12_rms"]),
@@ -218,9 +218,9 @@ def test_names_and_options_of_a_request(request_, message):
 
 
 def test_all_names_that_are_wrong_are_said_at_once():
-    assert refusal(ls.sweep, SCENE, 8, ["T21", "T12", "F23z"]) == [
-        "outputs: nothing is named 'T21'; did you mean \"T12\"?",
-        "outputs: nothing is named 'F23z'; did you mean \"F23\"?",
+    assert refusal(lambda: ls.sweep(SCENE, 8, of=["T21", "T12", "F23z"])) == [
+        "of: nothing is named 'T21'; did you mean \"T12\"?",
+        "of: nothing is named 'F23z'; did you mean \"F23\"?",
     ]
     assert len(refusal(ls.peaks, SCENE, ["T21", "F32", "thteta4"])) == 2
 
@@ -238,7 +238,7 @@ def test_whatever_is_let_in_gives_numbers_and_neither_errors_nor_warnings(size, 
         extreme = ls.Scene(mechanism, omega2, drive=drive, gravity=(1e300, -1e300), loads=[LOAD])
         for solver in ("fast", "dense"):
             ls.sweep(extreme, [0.0, 1e-300, 1e15, -720.0], solver=solver)
-        ls.sweep(extreme, 5, ["cond", "power_residual", "F32", "transmission_angle"])
+        ls.sweep(extreme, 5, of=["cond", "power_residual", "F32", "transmission_angle"])
         ls.peaks(extreme, theta2=7)
         ls.system(extreme, 1.0)
         ls.check(extreme)

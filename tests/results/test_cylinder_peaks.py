@@ -206,7 +206,7 @@ def test_main_bearings_live_as_their_loads_let_them():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: ls.bearings(FOUR, {"A": ls.Bearing()}), "given: nothing is named 'A'; there are main1, main2"),
+        (lambda: ls.bearings(FOUR, {"A": ls.Bearing()}), "pins: nothing is named 'A'; there are main1, main2"),
         (lambda: ls.bearings(FOUR, theta2=[0.0, 90.0]), "theta2 = [0.0, 90.0]: must be a whole number"),
         (lambda: ls.bearings(ls.MultiCylinder(ENGINE, [0])), "main_positions: nothing says where"),
     ],

@@ -27,11 +27,11 @@ def torque_on_crank(torque, **more) -> ls.Scene:
 
 def polished(scene: ls.Scene, name: str, sign: float) -> tuple[float, float]:
     """Largest of sign·quantity by dense samples and scipy's bounded minimiser about the best of them."""
-    cycle = ls.sweep(scene, 7200, [name])[name]
+    cycle = ls.sweep(scene, 7200, of=[name])[name]
     at = float(cycle.theta2[int(np.argmax(sign * cycle.values))])
 
     def below(angle: float) -> float:
-        return -sign * ls.sweep(scene, [angle], [name])[name].item()
+        return -sign * ls.sweep(scene, [angle], of=[name])[name].item()
 
     found = minimize_scalar(below, bounds=(at - 0.1, at + 0.1), method="bounded", options={"xatol": 1e-9})
     return -sign * found.fun, found.x % 360.0
@@ -133,7 +133,7 @@ def test_limits_at_the_ends_of_a_revolution_that_toggles():
     assert found.status.attrs["flag_meanings"].split()[int(found.status)] == "unbounded"
     assert min(abs(float(found.F32_peak_at) - x % 360.0) for x in (start, end)) < 1e-9
     inside = np.linspace(start, end, 200_001)[1:-1]
-    dense = ls.sweep(ls.Scene(ROCKING, omega2=1.0), inside, ["Cx"]).Cx
+    dense = ls.sweep(ls.Scene(ROCKING, omega2=1.0), inside, of=["Cx"]).Cx
     assert 0.0 <= float(found.Cx_max - dense.max()) < 1e-3 and 0.0 <= float(dense.min() - found.Cx_min) < 1e-3
 
 
@@ -236,7 +236,7 @@ def test_a_kink_of_friction_between_the_samples():
     scene = ls.Scene(mechanism, -3.091364670463861, -49.097578860405264, (0.0, -9.81), [push])
     found = ls.peaks(scene)
     at = np.linspace(262.0, 263.0, 100_001)
-    cycle = ls.sweep(scene, at, ["T12", "normal_force"])
+    cycle = ls.sweep(scene, at, of=["T12", "normal_force"])
     assert np.ptp(np.sign(cycle.normal_force.values)) == 2.0
     assert float(found.T12_max) >= float(cycle.T12.max())
     assert float(found.T12_max_at) == pytest.approx(float(cycle.T12.idxmax()), abs=2e-5)

@@ -48,14 +48,14 @@ def pressing(**words):
 @pytest.mark.parametrize("theta2", [None, 720])
 def test_a_conservative_machine_takes_no_power(theta2):
     """Weight, a constant force and a torque on a link that comes back give back what they take."""
-    found = ls.peaks(replace(PRESS, omega2=uneven), ["power_mean", "power"], theta2)
+    found = ls.peaks(replace(PRESS, omega2=uneven), ["power_mean", "power"], theta2=theta2)
     assert abs(float(found.power_mean)) < 1e-9 * float(found.power_peak)
     assert found.power_mean.long_name.startswith("mean over time of: ")
 
 
 @pytest.mark.parametrize("theta2", [None, 360])
 def test_mean_and_rms_of_a_force(theta2):
-    found = ls.peaks(pressing(), ["F32_mean", "F32_rms"], theta2)
+    found = ls.peaks(pressing(), ["F32_mean", "F32_rms"], theta2=theta2)
     assert float(found.F32_mean) == pytest.approx(float(over_time(pressed)), rel=1e-11)
     squared = over_time(lambda angle: pressed(angle) ** 2)
     assert float(found.F32_rms) == pytest.approx(float(mp.sqrt(squared)), rel=1e-11)
@@ -74,13 +74,13 @@ def test_each_design_has_its_own_pace(theta2):
     angles = np.arange(0.0, 360.0, 10.0)
     sizes = xr.DataArray([0.0, 0.5, -0.5], dims="size")
     speeds = MEAN * (1.0 + sizes * xr.DataArray(np.cos(np.radians(angles)), {"theta2": angles}, "theta2"))
-    found = ls.peaks(replace(PRESS, omega2=speeds), ["theta4_mean", "F32_rms"], theta2)
+    found = ls.peaks(replace(PRESS, omega2=speeds), ["theta4_mean", "F32_rms"], theta2=theta2)
     assert found.theta4_mean.dims == ("size",)
     for k in range(3):
-        alone = ls.peaks(replace(PRESS, omega2=speeds.isel(size=k)), ["theta4_mean", "F32_rms"], theta2)
+        alone = ls.peaks(replace(PRESS, omega2=speeds.isel(size=k)), ["theta4_mean", "F32_rms"], theta2=theta2)
         assert float(found.theta4_mean[k]) == float(alone.theta4_mean)
         assert float(found.F32_rms[k]) == float(alone.F32_rms)
-    steady = ls.peaks(PRESS, ["theta4_mean"], theta2)
+    steady = ls.peaks(PRESS, ["theta4_mean"], theta2=theta2)
     assert float(found.theta4_mean[0]) == pytest.approx(float(steady.theta4_mean), rel=1e-12)
 
 
@@ -89,8 +89,8 @@ def test_a_car_that_slows_down_at_the_top_spends_its_time_there():
     radius, speed, g = 30.0, 50.0, 9.81
     scene = ls.Scene(ls.LoopTrack(radius, 700.0), speed=speed, gravity=(0.0, -g), profile="energy")
     lap = 4.0 * radius / speed * mp.ellipk(4.0 * g * radius / speed**2)
-    for theta2 in (None, 360):
-        found = ls.peaks(scene, ["speed_mean"], theta2)
+    for theta in (None, 360):
+        found = ls.peaks(scene, ["speed_mean"], theta=theta)
         assert float(found.speed_mean) == pytest.approx(float(2 * mp.pi * radius / lap), rel=1e-12)
 
 
@@ -119,7 +119,7 @@ def test_the_heat_of_a_motor():
 
 
 def test_sizes_before_and_after_are_over_time():
-    found = ls.compare(pressing(), pressing(), ["F32_rms", "T12_ripple"], theta2=360)
+    found = ls.compare(pressing(), pressing(), of=["F32_rms", "T12_ripple"], theta2=360)
     squared = over_time(lambda angle: pressed(angle) ** 2)
     np.testing.assert_allclose(found.F32_rms, float(mp.sqrt(squared)), rtol=1e-11)
     peaks = ls.peaks(pressing(), ["T12_mean", "T12_rms"])
@@ -133,7 +133,7 @@ def test_counterweights_are_best_over_time():
     weights = ls.best_counterweights(scene, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
 
     def size(weights):
-        return float(ls.compare(scene, ls.with_counterweights(scene, weights), ["Fs_rms"], 180).Fs_rms[1])
+        return float(ls.compare(scene, ls.with_counterweights(scene, weights), of=["Fs_rms"], theta2=180).Fs_rms[1])
 
     best = size(weights)
     for k, weight in enumerate(weights):

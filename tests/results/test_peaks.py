@@ -104,7 +104,7 @@ def smooth_designs(seed: int, count: int) -> list[ls.Scene]:
 
 @pytest.mark.parametrize("scene", [ls.example("press"), *smooth_designs(1, 8)])
 def test_peaks_are_those_of_a_dense_sweep(scene):
-    dense = ls.sweep(scene, 14_400, [*FORCES, "T12"])
+    dense = ls.sweep(scene, 14_400, of=[*FORCES, "T12"])
     found = ls.peaks(scene)
     for name in FORCES:
         row = dense[name].values
@@ -117,14 +117,14 @@ def test_peaks_are_those_of_a_dense_sweep(scene):
     assert float(found.T12_peak) == pytest.approx(scale, rel=1e-6)
     assert found.T12_peak == max(abs(found.T12_max), abs(found.T12_min))
     for which in ("max", "min"):
-        there = ls.sweep(scene, [float(found[f"T12_{which}_at"])], ["T12"]).T12.item()
+        there = ls.sweep(scene, [float(found[f"T12_{which}_at"])], of=["T12"]).T12.item()
         assert there == pytest.approx(float(found[f"T12_{which}"]), abs=1e-6 * scale)
 
 
 def test_of_given_angles_it_is_the_largest_sample():
     scene = ls.example("press")
     for given in (97, np.linspace(200.0, 350.0, 301), [330.0, 310.0, 320.0, 310.0]):
-        cycle = ls.sweep(scene, given, ["F32", "T12"])
+        cycle = ls.sweep(scene, given, of=["F32", "T12"])
         found = ls.peaks(scene, of=["F32", "T12"], theta2=given)
         for peak, row in (("F32_peak", cycle.F32), ("T12_max", cycle.T12), ("T12_min", -cycle.T12)):
             value, at = reference(row.values, row.theta2.values)
@@ -135,7 +135,7 @@ def test_of_given_angles_it_is_the_largest_sample():
 def test_means_against_work_and_against_the_sweep():
     scene = ls.example("press")
     found = ls.peaks(scene, of=["T12_mean", "T12_rms", "F32_mean", "F32_rms", "theta4_mean"])
-    cycle = ls.sweep(scene, 720, ["T12", "F32", "theta4"])
+    cycle = ls.sweep(scene, 720, of=["T12", "F32", "theta4"])
     for name in ("T12", "F32", "theta4"):
         row = cycle[name].values
         assert float(found[f"{name}_mean"]) == pytest.approx(math.fsum(row) / 720, rel=1e-12, abs=1e-12)
@@ -245,7 +245,7 @@ def test_status_and_values_of_designs_that_do_not_close():
     found = ls.peaks(mixed(), of=["F32", "T12", "T12_mean", "F32_rms"], theta2=360)
     words = [found.status.attrs["flag_meanings"].split()[k] for k in found.status.values]
     assert words == ["ok", "partial_revolution", "partial_revolution", "cannot_assemble", "ok"]
-    cycle = ls.sweep(mixed(), 360, ["F32", "T12"])
+    cycle = ls.sweep(mixed(), 360, of=["F32", "T12"])
     assert found.isel(design=3).drop_vars("status").to_array().isnull().all()
     assert not found.isel(design=[0, 1, 2, 4]).to_array().isnull().any()
     for branch in ("open", "crossed"):

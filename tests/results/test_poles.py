@@ -59,7 +59,7 @@ def test_check_tells_where_the_drive_stands_still(case, branch):
     at = ls.check(ls.Scene(mechanism, 1.0, drive=drive)).dead_centre_angle
     own = at[[branch in label for label in at.dead_centre.values]] if "open" in str(at.dead_centre.values) else at
     assert own.size == 2
-    moves = ls.sweep(ls.Scene(mechanism, 1.0), np.add.outer(own.values, [-1e-3, 0.0, 1e-3]).ravel(), [rate])[rate]
+    moves = ls.sweep(ls.Scene(mechanism, 1.0), np.add.outer(own.values, [-1e-3, 0.0, 1e-3]).ravel(), of=[rate])[rate]
     before, there, after = moves.values.reshape(2, 3).T
     assert (before * after < 0.0).all()
     assert (abs(there) < 1e-9 * abs(before)).all()
@@ -107,7 +107,7 @@ def test_where_friction_wedges(slide_angle):
     scene = ls.Scene(engine, 10.0, loads=[ls.Load("slider", force=(40.0, 0.0), frame="link")])
     found, beside = ls.peaks(scene, of=["F14"]), np.array([1e-4, 1e-6])
     sides = [at + side * beside for at in ls.check(scene).jam_angle.values for side in (-1.0, 1.0)]
-    growth = [np.divide(*ls.sweep(scene, side, ["F14"]).F14.values[::-1]) for side in sides]
+    growth = [np.divide(*ls.sweep(scene, side, of=["F14"]).F14.values[::-1]) for side in sides]
     assert np.nanmax(growth) == pytest.approx(100.0, rel=0.01)
     assert (float(found.F14_peak), int(found.status)) == (math.inf, UNBOUNDED)
     assert min(abs(ls.check(scene).jam_angle.values - float(found.F14_peak_at))) < 1e-9

@@ -27,7 +27,7 @@ SCENES = {
 @pytest.mark.parametrize("scene", SCENES.values(), ids=list(SCENES))
 def test_each_quantity_listed_is_swept_as_it_says(scene):
     table = ls.quantities(scene)
-    cycle = ls.sweep(scene, theta2=8, outputs=table.names)
+    cycle = ls.sweep(scene, 8, of=table.names)
     swept = {
         name: (v.dims, v.attrs.get("units", "1"), v.attrs["long_name"])
         for name, v in cycle.variables.items()
@@ -38,13 +38,15 @@ def test_each_quantity_listed_is_swept_as_it_says(scene):
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=list(SCENES))
 def test_a_default_sweep_has_what_is_marked_so(scene):
-    assert {row.name for row in ls.quantities(scene) if row.default} == {*ls.sweep(scene, theta2=8).data_vars}
+    assert {row.name for row in ls.quantities(scene) if row.default} == {*ls.sweep(scene, 8).data_vars}
 
 
 @pytest.mark.parametrize("name", names())
 def test_peaks_have_all_but_cond_and_status(name):
     scene = ls.example(name)
-    peaks = ls.peaks(scene, of=[n for n in ls.quantities(scene).names if n not in ("cond", "status")], theta2=8)
+    peaks = ls.peaks(
+        scene, of=[n for n in ls.quantities(scene).names if n not in ("cond", "status")], **{scene.mechanism.index: 8}
+    )
     listed = {row.name for row in ls.quantities(scene)} - {"cond", "status"}
     assert {str(n).removesuffix("_peak") for n in peaks if str(n).endswith("_peak")} == listed
     for other in {"cond", "status"} & {*ls.quantities(scene).names}:

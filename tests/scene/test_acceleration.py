@@ -19,7 +19,7 @@ PRESS = ls.example("press")
 
 def alpha2(omega2, theta2=720) -> np.ndarray:
     """Angular acceleration of the press's crank as sweep uses it."""
-    return ls.sweep(replace(PRESS, omega2=omega2), theta2, ["alpha3"]).alpha2.values
+    return ls.sweep(replace(PRESS, omega2=omega2), theta2, of=["alpha3"]).alpha2.values
 
 
 def cosine(t):
@@ -63,7 +63,7 @@ def from_rest_to_lo(t):
 )
 @pytest.mark.parametrize("theta2", [720, np.linspace(3.0, 357.0, 997)])
 def test_a_function_is_differentiated(motion, within, theta2):
-    found = ls.sweep(replace(PRESS, omega2=lambda t: motion(np.radians(t))[0]), theta2, ["alpha3"])
+    found = ls.sweep(replace(PRESS, omega2=lambda t: motion(np.radians(t))[0]), theta2, of=["alpha3"])
     omega, slope = motion(np.radians(found.theta2.values))
     expected = omega * slope
     np.testing.assert_allclose(found.alpha2.values, expected, rtol=0.0, atol=within * abs(expected).max())
@@ -119,9 +119,9 @@ def test_the_speed_of_a_flywheel_takes_a_constant_torque(name):
     """Fed back, it needs at every angle what the drive gives less what its flywheel takes: T12 + J·α2 = constant."""
     scene = ls.example(name)
     wheel = ls.flywheel(scene, fluctuation=0.2, theta2=1440)
-    cycle = ls.sweep(replace(scene, omega2=wheel.speed), 1440, ["T12", "alpha3" if name == "press" else "alpha4"])
+    cycle = ls.sweep(replace(scene, omega2=wheel.speed), 1440, of=["T12", "alpha3" if name == "press" else "alpha4"])
     drive = cycle.T12 + wheel.flywheel_inertia * cycle.alpha2
-    at_constant_speed = ls.sweep(scene, 1440, ["T12"]).T12
+    at_constant_speed = ls.sweep(scene, 1440, of=["T12"]).T12
     tolerance = 1e-6 if name == "press" else 1e-4  # the shaper's load jumps
     swing = float(at_constant_speed.max() - at_constant_speed.min())
     np.testing.assert_allclose(drive, float(wheel.drive_torque), rtol=0.0, atol=tolerance * swing)

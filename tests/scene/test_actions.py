@@ -66,8 +66,8 @@ def test_a_new_kind_of_load_is_swept():
     """Period, jumps and torque of a load that only this test knows, beside one of the package."""
     free = replace(braked(), loads=[ls.Load("rocker", torque=-12.0)])
     assert braked().period == 720.0 and braked().jumps() == (100.5,)
-    found = ls.sweep(braked(), 720, ["T12"]).T12
-    without = ls.sweep(free, np.arange(720.0), ["T12"]).T12
+    found = ls.sweep(braked(), 720, of=["T12"]).T12
+    without = ls.sweep(free, np.arange(720.0), of=["T12"]).T12
     on = (found.theta2 > 100.5) & (found.theta2 <= 460.0)
     np.testing.assert_allclose(found - without, xr.where(on, 5.0, 0.0), atol=1e-11)
 
@@ -220,7 +220,7 @@ def test_a_unit_that_is_the_parameters_own_changes_nothing(units):
 
 def test_results_are_parameters_in_their_own_units():
     """UDUNITS spelling, as results say it: a speed of one machine drives another."""
-    found = ls.sweep(PRESS, 8, ["omega3", "F32x", "T12", "theta3"]).isel(theta2=[1], drop=True).rename(theta2="at")
+    found = ls.sweep(PRESS, 8, of=["omega3", "F32x", "T12", "theta3"]).isel(theta2=[1], drop=True).rename(theta2="at")
     loads = [ls.Load("coupler", force=(found.F32x, 0.0), at=(0.1, found.theta3), torque=found.T12)]
     assert ls.Scene(PRESS.mechanism, omega2=found.omega3, loads=loads).omega2.units == "rad s-1"
 

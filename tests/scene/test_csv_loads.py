@@ -134,11 +134,11 @@ def test_a_period_of_one_turn_repeats_beside_one_of_two():
     two = xr.DataArray(ripple(two_turns, 720.0), {"theta2": two_turns}, "theta2")
     both = ls.Scene(MECHANISM, 100.0, loads=[ls.Load("slider", force=one), ls.Load("rod", torque=two)])
     assert both.period == 720.0
-    cycle = ls.sweep(both, 48, ["F14x", "F14y", "F12x"])
+    cycle = ls.sweep(both, 48, of=["F14x", "F14y", "F12x"])
     assert cycle.theta2.values.tolist() == two_turns.tolist()
     repeated = xr.DataArray(np.tile(one.values, 2), {"theta2": two_turns}, "theta2")
     expected = ls.Scene(MECHANISM, 100.0, loads=[ls.Load("slider", force=repeated), ls.Load("rod", torque=two)])
-    assert_equal(cycle, ls.sweep(expected, 48, ["F14x", "F14y", "F12x"]))
+    assert_equal(cycle, ls.sweep(expected, 48, of=["F14x", "F14y", "F12x"]))
 
 
 def test_a_function_has_the_period_of_the_scene():
@@ -161,7 +161,7 @@ def test_sampled_angles_are_exact_in_every_turn():
     given = xr.DataArray(values, {"theta2": angles}, "theta2")
     hinge = ls.SliderCrank(ls.Link(0.04, 0.0, 0.0), ls.Link(0.14, 0.0, 0.0), slider_mass=0.0)
     scene = ls.Scene(hinge, 1.0, loads=[ls.Load("crank", torque=given)])
-    found = ls.sweep(scene, np.append(angles, angles[3] + 0.5), ["T12"]).T12.values[:-1]
+    found = ls.sweep(scene, np.append(angles, angles[3] + 0.5), of=["T12"]).T12.values[:-1]
     assert found.tolist() == (-values).tolist()
 
 

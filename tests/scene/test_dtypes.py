@@ -63,8 +63,8 @@ def test_a_study_opens_that_of_the_same_numbers_with_the_same_results(tmp_path):
     press = ls.example("press")
     lengths = xr.DataArray(np.linspace(0.2, 0.24, 5, dtype=np.float32), dims="d")
     one, other = (replaced(press, {"coupler.length": values}) for values in (lengths, lengths.astype(float)))
-    ls.study(one, tmp_path / "s.nc", ["F32"])
-    assert ls.study(other, tmp_path / "s.nc", ["F32"]).F32_peak.equals(ls.peaks(other, ["F32"]).F32_peak)
+    ls.study(one, tmp_path / "s.nc", of=["F32"])
+    assert ls.study(other, tmp_path / "s.nc", of=["F32"]).F32_peak.equals(ls.peaks(other, ["F32"]).F32_peak)
 
 
 @pytest.mark.parametrize("whole", [2**53 + 1, -(2**70), np.int64(2**62 + 1), Fraction(1, 3), np.uint64(2**64 - 1)])
@@ -107,8 +107,10 @@ def test_angles_of_arrays_over_theta2_are_float64(dtype):
          ls.sample(four_bar(), {"omega2": ls.Normal(5, 1, 2)}, n=2)),
         (lambda x: ls.sample(four_bar(), {"ground": ls.Tolerance(x(0), x(1))}, n=2),
          ls.sample(four_bar(), {"ground": ls.Tolerance(0, 1)}, n=2)),
-        (lambda x: ls.objective(four_bar(), {"omega2": (x(2), x(3))}, "T12_max", theta2=8).bounds, [(2.0, 3.0)]),
-        (lambda x: ls.counterweights(engine(), x(2), x(1)), ls.counterweights(engine(), 2.0, 1.0)),
+        (lambda x: ls.objective(four_bar(), {"omega2": (x(2), x(3))}, minimize="T12_max", theta2=8).bounds,
+         [(2.0, 3.0)]),
+        (lambda x: ls.counterweights(engine(), radius=x(2), fraction=x(1)),
+         ls.counterweights(engine(), radius=2.0, fraction=1.0)),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.float32, np.float16])
@@ -137,7 +139,9 @@ def plain_numbers(value):
         lambda x: ls.motor_load(ls.example("press"), ls.Motor((0, 999), (9, 9), 1), ratio=x(7), efficiency=x(1)),
         lambda x: ls.flywheel(ls.example("press"), fluctuation=x(1), theta2=12),
         lambda x: ls.flywheel(ls.example("press"), inertia=x(3), theta2=12),
-        lambda x: ls.shaking_moment(ls.sweep(ls.example("press"), 8, ["Fsx", "Fsy", "Ms"]), (x(3), x(7))).to_dataset(),
+        lambda x: ls.shaking_moment(
+            ls.sweep(ls.example("press"), 8, of=["Fsx", "Fsy", "Ms"]), about=(x(3), x(7))
+        ).to_dataset(),
         lambda x: ls.coupler_curve(ls.example("press"), (x(3), x(7)), theta2=8),
         lambda x: ls.sweep(ls.example("press"), [x(0), x(7), x(127)]),
         lambda x: ls.sweep(ls.example("press"), np.array([x(0), x(7), x(127)])),
@@ -188,9 +192,9 @@ def test_an_angle_is_not_a_plain_number(path, unit):
 
 def test_a_study_at_quantities_of_pint_is_that_at_their_angles(tmp_path):
     press, angles = ls.example("press"), UNITS.Quantity([0.0, 0.25, 0.5], "turn")
-    found = ls.study(press, tmp_path / "s.nc", ["T12"], theta2=angles)
+    found = ls.study(press, tmp_path / "s.nc", of=["T12"], theta2=angles)
     assert found.T12_peak == ls.peaks(press, ["T12"], theta2=[0.0, 90.0, 180.0]).T12_peak
-    ls.study(press, tmp_path / "s.nc", ["T12"], theta2=[0, 90, 180])
+    ls.study(press, tmp_path / "s.nc", of=["T12"], theta2=[0, 90, 180])
 
 
 def test_pint_at_other_places():

@@ -78,7 +78,7 @@ def assert_sound(scene: ls.Scene, finite: bool = False) -> None:
     And where it is ok they are `finite`: numbers near the ends of their range may overflow.
     """
     names = scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
-    cycle = outcome(lambda: ls.sweep(scene, THETA2, names))  # functions and arrays of theta2 are read only now
+    cycle = outcome(lambda: ls.sweep(scene, THETA2, of=names))  # functions and arrays of theta2 are read only now
     if cycle is None:
         return
     outcome(lambda: ls.check(scene))

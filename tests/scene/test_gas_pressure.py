@@ -98,7 +98,7 @@ def test_dead_centres_are_where_the_slider_turns(branch, offset, slide_angle):
 
 def indicated(cycle, engine) -> float:
     """Work per cycle [J] from the torque of a massless engine without friction: the integral of -T12 over theta2."""
-    found = ls.sweep(scene(cycle, engine), 14400, ["T12"])
+    found = ls.sweep(scene(cycle, engine), 14400, of=["T12"])
     return -float(found.T12.mean()) * math.radians(cycle.strokes * 180.0)
 
 
@@ -128,12 +128,12 @@ def test_diesel_work_is_that_of_closed_form():
 
 
 def test_a_crank_that_turns_the_other_way_gains_the_same_work():
-    forward, back = (ls.sweep(scene(omega2=omega2), 1440, ["T12", "power"]) for omega2 in (100.0, -100.0))
+    forward, back = (ls.sweep(scene(omega2=omega2), 1440, of=["T12", "power"]) for omega2 in (100.0, -100.0))
     assert float(back.power.mean()) == pytest.approx(float(forward.power.mean()), rel=1e-10)
     np.testing.assert_allclose(
         back.T12.values[1:], -forward.T12.values[:0:-1], atol=1e-9 * abs(forward.T12).max().item()
     )
-    both = ls.sweep(scene(omega2=xr.DataArray([100.0, -100.0], dims="way")), 1440, ["T12"])
+    both = ls.sweep(scene(omega2=xr.DataArray([100.0, -100.0], dims="way")), 1440, of=["T12"])
     np.testing.assert_array_equal(both.T12.isel(way=1).values, back.T12.values)
 
 
@@ -145,11 +145,11 @@ def test_pressure_pushes_the_slider_away_from_the_head(branch, sign):
     expected = ls.sweep(ls.Scene(engine, omega2=100.0, loads=[by_hand]), 24)
     for name in ("F12x", "F43y", "F14y", "T12"):
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-13, atol=1e-9)
-    assert ls.sweep(scene(P1, engine), 24, ["T12"]).T12.max() == 0.0
+    assert ls.sweep(scene(P1, engine), 24, of=["T12"]).T12.max() == 0.0
 
 
 def test_power_balance_with_masses_friction_and_gas():
-    residual = ls.sweep(ls.example("engine"), 720, ["power_residual"]).power_residual
+    residual = ls.sweep(ls.example("engine"), 720, of=["power_residual"]).power_residual
     assert float(abs(residual).max()) < 1e-12
 
 
@@ -191,10 +191,10 @@ def test_design_dims():
     ratio = xr.DataArray([8.0, 9.0, 10.0], dims="ratio")
     length = xr.DataArray([0.12, 0.14], dims="rod_length")
     study = scene(replace(OTTO, compression_ratio=ratio), replace(ENGINE, rod=ls.Link(length, 0.0, 0.0)), bore=bore)
-    found = ls.sweep(study, 72, ["T12", "theta3"])
+    found = ls.sweep(study, 72, of=["T12", "theta3"])
     assert set(found.T12.dims) == {"bore_size", "ratio", "rod_length", "theta2"}
     assert set(found.theta3.dims) == {"rod_length", "theta2"}
-    one = ls.sweep(scene(), 72, ["T12"])
+    one = ls.sweep(scene(), 72, of=["T12"])
     np.testing.assert_allclose(found.T12.isel(bore_size=1, ratio=1, rod_length=1), one.T12, rtol=1e-13, atol=1e-9)
     assert set(ls.peaks(study, of=["F12"]).F12_peak.dims) == {"bore_size", "ratio", "rod_length"}
 

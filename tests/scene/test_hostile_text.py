@@ -269,7 +269,7 @@ def test_results_that_do_not_fit_are_told(monkeypatch):
     with pytest.raises(
         ValueError, match=r"100000000 numbers \(results × designs × angles\).* needs 0.8 GB of memory, of"
     ):
-        ls.sweep(ls.Scene(scene.mechanism, omega2=xr.DataArray(np.arange(1e4), dims="d")), 10_000, ["T12"])
+        ls.sweep(ls.Scene(scene.mechanism, omega2=xr.DataArray(np.arange(1e4), dims="d")), 10_000, of=["T12"])
 
 
 def test_free_memory_is_that_of_the_machine_or_of_the_limit():

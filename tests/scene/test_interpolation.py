@@ -30,7 +30,7 @@ def scene(interpolation=None, values=PUSH, angles=ANGLES, mechanism=PRESS) -> ls
 
 
 def force(interpolation, values, angles, theta2) -> np.ndarray:
-    cycle = ls.sweep(scene(interpolation, values, angles), theta2, ["T12"])
+    cycle = ls.sweep(scene(interpolation, values, angles), theta2, of=["T12"])
     return cycle["loads[1].force[1]"].values
 
 
@@ -102,7 +102,7 @@ def test_two_turns_come_round_after_two():
     values = np.where(angles < 180.0, 900.0, 0.0)
     four_stroke = scene("step", values, angles)
     assert four_stroke.period == 720.0
-    found = ls.sweep(four_stroke, [170.0, 190.0, 530.0, 890.0], ["T12"])["loads[1].force[1]"]
+    found = ls.sweep(four_stroke, [170.0, 190.0, 530.0, 890.0], of=["T12"])["loads[1].force[1]"]
     assert found.values.tolist() == [900.0, 0.0, 0.0, 900.0]
 
 
@@ -118,7 +118,7 @@ def test_each_design_has_its_own_curve():
 def test_gas_pressure_takes_one_too():
     pressure = over_angles(1e5 - 100.0 * PUSH, ANGLES)
     gas = ls.GasPressure(bore=0.05, pressure=pressure, interpolation="step")
-    cycle = ls.sweep(ls.Scene(PRESS, omega2=100.0, loads=[gas]), [99.0, 105.0], ["T12"])
+    cycle = ls.sweep(ls.Scene(PRESS, omega2=100.0, loads=[gas]), [99.0, 105.0], of=["T12"])
     assert cycle["loads[1].pressure"].values.tolist() == [1e5, 2e5]
 
 
@@ -134,7 +134,7 @@ def test_peaks_look_at_every_corner(kind, names):
     made = scene(kind, values, angles)
     found = ls.peaks(made, names)
     theta2 = np.concatenate([np.arange(0.0, 360.0, 0.01), np.mod(angles - 1e-9, 360.0), np.mod(angles + 1e-9, 360.0)])
-    fine = ls.sweep(made, theta2, names)
+    fine = ls.sweep(made, theta2, of=names)
     for largest, dense in ((found.F32_peak, fine.F32.max()), (found.T12_max, fine.T12.max())):
         assert float(dense) * (1.0 - 1e-11) <= float(largest) <= float(dense) * (1.0 + 1e-6)
     assert float(found.T12_min) == pytest.approx(float(fine.T12.min()), rel=1e-6)
@@ -181,7 +181,7 @@ def test_it_warns_once_for_a_scene():
 @pytest.mark.parametrize("kind", KINDS[1:])
 def test_nothing_else_rings(kind):
     made = scene(kind)
-    found = ls.sweep(made, 3600, ["T12"])["loads[1].force[1]"]
+    found = ls.sweep(made, 3600, of=["T12"])["loads[1].force[1]"]
     assert (float(found.min()), float(found.max())) == (-1000.0, 0.0)
     assert "overshoot" not in ls.check(made)
 
@@ -196,7 +196,7 @@ def test_smooth_loads_do_not_warn_and_angles_that_are_held_need_no_spline():
 def test_omega2_warns_too():
     jerky = ls.Scene(PRESS, omega2=over_angles(100.0 + np.where(ANGLES < 180.0, 10.0, 0.0), ANGLES))
     with pytest.warns(ls.OvershootWarning, match="^omega2: .*give it at more angles, or as a function"):
-        ls.sweep(jerky, 720, ["omega3"])
+        ls.sweep(jerky, 720, of=["omega3"])
 
 
 # ---------------------------------------------------------------------------------------- through files
@@ -291,4 +291,4 @@ def test_the_speed_takes_none():
 def test_an_array_that_goes_not_all_the_way_round_is_checked_where_it_is_used():
     part = replace(scene(), loads=[ls.Load("slider", force=over_angles([1.0, 2.0], [30.0, 70.0]))])
     assert "overshoot" not in ls.check(part)
-    assert ls.sweep(part, [30.0, 70.0], ["T12"]).T12.notnull().all()
+    assert ls.sweep(part, [30.0, 70.0], of=["T12"]).T12.notnull().all()

@@ -94,9 +94,9 @@ def test_save_refuses_them_before_it_touches_the_file(labels, problem, tmp_path)
 def test_labels_come_back_as_they_were(labels, way, tmp_path):
     made, path = scene(labels), tmp_path / way
     if way == "study.nc":
-        ls.study(made, path, ["T12"], theta2=4, chunk=2)
+        ls.study(made, path, of=["T12"], theta2=4, chunk=2)
     else:
-        ls.save(ls.sweep(made, 4, ["T12"]) if way == "a.nc" else made, path)
+        ls.save(ls.sweep(made, 4, of=["T12"]) if way == "a.nc" else made, path)
     again = ls.load_scene(path)
     assert again == made
     assert pd.Index(again.omega2.case.values).equals(pd.Index(np.asarray(labels)).astype(again.omega2.case.dtype))
@@ -121,7 +121,7 @@ def test_names_that_no_file_gives_back_are_refused(name, tmp_path):
 
 @pytest.mark.parametrize("name", SOUND_NAMES)
 def test_other_names_come_back(name, tmp_path):
-    found = ls.study(scene([1, 2, 3], name), tmp_path / "a.nc", ["T12"], theta2=4)
+    found = ls.study(scene([1, 2, 3], name), tmp_path / "a.nc", of=["T12"], theta2=4)
     assert found.T12_peak.dims == (name,)
     assert ls.load_scene(tmp_path / "a.nc") == scene([1, 2, 3], name)
 

@@ -54,7 +54,7 @@ def assert_equal_arrays(found: xr.Dataset, expected: xr.Dataset) -> None:
 @pytest.mark.parametrize("count", [4, 360])
 def test_a_constant_a_data_array_and_a_function_give_equal_arrays(parameter, number, count):
     angles = np.arange(count) * (360 / count)
-    constant = ls.sweep(scene(**{parameter: number}), count, EVERYTHING)
+    constant = ls.sweep(scene(**{parameter: number}), count, of=EVERYTHING)
     for value in (
         lambda theta2: number,
         lambda theta2: np.full(theta2.shape, number),
@@ -63,7 +63,7 @@ def test_a_constant_a_data_array_and_a_function_give_equal_arrays(parameter, num
         over_angles([number] * 4, [0.0, 90.0, 180.0, 270.0]),
         xr.DataArray(np.full(count, number), dims="theta2"),
     ):
-        assert_equal_arrays(ls.sweep(scene(**{parameter: value}), count, EVERYTHING), constant)
+        assert_equal_arrays(ls.sweep(scene(**{parameter: value}), count, of=EVERYTHING), constant)
 
 
 @pytest.mark.parametrize("parameter", ["omega2", "alpha2", "Fx", "Fy", "torque"])
@@ -72,16 +72,16 @@ def test_what_changes_gives_at_each_angle_what_a_constant_of_that_value_gives(pa
     angles = np.array([0.0, 20.0, 111.0, 250.5])
     values = np.array([3.0, -2.0, 5.5, 1.25])
     for value in (lambda theta2: np.interp(np.mod(theta2, 360.0), angles, values), over_angles(values, angles)):
-        cycle = ls.sweep(scene(**{parameter: value}, frame=frame), angles, EVERYTHING)
+        cycle = ls.sweep(scene(**{parameter: value}, frame=frame), angles, of=EVERYTHING)
         for k, (angle, number) in enumerate(zip(angles, values, strict=True)):
-            alone = ls.sweep(scene(**{parameter: number}, frame=frame), [angle], EVERYTHING)
+            alone = ls.sweep(scene(**{parameter: number}, frame=frame), [angle], of=EVERYTHING)
             for name in EVERYTHING:
                 assert cycle[name].values.reshape(-1)[k if cycle[name].size > 1 else 0] == alone[name].item(), name
 
 
 def test_a_variable_depends_on_theta2_only_as_far_as_its_inputs_do():
-    cycle = ls.sweep(scene(torque=lambda theta2: np.sin(np.radians(theta2))), 8, ["omega3", "T12"])
-    batch = ls.sweep(scene(torque=xr.DataArray(np.ones((3, 8)), dims=("case", "theta2"))), 8, ["omega3", "T12"])
+    cycle = ls.sweep(scene(torque=lambda theta2: np.sin(np.radians(theta2))), 8, of=["omega3", "T12"])
+    batch = ls.sweep(scene(torque=xr.DataArray(np.ones((3, 8)), dims=("case", "theta2"))), 8, of=["omega3", "T12"])
     assert cycle.T12.dims == cycle.omega3.dims == batch.omega3.dims == ("theta2",)
     assert batch.T12.dims == ("case", "theta2")
 
@@ -92,9 +92,9 @@ def test_design_dims_and_theta2_together_in_any_order():
     values = np.array([[1.0, -2.0, 3.0, 0.5], [4.0, 4.0, -1.0, 2.0]])
     torque = xr.DataArray(values, {"case": ["a", "b"], "theta2": angles}, ("case", "theta2"))
     for given in (torque, torque.T, torque[:, ::-1]):
-        cycle = ls.sweep(scene(torque=given), 12, ["T12"])
+        cycle = ls.sweep(scene(torque=given), 12, of=["T12"])
         for k, case in enumerate(["a", "b"]):
-            alone = ls.sweep(scene(torque=over_angles(values[k], angles)), 12, ["T12"])
+            alone = ls.sweep(scene(torque=over_angles(values[k], angles)), 12, of=["T12"])
             np.testing.assert_array_equal(cycle.T12.sel(case=case).values, alone.T12.values)
 
 
@@ -172,7 +172,7 @@ def test_angles_beyond_one_revolution_mean_a_period_of_two():
     given = over_angles(four_stroke(known), known)
     asked = np.arange(0.0, 1440.0, 7.0)
     np.testing.assert_allclose(brought(given, asked), four_stroke(asked), atol=1e-5)
-    cycle = ls.sweep(scene(torque=given), [90.0, 450.0, 810.0], ["T12"]).T12.values
+    cycle = ls.sweep(scene(torque=given), [90.0, 450.0, 810.0], of=["T12"]).T12.values
     assert cycle[0] == cycle[2] != cycle[1]
 
 

@@ -21,7 +21,7 @@ EVEN = [method for method in METHODS if method != "random"]
 
 
 def drawn(given, n=4096, path="coupler.length", scene=PRESS, **options) -> np.ndarray:
-    return ls.sample(scene, {path: given}, n, **options).arrays[path].values
+    return ls.sample(scene, {path: given}, n=n, **options).arrays[path].values
 
 
 def refused(*arguments, **options) -> list[str]:

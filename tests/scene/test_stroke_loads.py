@@ -37,7 +37,7 @@ def press(mechanism=None, force=LAST_12_MM, omega2=10.0, **words) -> ls.Scene:
 
 
 def force_of(scene, theta2) -> np.ndarray:
-    return ls.sweep(scene, theta2, ["T12"])["loads[1].force[1]"].values
+    return ls.sweep(scene, theta2, of=["T12"])["loads[1].force[1]"].values
 
 
 def position(theta2, offset=0.01, sign=1.0):
@@ -114,7 +114,7 @@ def test_a_function_of_the_position_is_the_table_of_its_values():
 
 def test_a_constant_force_acts_on_its_way_alone():
     theta2 = np.arange(0.0, 360.0, 0.7)
-    v = ls.sweep(press(), theta2, ["v_slider"]).v_slider.values
+    v = ls.sweep(press(), theta2, of=["v_slider"]).v_slider.values
     found = force_of(press(force=-300.0, over="slider.position", interpolation=None), theta2)
     np.testing.assert_array_equal(found, np.where(v > 0.0, -300.0, 0.0))
 
@@ -124,7 +124,7 @@ def test_a_torque_follows_the_rocker():
     torque = table([0.0, -12.0, 5.0], [160.0, 180.0, 200.0])
     words = {"over": "rocker.angle", "while_": "clockwise"}
     scene = ls.Scene(four_bar, omega2=30.0, loads=[ls.Load("rocker", torque=torque, **words)])
-    cycle = ls.sweep(scene, 360, ["theta4", "omega4", "T12"])
+    cycle = ls.sweep(scene, 360, of=["theta4", "omega4", "T12"])
     angle = np.mod(cycle.theta4.values, 360.0)
     assert np.ptp(cycle.theta4.values) > 300.0  # it does
     expected = np.where(cycle.omega4.values < 0.0, np.interp(angle, [160.0, 180.0, 200.0], [0.0, -12.0, 5.0]), 0.0)
@@ -134,7 +134,7 @@ def test_a_torque_follows_the_rocker():
 def test_a_cylinder_works_while_it_extends():
     arm = ls.example("quick-return").mechanism
     load = ls.Load("block", force=(-700.0, 0.0), frame="link", over="block.position", while_="extending")
-    cycle = ls.sweep(ls.Scene(arm, omega2=5.0, loads=[load]), 360, ["slide_velocity", "T12"])
+    cycle = ls.sweep(ls.Scene(arm, omega2=5.0, loads=[load]), 360, of=["slide_velocity", "T12"])
     expected = np.where(cycle.slide_velocity.values > 0.0, -700.0, 0.0)
     np.testing.assert_array_equal(cycle["loads[1].force[1]"].values, expected)
 
@@ -167,7 +167,7 @@ def test_the_mean_torque_does_the_work_of_the_push():
 
 
 def test_power_balances():
-    residual = ls.sweep(press(friction := machine(friction=0.1)), 720, ["power_residual", "power"])
+    residual = ls.sweep(press(friction := machine(friction=0.1)), 720, of=["power_residual", "power"])
     assert friction.friction == 0.1
     assert float(abs(residual.power_residual).max()) < 1e-9 * float(abs(residual.power).max())
 
@@ -183,16 +183,16 @@ def test_every_corner_is_looked_at(name, words, drawn):
     """Of other machines, too: both sides of each crank angle at which the load jumps, found here by bisection."""
     quantity, force = drawn
     example = replace(ls.example(name), loads=[])
-    fine = ls.sweep(example, 3600, [quantity])[quantity]
+    fine = ls.sweep(example, 3600, of=[quantity])[quantity]
     middle = float(fine.min() + 0.4 * (fine.max() - fine.min()))
     load = ls.Load("rocker", torque=table([0.0, force], [middle - 1.0, middle]), interpolation="step", **words)
     scene = replace(example, loads=[load])
-    loaded = ls.sweep(scene, 3600, ["T12"])["loads[1].torque"].values != 0.0
+    loaded = ls.sweep(scene, 3600, of=["T12"])["loads[1].torque"].values != 0.0
     for k in np.flatnonzero(loaded != np.roll(loaded, 1)):
         low, high = (k - 1) * 0.1, k * 0.1
         for _ in range(40):
             half = 0.5 * (low + high)
-            on = ls.sweep(scene, [half], ["T12"])["loads[1].torque"].values[0] != 0.0
+            on = ls.sweep(scene, [half], of=["T12"])["loads[1].torque"].values[0] != 0.0
             low, high = (half, high) if on == loaded[k - 1] else (low, half)
         apart = [abs((angle - half + 180.0) % 360.0 - 180.0) for angle in scene.jumps()]
         assert np.nanmin(apart) < 1e-9
@@ -203,27 +203,27 @@ def test_a_study_of_offsets_is_each_design_by_itself():
     rods = xr.DataArray([0.12, 0.16], dims="rod")
     many = ls.SliderCrank(ls.Link(A, 1.0, 1e-3), ls.Link(rods, 0.5, 1e-3), slider_mass=0.5, offset=offsets)
     found = ls.peaks(press(many), [*OF, "F12_rms"])
-    cycle = ls.sweep(press(many), 90, ["T12"])
+    cycle = ls.sweep(press(many), 90, of=["T12"])
     for i, j in np.ndindex(3, 2):
         mechanism = replace(many, offset=float(offsets[i]), rod=replace(many.rod, length=float(rods[j])))
         alone = ls.peaks(press(mechanism), [*OF, "F12_rms"])
         for name in alone.data_vars:
             assert float(found[name].isel(design=i, rod=j)) == float(alone[name]), name
-        np.testing.assert_array_equal(cycle.T12.isel(design=i, rod=j), ls.sweep(press(mechanism), 90, ["T12"]).T12)
+        np.testing.assert_array_equal(cycle.T12.isel(design=i, rod=j), ls.sweep(press(mechanism), 90, of=["T12"]).T12)
 
 
 def test_a_machine_that_moves_over_part_of_a_turn():
     short = machine(offset=0.11)
     found = ls.peaks(press(short, force=table([-100.0, 0.0], [0.0, 0.005])), ["F14"])
     assert int(found.status) in (1, 3)
-    cycle = ls.sweep(press(short), 360, ["status", "F14"])
+    cycle = ls.sweep(press(short), 360, of=["status", "F14"])
     assert set(cycle.status.values.tolist()) == {0, 1}
     np.testing.assert_array_equal(np.isnan(cycle.F14), cycle.status != 0)
 
 
 def test_shares_of_a_breakdown_add_up():
     shares = ls.breakdown(press(), "T12", theta2=[10.0, 100.0])
-    whole = ls.sweep(press(), [10.0, 100.0], ["T12"]).T12
+    whole = ls.sweep(press(), [10.0, 100.0], of=["T12"]).T12
     np.testing.assert_allclose(shares.T12.sum("source"), whole, rtol=1e-9)
 
 
@@ -263,7 +263,7 @@ def test_a_scene_file_says_the_same(tmp_path, force):
 
 def test_results_and_studies_hold_the_whole_load(tmp_path):
     many = press(machine(xr.DataArray([0.0, 0.01, 0.02], dims="design")))
-    found = ls.study(many, tmp_path / "study.nc", ["T12"])
+    found = ls.study(many, tmp_path / "study.nc", of=["T12"])
     assert ls.load_scene(tmp_path / "study.nc") == many
     np.testing.assert_array_equal(found.T12_max, ls.peaks(many, ["T12"]).T12_max)
     second = ls.scene_at(found, design=1)

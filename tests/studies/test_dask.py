@@ -62,7 +62,7 @@ def with_status_over_all(peaks: xr.Dataset, like: xr.Dataset) -> xr.Dataset:
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "one"])
 def test_a_lazy_sweep_is_the_sweep(scene):
     scene = SCENES[scene]()
-    found, expected = ls.sweep(lazy(scene), theta2=48), ls.sweep(scene, theta2=48)
+    found, expected = ls.sweep(lazy(scene), 48), ls.sweep(scene, 48)
     assert all(values.chunks is not None for values in found.data_vars.values())
     assert_equal(found, expected)
 
@@ -70,7 +70,10 @@ def test_a_lazy_sweep_is_the_sweep(scene):
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "one"])
 def test_lazy_peaks_are_the_peaks(scene):
     scene = SCENES[scene]()
-    found, expected = ls.peaks(lazy(scene), theta2=48), ls.peaks(scene, theta2=48)
+    found, expected = (
+        ls.peaks(lazy(scene), **{scene.mechanism.index: 48}),
+        ls.peaks(scene, **{scene.mechanism.index: 48}),
+    )
     assert_equal(found, with_status_over_all(expected, found))
 
 
@@ -224,8 +227,8 @@ def test_dask_is_not_needed():
 
 
 def test_a_lazy_scene_is_the_same_study(tmp_path):
-    ls.study(grid(), tmp_path / "eager.nc", ["F32"], chunk=9, theta2=24)
-    ls.study(lazy(grid()), tmp_path / "lazy.nc", ["F32"], chunk=9, theta2=24)
+    ls.study(grid(), tmp_path / "eager.nc", of=["F32"], chunk=9, theta2=24)
+    ls.study(lazy(grid()), tmp_path / "lazy.nc", of=["F32"], chunk=9, theta2=24)
     assert (tmp_path / "lazy.nc").read_bytes() == (tmp_path / "eager.nc").read_bytes()
 
 
@@ -325,7 +328,7 @@ def test_a_study_begun_here_goes_on_there(client, tmp_path, monkeypatch):
     monkeypatch.setattr(client, "submit", lambda *a, **k: sent.append(a) or submit(*a, **k))
     only_on_the_cluster(monkeypatch)
     after_each_chunk(monkeypatch, lambda kept: ahead.append(len(sent) - len(kept.kept) + 3))
-    ls.study(many(), path, ["F32"], chunk=6, client=client)
+    ls.study(many(), path, of=["F32"], chunk=6, client=client)
     assert path.read_bytes() == whole
     assert len(sent) == 7  # of ten chunks three were there
     assert ahead[0] == 4  # two for each of two workers
@@ -347,7 +350,7 @@ def test_a_study_that_is_stopped_takes_its_chunks_back(client, tmp_path, monkeyp
 
 def test_workers_of_another_version_are_refused(client, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster_module, "version", lambda name: "9.9")
-    said = refused(ls.study, many(), tmp_path / "study.nc", ["F32"], chunk=30, theta2=6)
+    said = refused(ls.study, many(), tmp_path / "study.nc", of=["F32"], chunk=30, theta2=6)
     assert (
         said == f"a worker has linksweep {ls.peaks(PRESS).linksweep_version}, and this is 9.9: install the same on all"
     )

@@ -59,7 +59,7 @@ def test_a_variable_has_only_the_dims_that_it_depends_on(tmp_path):
 
 def test_words_of_peaks_are_passed_on(tmp_path):
     angles = np.array([0.0, 10.0, 20.0, 30.0])
-    found = ls.study(many(), tmp_path / "study.nc", "T12_mean", chunk=7, theta2=angles)
+    found = ls.study(many(), tmp_path / "study.nc", of="T12_mean", chunk=7, theta2=angles)
     assert found.attrs["command"].startswith("linksweep.study(scene, of=['T12_mean'], theta2=array([ 0., 10.")
     assert found.T12_mean.identical(ls.peaks(many(), "T12_mean", theta2=angles).T12_mean)
 
@@ -70,7 +70,7 @@ def test_threads_are_passed_on(tmp_path, monkeypatch):
     monkeypatch.setattr(
         chunk_module, "peaks", lambda *a, threads, **b: seen.append(threads) or peaks(*a, threads=threads, **b)
     )
-    ls.study(many(), tmp_path / "study.nc", ["F32"], chunk=30, threads=2)
+    ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=30, threads=2)
     assert seen == [1, 2, 2]  # the first is the one design that is tried out
 
 
@@ -119,7 +119,7 @@ def test_who_watches_sees_how_far_it_is(tmp_path, monkeypatch):
     monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(sys, "stderr", screen)
-        ls.study(many(), tmp_path / "study.nc", ["F32"], chunk=6)
+        ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=6)
     assert re.search(r"60\.0/60\.0", screen.getvalue())
     assert " designs/s]" in screen.getvalue()
 
@@ -132,13 +132,13 @@ def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
     monkeypatch.setattr(study_module, "_run", lambda job, *words: chunks.append(len(job.blocks)) or run(job, *words))
     pushed = replace(many(), loads=[ls.Load("rocker", torque=lambda theta2: np.cos(np.radians(theta2)))])
     for name, scene, words in (("a", many(), {}), ("b", pushed, {}), ("c", pushed, {"theta2": 36})):
-        ls.study(scene, tmp_path / f"{name}.nc", ["F32"], **words)
+        ls.study(scene, tmp_path / f"{name}.nc", of=["F32"], **words)
     assert chunks == [1, 3, 1]  # of 60 designs
 
 
 def test_who_does_not_watch_gets_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
-    ls.study(many(), tmp_path / "study.nc", ["F32"], chunk=6)
+    ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=6)
     assert capsys.readouterr() == ("", "")
 
 

@@ -33,10 +33,10 @@ def other() -> ls.Scene:
 
 def test_a_finished_study_of_something_else_is_refused_and_stays(tmp_path):
     path = tmp_path / "study.nc"
-    ls.study(many(), path, ["F32"])
+    ls.study(many(), path, of=["F32"])
     before = content(tmp_path)
-    assert refused(ls.study, other(), path, ["F32"]).startswith(f"{path}: is a study of another scene; move it away")
-    said = refused(ls.study, many(), path, ["T12"])
+    assert refused(ls.study, other(), path, of=["F32"]).startswith(f"{path}: is a study of another scene; move it away")
+    said = refused(ls.study, many(), path, of=["T12"])
     assert said.startswith(f"{path}: is a study of another request ({{'of': ['F32']}}, not {{'of': ['T12']}}); move it")
     assert content(tmp_path) == before
 
@@ -45,20 +45,20 @@ def test_functions_of_an_angle_are_told_apart_by_their_values(tmp_path):
     def scene(size: float) -> ls.Scene:
         return replace(many(), alpha2=lambda theta2: size * np.cos(np.radians(theta2)))
 
-    ls.study(scene(1.0), tmp_path / "study.nc", ["F32"])
-    ls.study(scene(1.0), tmp_path / "study.nc", ["F32"])
-    assert "another scene" in refused(ls.study, scene(2.0), tmp_path / "study.nc", ["F32"])
+    ls.study(scene(1.0), tmp_path / "study.nc", of=["F32"])
+    ls.study(scene(1.0), tmp_path / "study.nc", of=["F32"])
+    assert "another scene" in refused(ls.study, scene(2.0), tmp_path / "study.nc", of=["F32"])
 
 
 def test_the_folder_of_something_else_is_refused_and_stays(stopped, monkeypatch):
     path, _ = stopped
     before = content(path.parent)
     begun = f"{path}.partial: was begun with another"
-    assert refused(ls.study, other(), path, ["F32"], chunk=6).startswith(f"{begun} scene; go on with that, move the")
-    assert refused(ls.study, many(), path, ["T12"], chunk=6).startswith(f"{begun} request (")
-    assert refused(ls.study, many(), path, ["F32"], chunk=7).startswith(f"{begun} chunk (6, not 7); go on with")
+    assert refused(ls.study, other(), path, of=["F32"], chunk=6).startswith(f"{begun} scene; go on with that, move the")
+    assert refused(ls.study, many(), path, of=["T12"], chunk=6).startswith(f"{begun} request (")
+    assert refused(ls.study, many(), path, of=["F32"], chunk=7).startswith(f"{begun} chunk (6, not 7); go on with")
     monkeypatch.setattr(study_module, "version", lambda name: "99.0")
-    assert refused(ls.study, many(), path, ["F32"], chunk=6).startswith(f"{begun} version (")
+    assert refused(ls.study, many(), path, of=["F32"], chunk=6).startswith(f"{begun} version (")
     assert content(path.parent) == before
 
 
@@ -68,7 +68,7 @@ def test_a_folder_whose_manifest_is_damaged_is_refused_and_stays(stopped):
     for text in ("{", "[]", "{}"):
         manifest.write_text(text)
         before = content(path.parent)
-        assert refused(ls.study, many(), path, ["F32"], chunk=6).startswith(f"{manifest}: is damaged: ")
+        assert refused(ls.study, many(), path, of=["F32"], chunk=6).startswith(f"{manifest}: is damaged: ")
         assert content(path.parent) == before
 
 
@@ -96,8 +96,8 @@ def test_two_at_once_are_refused(stopped):
     path, whole = stopped
     job = Job(many(), ["F32"], {}, 6)
     with partial(Path(f"{path}.partial"), study_module._manifest(job)):
-        assert "another process is at work on this study" in refused(ls.study, many(), path, ["F32"], chunk=6)
-    ls.study(many(), path, ["F32"], chunk=6)
+        assert "another process is at work on this study" in refused(ls.study, many(), path, of=["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert path.read_bytes() == whole
 
 
@@ -141,9 +141,9 @@ def where_is(path: Path, values: xr.DataArray) -> int:
 
 def test_a_damaged_file_names_the_variable(tmp_path):
     path = tmp_path / "study.nc"
-    worst = ls.study(many(), path, ["F32", "T12"]).load()
+    worst = ls.study(many(), path, of=["F32", "T12"]).load()
     flipped(path, where_is(path, worst.T12_min) + 77, 5)
-    for call in (ls.open_study, ls.load_scene, lambda path: ls.study(many(), path, ["F32", "T12"])):
+    for call in (ls.open_study, ls.load_scene, lambda path: ls.study(many(), path, of=["F32", "T12"])):
         assert refused(call, path).startswith(
             f"{path}: is damaged: its checksum does not match, T12_min cannot be read; move it away and study again"
         )
@@ -151,7 +151,7 @@ def test_a_damaged_file_names_the_variable(tmp_path):
 
 def test_damage_while_it_is_open_is_noticed_by_the_variable(tmp_path):
     path = tmp_path / "study.nc"
-    expected = ls.study(many(), path, ["F32", "T12"]).load()
+    expected = ls.study(many(), path, of=["F32", "T12"]).load()
     found = ls.open_study(path)
     flipped(path, where_is(path, expected.T12_peak) + 9)
     assert found.F32_peak.identical(expected.F32_peak)
@@ -173,7 +173,7 @@ def test_variables_are_read_when_they_are_used(tmp_path):
 @pytest.mark.parametrize("part", [0.0, 0.3, 0.6, 0.999])
 def test_a_file_that_was_cut_is_refused(part, tmp_path):
     path = tmp_path / "study.nc"
-    ls.study(many(), path, ["F32"])
+    ls.study(many(), path, of=["F32"])
     path.write_bytes(path.read_bytes()[: int(part * path.stat().st_size)])
     assert refused(ls.open_study, path).startswith(f"{path}: is no study that linksweep finished: cut off")
 

@@ -32,7 +32,7 @@ def test_a_stopped_study_goes_on(stopped, monkeypatch):
     path, whole = stopped
     assert len(os.listdir(f"{path}.partial")) == 4  # three chunks and a manifest
     computed = stop_after(99, monkeypatch)
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert [block["speed"].start for block in computed] == [18, 24, 30, 36, 42, 48, 54]
     assert path.read_bytes() == whole
     assert sorted(os.listdir(path.parent)) == ["study.nc", "whole.nc"]
@@ -40,9 +40,9 @@ def test_a_stopped_study_goes_on(stopped, monkeypatch):
 
 def test_a_finished_study_is_opened_and_not_computed(tmp_path, monkeypatch):
     path = tmp_path / "study.nc"
-    first, content = ls.study(many(), path, ["F32"]).load(), path.read_bytes()
+    first, content = ls.study(many(), path, of=["F32"]).load(), path.read_bytes()
     monkeypatch.setattr(Job, "compute", None)
-    assert ls.study(many(), path, "F32", chunk=7).load().identical(first)
+    assert ls.study(many(), path, of="F32", chunk=7).load().identical(first)
     assert path.read_bytes() == content
 
 
@@ -82,8 +82,8 @@ def test_killed_at_random_moments_it_ends_as_the_same_file(tmp_path):
         process.communicate()
         assert process.returncode == -signal.SIGKILL
         assert goal <= chunks() < 60
-    ls.study(many(), tmp_path / "whole.nc", ["F32"], chunk=1)
-    ls.study(many(), path, ["F32"], chunk=1)
+    ls.study(many(), tmp_path / "whole.nc", of=["F32"], chunk=1)
+    ls.study(many(), path, of=["F32"], chunk=1)
     assert path.read_bytes() == (tmp_path / "whole.nc").read_bytes()
     assert sorted(os.listdir(tmp_path)) == ["study.nc", "whole.nc"]
 
@@ -112,20 +112,20 @@ def dies_at(step: int, path: Path) -> bool:
     try:
         for name in STEPS:
             setattr(os, name, counted(getattr(os, name)))
-        ls.study(many(), path, ["F32"], chunk=20)
+        ls.study(many(), path, of=["F32"], chunk=20)
     finally:
         os._exit(0)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_killed_at_every_step_on_files_it_ends_as_the_same_file(tmp_path):
-    ls.study(many(), tmp_path / "whole.nc", ["F32"], chunk=20)
+    ls.study(many(), tmp_path / "whole.nc", of=["F32"], chunk=20)
     whole = (tmp_path / "whole.nc").read_bytes()
     for step in range(200):
         folder = tmp_path / str(step)
         folder.mkdir()
         died = dies_at(step, folder / "study.nc")
-        ls.study(many(), folder / "study.nc", ["F32"], chunk=20)
+        ls.study(many(), folder / "study.nc", of=["F32"], chunk=20)
         assert (folder / "study.nc").read_bytes() == whole
         assert os.listdir(folder) == ["study.nc"]
         if not died:
@@ -141,7 +141,7 @@ def test_a_damaged_chunk_is_computed_again(stopped, monkeypatch):
     third.unlink()
     (first.parent / ".left.part").write_bytes(b"half a chunk")
     computed = stop_after(99, monkeypatch)
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert len(computed) == 10
     assert path.read_bytes() == whole
 
@@ -149,10 +149,10 @@ def test_a_damaged_chunk_is_computed_again(stopped, monkeypatch):
 def test_files_of_others_in_the_folder_stay(stopped):
     path, whole = stopped
     (path.parent / "study.nc.partial" / "notes.txt").write_text("mine")
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert path.read_bytes() == whole
     assert os.listdir(f"{path}.partial") == ["notes.txt"]
-    assert ls.study(many(), path, ["F32"], chunk=6).sizes == {"speed": 60}
+    assert ls.study(many(), path, of=["F32"], chunk=6).sizes == {"speed": 60}
 
 
 def test_a_chunk_damaged_while_the_file_is_put_together_is_computed_again(stopped, monkeypatch):
@@ -165,7 +165,7 @@ def test_a_chunk_damaged_while_the_file_is_put_together_is_computed_again(stoppe
         return layout
 
     monkeypatch.setattr(assemble, "layout_of", damaging)
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert path.read_bytes() == whole
 
 
@@ -215,10 +215,10 @@ def files_at_most(size: int):
 def test_a_disk_that_takes_no_more_leaves_the_chunks(stopped, size, kept):
     path, whole = stopped
     with files_at_most(size), pytest.raises(OSError, match=r"finished chunks stay: '.*study\.nc\.partial'"):
-        ls.study(many(), path, ["F32"], chunk=6)
+        ls.study(many(), path, of=["F32"], chunk=6)
     assert len(list(path.parent.glob("study.nc.partial/*.npz"))) == max(kept, 3)
     assert not path.exists()
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert path.read_bytes() == whole
 
 
@@ -228,9 +228,9 @@ def test_a_disk_without_room_for_the_file_is_told_before_it_is_written(stopped, 
         usage = assemble.shutil.disk_usage(path.parent)
         patch.setattr(assemble.shutil, "disk_usage", lambda folder: usage._replace(free=5000))
         with pytest.raises(OSError, match="No space left on device; mend that and run the same again") as error:
-            ls.study(many(), path, ["F32"], chunk=6)
+            ls.study(many(), path, of=["F32"], chunk=6)
     assert error.value.errno == errno.ENOSPC
-    ls.study(many(), path, ["F32"], chunk=6)
+    ls.study(many(), path, of=["F32"], chunk=6)
     assert path.read_bytes() == whole
 
 
@@ -254,7 +254,7 @@ def test_a_full_disk(tmp_path):
 def test_a_link_stays_a_link(tmp_path):
     (tmp_path / "there").mkdir()
     (tmp_path / "study.nc").symlink_to(tmp_path / "there" / "study.nc")
-    ls.study(many(), tmp_path / "study.nc", ["F32"])
+    ls.study(many(), tmp_path / "study.nc", of=["F32"])
     assert (tmp_path / "study.nc").is_symlink()
     assert os.listdir(tmp_path / "there") == ["study.nc"]
 
@@ -270,7 +270,7 @@ def test_the_file_appears_whole_and_flushed(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "replace", renamed)
     monkeypatch.setattr(os, "fsync", lambda handle: done.append(("fsync", os.fstat(handle).st_ino)) or fsync(handle))
-    ls.study(many(), path, ["F32"], chunk=20)
+    ls.study(many(), path, of=["F32"], chunk=20)
     kind, node, designs = next(step for step in done if step[0] == "replace")
     assert (kind, designs, path.stat().st_ino) == ("replace", 60, node)
     before = done[: done.index((kind, node, designs))]

@@ -50,7 +50,7 @@ def wrong_lives(scene: ls.Scene) -> Iterator[str]:
 def _loads(scene: ls.Scene, forces: dict[str, str], count: int) -> dict[str, float]:
     """Return the equivalent load of each pin from `count` samples."""
     angles = (np.arange(count) + 0.5) * (scene.period / count)
-    cycle = ls.sweep(scene, angles, [*forces.values(), *(f"omega_{pin}" for pin in forces)])
+    cycle = ls.sweep(scene, angles, of=[*forces.values(), *(f"omega_{pin}" for pin in forces)])
     loads = {}
     for pin, force in forces.items():
         turns = abs(cycle[f"omega_{pin}"]).broadcast_like(cycle["theta2"]).where(cycle["status"] == 0)

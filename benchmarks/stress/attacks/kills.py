@@ -82,7 +82,7 @@ def _begin(work: Callable[[Path], None], path: Path, began: object) -> None:
 
 
 def _save(path: Path, samples: int) -> None:
-    ls.save(ls.sweep(ls.example("press"), samples, ["T12"]), path)
+    ls.save(ls.sweep(ls.example("press"), samples, of=["T12"]), path)
 
 
 def _save_on(path: Path) -> None:

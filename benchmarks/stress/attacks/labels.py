@@ -76,7 +76,7 @@ def _kept(name: str, labels: Any) -> Iterator[str]:
     with tempfile.TemporaryDirectory() as folder:
         ways = {
             "study.nc": lambda path: ls.study(scene, path, of=["T12"], theta2=4),
-            "sweep.nc": lambda path: ls.save(ls.sweep(scene, 4, ["T12"]), path),
+            "sweep.nc": lambda path: ls.save(ls.sweep(scene, 4, of=["T12"]), path),
             "scene.toml": lambda path: ls.save(scene, path),
         }
         for way, write in ways.items():

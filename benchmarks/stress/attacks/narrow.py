@@ -129,7 +129,7 @@ def _to(machine: Any, spring: ls.Spring, place: float) -> complex:
     lengths = []
     for x, y in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
         shifted = ls.Spring(("ground", x, y), spring.to, 0.0, 0.0)
-        cycle = ls.sweep(ls.Scene(machine, 1.0, loads=[shifted]), [place], outputs=["load1_length"])
+        cycle = ls.sweep(ls.Scene(machine, 1.0, loads=[shifted]), [place], of=["load1_length"])
         lengths.append(cycle.load1_length.values.item() ** 2)
     return 0.5 * (1.0 + lengths[0] - lengths[1]) + 0.5j * (1.0 + lengths[0] - lengths[2])
 

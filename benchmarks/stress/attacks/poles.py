@@ -105,7 +105,7 @@ def _unbounded(scene: ls.Scene) -> Iterator[str]:
     """Yield a sentence about each pin force that is finite although the drive passes a dead centre, or infinite
     although the crank turns fully and the drive keeps moving."""
     rate = DRIVEN[type(scene.mechanism).__name__, scene.drive]
-    speed = ls.sweep(ls.Scene(scene.mechanism, 1.0), SAMPLES, [rate])[rate].values
+    speed = ls.sweep(ls.Scene(scene.mechanism, 1.0), SAMPLES, of=[rate])[rate].values
     passes = bool((speed * np.roll(speed, 1) < 0.0).any())
     peaks_ds = ls.peaks(scene)
     peaks = {

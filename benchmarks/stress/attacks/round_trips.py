@@ -48,7 +48,7 @@ def _problems(scene: ls.Scene, folder: Path) -> list[str]:
 
 
 WAYS: dict[str, Callable] = {
-    "sweep.nc": lambda scene, expected, path: ls.save(ls.sweep(scene, 36, outputs=["T12"]), path),
+    "sweep.nc": lambda scene, expected, path: ls.save(ls.sweep(scene, 36, of=["T12"]), path),
     "peaks.nc": lambda scene, expected, path: ls.save(expected, path),
     "study.nc": lambda scene, expected, path: ls.study(scene, path, of=OF).close(),
     "scene.nc": lambda scene, expected, path: ls.save(scene, path),

@@ -86,7 +86,7 @@ def _wrong(case: _Case, step: float) -> Iterator[str]:
     table = xr.DataArray(case.values, {"position": case.places}, "position")
     scene = case.scene(force=table, over=case.over, while_=case.way, interpolation=case.kind)
     angles = np.arange(0.0, 360.0, step) + 0.0131
-    force, expected = ls.sweep(scene, angles, ["T12"])["loads[1].force[1]"].values, case.force(angles)
+    force, expected = ls.sweep(scene, angles, of=["T12"])["loads[1].force[1]"].values, case.force(angles)
     if not np.allclose(force, expected, rtol=0.0, atol=1e-6):
         yield f"forces differ by {abs(force - expected).max():.3g} N: {case}"
         return

@@ -46,8 +46,8 @@ def run(path: str, designs: int, seed: int) -> None:
     """Compute the study, and print the peak memory of this process [byte]."""
     import resource  # not available on Windows
 
-    scene = ls.sample(ls.example("press"), SPREAD, designs, seed=seed)
-    ls.study(scene, path, OF, chunk=max(1, designs // CHUNKS) if designs < 1000 else None).close()
+    scene = ls.sample(ls.example("press"), SPREAD, n=designs, seed=seed)
+    ls.study(scene, path, of=OF, chunk=max(1, designs // CHUNKS) if designs < 1000 else None).close()
     kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     print(kilobytes * (1 if sys.platform == "darwin" else 1024))
 

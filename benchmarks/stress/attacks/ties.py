@@ -33,7 +33,7 @@ def misplaced(scene: ls.Scene) -> Iterator[str]:
     for place in map(str, peaks_ds.data_vars):
         if place.endswith("_at") and math.isfinite(peak := float(peaks_ds[place.removesuffix("_at")])):
             name, at = place.rsplit("_", 2)[0], float(peaks_ds[place])
-            there = ls.sweep(scene, [at + away for away in BESIDE], [name])[name].values
+            there = ls.sweep(scene, [at + away for away in BESIDE], of=[name])[name].values
             error = np.fmin.reduce(np.abs(there - peak))
             if not (0.0 <= at < scene.period and error <= 1e-7 * abs(peak) + 1e-12):
                 yield f"{place} = {at!r}: {name} is {there} there, and the peak {peak}"

@@ -69,6 +69,7 @@ class Aim(NamedTuple):
 def best_counterweights(
     scene: Scene,
     minimize: Mapping[str, float],
+    *,
     radius: Any,
     most: Any = None,
     theta2: int = 720,
@@ -162,7 +163,10 @@ def _aims(
 ) -> list[Aim]:
     components = {name: components_of(scene.table.quantity[name]) for name, _ in sizes}
     names = [name for pair in components.values() for name in pair]
-    coefficients, cycle = regressor(scene, names, theta2, threads), sweep(scene, theta2, names, threads=threads)
+    coefficients, cycle = (
+        regressor(scene, names, theta2=theta2, threads=threads),
+        sweep(scene, theta2, of=names, threads=threads),
+    )
     labels = [f"{link}.{word}" for link in links for word in OF_LINK]
     ok = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
     share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[ok]

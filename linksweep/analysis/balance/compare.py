@@ -23,7 +23,7 @@ SIZES = {
 }
 
 
-def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: int | None = None) -> xr.Dataset:
+def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads: int | None = None) -> xr.Dataset:
     """Compare sizes of quantities of two scenes, as before and after balancing.
 
     Parameters
@@ -62,7 +62,7 @@ def compare(before: Scene, after: Scene, of: Any, theta2: int = 720, threads: in
     require_scene(after)
     sizes = sizes_named("of", before, [of] if isinstance(of, str) else of)
     outputs = [*(name for name, _ in sizes), before.mechanism.pace]
-    sides = [_sizes(scene, sweep(scene, theta2, outputs, threads=threads), sizes) for scene in (before, after)]
+    sides = [_sizes(scene, sweep(scene, theta2, of=outputs, threads=threads), sizes) for scene in (before, after)]
     table = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}
     quantity = before.table.quantity
     for name, word in sizes:

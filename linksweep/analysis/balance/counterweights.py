@@ -126,7 +126,7 @@ def _plain(number: Any) -> Number:
     return number.drop_attrs() if number.dims else float(number)
 
 
-def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) -> list[Counterweight]:
+def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None) -> list[Counterweight]:
     """Compute the counterweights that cancel a machine's shaking force, or a fraction of its first order.
 
     Parameters
@@ -163,7 +163,7 @@ def counterweights(scene: Scene, radius: Any, fraction: Number | None = None) ->
     >>> import linksweep as ls
     >>> scene = ls.example("press")
     >>> balanced = ls.with_counterweights(scene, ls.counterweights(scene, radius=0.06))
-    >>> before, after = (float(ls.sweep(s, outputs=["Fs"]).Fs.max()) for s in (scene, balanced))
+    >>> before, after = (float(ls.sweep(s, of=["Fs"]).Fs.max()) for s in (scene, balanced))
     >>> after < 1e-10 * before
     True
     """

@@ -23,7 +23,7 @@ from linksweep.scene.grid import whole_turns
 TURN = 360.0
 
 
-def orders(ds: xr.Dataset, of: str | Iterable[str], n: int = 12) -> xr.Dataset:
+def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Dataset:
     """Compute the Fourier orders of signals over a whole cycle: of shaking forces, torques, accelerations.
 
     Parameters

@@ -35,14 +35,14 @@ UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m2"}
 OF_LINK = tuple(UNITS)
 
 
-def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
+def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: int | None = None) -> xr.Dataset:
     """Compute the coefficients of the links' mass distributions in forces and torques.
 
     Parameters
     ----------
     scene : Scene
         Scene without friction.
-    outputs : iterable of str
+    of : iterable of str
         Names of components of forces, of torques and powers ("F32x", "T12", "Fsx", "Ms").
     theta2 : int or array_like, default 720
         Count of crank angles, or angles [degree].
@@ -75,14 +75,14 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
     >>> bool(abs(torque - ls.sweep(scene, theta2=36, outputs=["T12"]).T12).max() < 1e-12)
     True
     """
-    names = _checked(scene, outputs)
+    names = _checked(scene, of)
     mechanism, quantity = scene.mechanism, scene.table.quantity
     grid = crank_grid(theta2, scene.period, mechanism.index)
     angles = grid.angles  # of the loads' whole cycle
     values = _values(mechanism)
     probes = _with_masses(mechanism, list(values))
-    alone = sweep(replace(scene, mechanism=probes, loads=()), angles, names, threads=threads)
-    massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, names, threads=threads)
+    alone = sweep(replace(scene, mechanism=probes, loads=()), angles, of=names, threads=threads)
+    massless = sweep(replace(scene, mechanism=_with_masses(mechanism, [])), angles, of=names, threads=threads)
     known = np.stack([np.broadcast_to(row, len(values)) for row in _values(probes).values()], axis=-1)
     inverse = xr.DataArray(np.linalg.inv(known), {"parameter": list(values)}, ("parameter", PROBE))
     table = {"value": joined(values.values(), "parameter", values).transpose(..., "parameter")}
@@ -98,11 +98,11 @@ def regressor(scene: Scene, outputs: Iterable[str], theta2: Any = 720, threads: 
     return xr.Dataset({**table, "status": massless["status"]}, attrs=attributes)
 
 
-def _checked(scene: Scene, outputs: Iterable[str]) -> list[str]:
+def _checked(scene: Scene, of: Iterable[str]) -> list[str]:
     require(scene, "bodies")
-    names = requested("outputs", outputs)
+    names = requested("of", of)
     linear = [name for name, q in scene.table.quantity.items() if q.units in LINEAR_UNITS and not q.squared]
-    refuse([problem for name in names for problem in quantity_problems("outputs", name, linear, scene)])
+    refuse([problem for name in names for problem in quantity_problems("of", name, linear, scene)])
     rubs = np.any(scene.mechanism.friction)
     refuse(["friction is not 0: forces are not linear in the masses then; make it 0"] if rubs else [])
     return names

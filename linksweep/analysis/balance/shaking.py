@@ -13,7 +13,7 @@ from linksweep.scene.checked_number import checked_pair
 POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m from A")
 
 
-def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.DataArray:
+def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.DataArray:
     """Compute the moment of the moving links' inertia on the ground about a point of the ground.
 
     Parameters
@@ -36,14 +36,14 @@ def shaking_moment(ds: xr.Dataset, about: tuple[Any, Any] = (0.0, 0.0)) -> xr.Da
     Examples
     --------
     >>> import linksweep as ls
-    >>> shaking = ls.sweep(ls.example("press"), outputs=["Fsx", "Fsy", "Ms"])
+    >>> shaking = ls.sweep(ls.example("press"), of=["Fsx", "Fsy", "Ms"])
     >>> about_d = ls.shaking_moment(shaking, about=(0.20, 0.0))
     >>> about_d.units, bool((about_d == shaking.Ms - 0.20 * shaking.Fsy).all())
     ('N m', True)
     """
     refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
     missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
-    advice = 'sweep with outputs=["Fsx", "Fsy", "Ms"]'
+    advice = 'sweep with of=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])
     about = checked_pair("about", about, POINT)
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])

@@ -44,7 +44,7 @@ CURVE = {
 }
 
 
-def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
+def geometry(scene: Scene, *, threads: int | None = None) -> xr.Dataset:
     """Compute stroke or swing, time ratio and extreme transmission angles of a machine.
 
     Parameters
@@ -97,7 +97,7 @@ def geometry(scene: Scene, threads: int | None = None) -> xr.Dataset:
 
 
 def coupler_curve(
-    scene: Scene, at: tuple[Any, Any], theta2: Any = 720, link: str | None = None, threads: int | None = None
+    scene: Scene, at: tuple[Any, Any], *, theta2: Any = 720, link: str | None = None, threads: int | None = None
 ) -> xr.Dataset:
     """Compute the curve that a point of a link draws, with velocity and acceleration.
 
@@ -138,7 +138,7 @@ def coupler_curve(
     role = _floating(scene) if link is None else link
     refuse(choice_problems("link", role, bodies))
     at = checked_pair("at", at, POLAR_POINT)
-    body, cycle = bodies[role], sweep(scene, theta2, ["status"], threads=threads)
+    body, cycle = bodies[role], sweep(scene, theta2, of=["status"], threads=threads)
     k = body.number
     position, velocity, acceleration = (
         _numbers(scene, theta2, pair, threads) for pair in (body.pin_position, body.pin_velocity, body.pin_acceleration)

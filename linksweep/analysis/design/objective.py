@@ -129,6 +129,7 @@ def _alone(value: Any) -> xr.DataArray:
 def objective(
     scene: Scene,
     parameters: Mapping[str, tuple[Any, Any]],
+    *,
     minimize: str | Measure | None = None,
     maximize: str | Measure | None = None,
     constraint: Measure | None = None,

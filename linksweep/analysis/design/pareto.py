@@ -19,7 +19,7 @@ KEPT = ("ok", "partial_revolution")
 """Status of designs whose peaks count: a machine that moves over part of a turn is not worse for it."""
 
 
-def pareto(ds: xr.Dataset, minimize: Iterable[str] = (), maximize: Iterable[str] = ()) -> xr.Dataset:
+def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[str] = ()) -> xr.Dataset:
     """Select the Pareto front of a study: no other design is as good in every objective and better in one.
 
     Parameters

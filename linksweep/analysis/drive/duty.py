@@ -47,7 +47,7 @@ ENTRIES = (
 LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a cycle, never positive", work=True)
 
 
-def duty(scene: Scene | MultiCylinder, threads: int | None = None) -> xr.Dataset:
+def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Dataset:
     """Compute torque, power and work of the drive over a cycle, by quadrature over the continuous revolution.
 
     Parameters

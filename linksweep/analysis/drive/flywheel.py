@@ -34,7 +34,7 @@ BISECTIONS = 60
 
 
 def flywheel(
-    scene: Scene | MultiCylinder, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
+    scene: Scene | MultiCylinder, *, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
 ) -> xr.Dataset:
     """Compute the flywheel for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
 
@@ -115,8 +115,8 @@ def flywheel(
 def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
     names = ["reduced_torque", "reduced_inertia"]
     if isinstance(scene, MultiCylinder):
-        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, outputs=names)
-    return sweep(replace(scene, alpha2=0.0), theta2, outputs=names)
+        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, of=names)
+    return sweep(replace(scene, alpha2=0.0), theta2, of=names)
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:

@@ -91,7 +91,7 @@ class Motor:
 
 
 def motor_load(
-    scene: Scene, motor: Motor, ratio: Number = 1.0, efficiency: Number = 1.0, theta2: Any = 720
+    scene: Scene, motor: Motor, *, ratio: Number = 1.0, efficiency: Number = 1.0, theta2: Any = 720
 ) -> xr.Dataset:
     """Compute speed and torque of a motor that drives a machine through a gear, and its margin.
 
@@ -144,7 +144,7 @@ def motor_load(
     refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
     omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
-    cycle = sweep(scene, theta2, outputs=[torque, omega, alpha])
+    cycle = sweep(scene, theta2, of=[torque, omega, alpha])
     index = scene.mechanism.index
     T, speed = cycle[torque].broadcast_like(cycle[index]), ratio * cycle[omega]
     fed = T * cycle[omega] > 0.0

@@ -93,7 +93,8 @@ class Bearing(ByContent):
 
 def bearings(
     scene: Scene | MultiCylinder,
-    given: Mapping[str, Bearing] | None = None,
+    pins: Mapping[str, Bearing] | None = None,
+    *,
     theta2: Any = 720,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -102,7 +103,7 @@ def bearings(
     Parameters
     ----------
     scene : Scene; or a MultiCylinder, for the main bearings of its crankshaft: dim `main` in place of `pin`
-    given : a Bearing by pin, {"B": ls.Bearing(...)}, or by main bearing, {"main1": ls.Bearing(...)}; those that are not
+    pins : a Bearing by pin, {"B": ls.Bearing(...)}, or by main bearing, {"main1": ls.Bearing(...)}; those that are not
         named have one without sizes
     theta2 : count of crank angles over the cycle; or, of a machine that moves over part of a turn, any array of angles
         [degree], of which the least and the largest are the ends of its way
@@ -148,25 +149,26 @@ def bearings(
     if isinstance(scene, MultiCylinder):
         from linksweep.analysis.pins.main_bearings import main_bearings  # here: it takes what is below
 
-        return main_bearings(scene.in_memory, given, theta2, threads)
-    pins = checked_pins(scene, given)
+        return main_bearings(scene.in_memory, pins, theta2, threads)
+    links = checked_pins(scene, pins)
     scene = in_memory(scene)
     grid = crank_grid(theta2, scene.period)
     part = None if grid.period else (float(grid.angles.min()), float(grid.angles.max()))
     refuse(angles_missing(scene) + _part_problems(part, scene.period))
-    names = [name for pin, links in pins.items() for name in _outputs(scene, pin, links)]
-    cycle = sweep(scene, theta2, ["omega2", *dict.fromkeys(names)], threads=threads)
-    fitted = {pin: (given or {}).get(pin, Bearing()) for pin in pins}
-    forces, exponents = {pin: _force(links) for pin, links in pins.items()}, {p: b.exponent for p, b in fitted.items()}
+    names = [name for pin, pair in links.items() for name in _outputs(scene, pin, pair)]
+    cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)], threads=threads)
+    fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
+    forces, exponents = {pin: _force(pair) for pin, pair in links.items()}, {p: b.exponent for p, b in fitted.items()}
     turned, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
     parts = [
-        _of_pin(cycle, pins[pin], cycle[f"omega_{pin}"], bearing, reach)
-        | _in_frames(cycle, *pins[pin], scene.mechanism.journals[pin])
+        _of_pin(cycle, links[pin], cycle[f"omega_{pin}"], bearing, reach)
+        | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
         | of_life(turned, pin, bearing)
         for pin, bearing in fitted.items()
     ]
     found = {
-        name: joined([part[name] for part in parts], "pin", pins).assign_attrs(attributes_of(name)) for name in parts[0]
+        name: joined([part[name] for part in parts], "pin", links).assign_attrs(attributes_of(name))
+        for name in parts[0]
     }
     angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
     attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
@@ -183,20 +185,20 @@ def _part_problems(part: Part | None, period: float) -> list[str]:
     return [f"{ends}: is more than a cycle of {period:g} degrees; give a part of it, or a count"]
 
 
-def checked_pins(scene: Scene, given: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
+def checked_pins(scene: Scene, pins: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
     """The pins of a scene's mechanism; ValueError for a scene without, and for bearings of pins that it lacks."""
     require(scene, "pins")
-    refuse(bearing_problems(given, scene.mechanism.pins))
+    refuse(bearing_problems(pins, scene.mechanism.pins))
     return scene.mechanism.pins
 
 
-def bearing_problems(given: Any, pins: Iterable[str]) -> list[str]:
+def bearing_problems(pins: Any, known: Iterable[str]) -> list[str]:
     """List what is wrong with bearings by pin."""
-    if not isinstance(given, Mapping | None):
-        return [f'given = {quote(given)}: must be as {{"B": ls.Bearing(...)}}']
-    wrong = [problem for pin in given or {} for problem in name_problems("given", pin, pins)]
+    if not isinstance(pins, Mapping | None):
+        return [f'pins = {quote(pins)}: must be as {{"B": ls.Bearing(...)}}']
+    wrong = [problem for pin in pins or {} for problem in name_problems("pins", pin, known)]
     return wrong + [
-        f"given.{pin} = {quote(b)}: must be a Bearing" for pin, b in (given or {}).items() if not isinstance(b, Bearing)
+        f"pins.{pin} = {quote(b)}: must be a Bearing" for pin, b in (pins or {}).items() if not isinstance(b, Bearing)
     ]
 
 
@@ -272,12 +274,12 @@ def _link_axes(link: int) -> str:
     return "" if link == 1 else f"_link{link}"
 
 
-def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
+def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     """How much of its rotation each pin makes under which load.
 
     Parameters
     ----------
-    found : Dataset from `linksweep.bearings`
+    ds : Dataset from `linksweep.bearings`
     classes : count of equal classes of load, from none to the largest sample of the pin
 
     Returns
@@ -297,23 +299,23 @@ def load_spectrum(found: xr.Dataset, classes: int = 10) -> xr.Dataset:
     >>> spectrum.share.sel(pin="C").sum().round(12).item()
     1.0
     """
-    sound = isinstance(found, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*found}
-    refuse([] if sound else ["found: must be what ls.bearings returns, with F, rotation_share and life_status"])
+    sound = isinstance(ds, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*ds}
+    refuse([] if sound else ["ds: must be what ls.bearings returns, with F, rotation_share and life_status"])
     refuse(count_problems("classes", classes))
-    require_memory(f"classes = {quote(classes)}", 8.0 * classes * found.sizes.get("pin", 1))
+    require_memory(f"classes = {quote(classes)}", 8.0 * classes * ds.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(
         lambda force, share: _histogram(force, share, classes),
-        *xr.broadcast(found["F"], found["rotation_share"]),
+        *xr.broadcast(ds["F"], ds["rotation_share"]),
         input_core_dims=[["theta2"], ["theta2"]],
         output_core_dims=[["load_class"], []],
         vectorize=True,
     )
-    bounded = found["life_status"] != UNBOUNDED
+    bounded = ds["life_status"] != UNBOUNDED
     share, largest = share.where(bounded), largest.where(bounded)
     middle = (xr.DataArray(np.arange(classes), dims="load_class") + 0.5) / classes
     share.attrs = {"units": "1", "long_name": "share of the rotation of the journal in its bearing under such loads"}
     load = (largest * middle).assign_attrs(units="N", long_name="load in the middle of the class")
-    return xr.Dataset({"share": share, "class_load": load}, attrs=found.attrs)
+    return xr.Dataset({"share": share, "class_load": load}, attrs=ds.attrs)
 
 
 def _histogram(force: np.ndarray, share: np.ndarray, classes: int) -> tuple[np.ndarray, float]:

@@ -28,7 +28,7 @@ FORCE = re.compile("[FT][0-9][0-9][a-z]?")
 
 
 def breakdown(
-    scene: Scene, of: str | Iterable[str] | None = None, theta2: Any = 720, threads: int | None = None
+    scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
 ) -> xr.Dataset:
     """The share of each source in pin forces and in the drive's torque.
 
@@ -76,7 +76,7 @@ def breakdown(
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     parts = tuple(dict.fromkeys(part for name in names for part in _parts(scene, name)))
-    cycle = sweep(scene, theta2, outputs=dict.fromkeys([*names, *parts]), threads=threads)
+    cycle = sweep(scene, theta2, of=dict.fromkeys([*names, *parts]), threads=threads)
     shares = {
         source: quantities_with(changed, single, grid, parts, threads)
         for source, (single, changed) in _sources(sampled).items()

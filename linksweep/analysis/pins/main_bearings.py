@@ -34,14 +34,16 @@ NO_MAINS = "main_positions: nothing says where the main bearings are; give two p
 
 
 def main_bearings(
-    machine: MultiCylinder, given: Mapping[str, Bearing] | None, theta2: int, threads: int | None = None
+    machine: MultiCylinder, pins: Mapping[str, Bearing] | None, theta2: int, threads: int | None = None
 ) -> xr.Dataset:
     """Return loads, rotation, friction and life of main bearings, as `linksweep.bearings` does of pins."""
     refuse(count_problems("theta2", theta2) + ([] if machine.mains else [NO_MAINS]))
     mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
-    refuse(bearing_problems(given, mains))
-    fitted = {name: (given or {}).get(name, Bearing()) for name in mains}
-    cycle = machine.sweep(theta2, threads, [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")])
+    refuse(bearing_problems(pins, mains))
+    fitted = {name: (pins or {}).get(name, Bearing()) for name in mains}
+    cycle = machine.sweep(
+        theta2, threads=threads, of=[f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
+    )
     turned = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
     highest = peaks(machine, of=mains.values(), threads=threads)
     speed = xr.DataArray(machine.engine.omega2)

@@ -46,9 +46,10 @@ class RubbingPin(NamedTuple):
 
 def pin_friction(
     scene: Scene,
-    given: Mapping[str, Bearing],
+    pins: Mapping[str, Bearing],
+    *,
     theta2: int = 720,
-    outputs: Iterable[str] | None = None,
+    of: Iterable[str] | None = None,
     iterations: int = 100,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -57,9 +58,9 @@ def pin_friction(
     Parameters
     ----------
     scene : Scene, of one branch
-    given : a Bearing with diameter and friction by pin; the others turn without friction
+    pins : a Bearing with diameter and friction by pin; the others turn without friction
     theta2 : count of crank angles over the cycle
-    outputs : names of the variables wanted, as `linksweep.sweep` takes them
+    of : names of the variables wanted, as `linksweep.sweep` takes them
     iterations : at most so many
     threads : at most so many (default: all cores)
 
@@ -93,12 +94,12 @@ def pin_friction(
     >>> bool((cycle.convergence == 0).all()), bool(0.9 < cycle.efficiency < 1.0)
     (True, True)
     """
-    pins = _rubbing(scene, given)
+    rubbing = _rubbing(scene, pins)
     refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))
-    senses = _senses(scene, pins, theta2, threads)
-    with_friction, torques, change = _converged(scene, pins, senses, theta2, iterations, threads)
-    wanted = None if outputs is None else [outputs] if isinstance(outputs, str) else list(outputs)
-    cycle = sweep(with_friction, theta2, wanted, threads=threads)
+    senses = _senses(scene, rubbing, theta2, threads)
+    with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations, threads)
+    wanted = None if of is None else [of] if isinstance(of, str) else list(of)
+    cycle = sweep(with_friction, theta2, of=wanted, threads=threads)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
     told = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
     found = {
@@ -114,23 +115,21 @@ def pin_friction(
     return shown.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
 
 
-def _rubbing(scene: Scene, given: Mapping[str, Bearing]) -> dict[str, RubbingPin]:
+def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]:
     """Those of the pins that have friction."""
-    pins = checked_pins(scene, given)
-    rubs = {pin: bearing for pin, bearing in given.items() if np.any(bearing.friction)}
-    refuse([f"given.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
-    refuse(
-        [] if rubs else ['given: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}']
-    )
+    links = checked_pins(scene, pins)
+    rubs = {pin: bearing for pin, bearing in pins.items() if np.any(bearing.friction)}
+    refuse([f"pins.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
+    refuse([] if rubs else ['pins: no pin has friction; give it, as in {"B": ls.Bearing(diameter=0.02, friction=0.1)}'])
     both = bool(scene.mechanism.coordinates())
     refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
-    return {pin: RubbingPin(*pins[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
+    return {pin: RubbingPin(*links[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
 
 
 def _senses(scene: Scene, pins: Mapping[str, RubbingPin], theta2: int, threads: int | None) -> Arrays:
     """Return −1, 0 or 1 of the moment on link j, against its rotation; 0 where nothing is known."""
     names = [f"omega_{pin}" for pin in pins]
-    speeds = sweep(scene, theta2, names, threads=threads)
+    speeds = sweep(scene, theta2, of=names, threads=threads)
     return {pin: xr.DataArray(-np.sign(speeds[name])).fillna(0.0) for pin, name in zip(pins, names, strict=True)}
 
 
@@ -142,7 +141,7 @@ def _converged(
     torques = {pin: 0.0 * senses[pin] for pin in pins}
     for _ in range(iterations):
         with_friction = replace(scene, loads=(*scene.loads, *_as_loads(scene, pins, torques, theta2)))
-        cycle = sweep(with_friction, theta2, forces, threads=threads)
+        cycle = sweep(with_friction, theta2, of=forces, threads=threads)
         new = {pin: senses[pin] * rub.radius * cycle[rub.force].fillna(0.0) for pin, rub in pins.items()}
         change = _largest(new[pin] - torques[pin] for pin in pins) / _largest(new.values()).clip(min=1e-300)
         runaway = ~np.isfinite(change)
@@ -178,7 +177,7 @@ def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
 
 
 def _losses(scene: Scene, torques: Arrays, theta2: int, threads: int | None) -> xr.DataArray:
-    speeds = sweep(scene, theta2, [f"omega_{pin}" for pin in torques], threads=threads)
+    speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in torques], threads=threads)
     losses = [abs(torque * speeds[f"omega_{pin}"]) for pin, torque in torques.items()]
     said = {"units": "W", "long_name": "power that friction in the pin takes, never negative"}
     return joined(losses, "pin", torques).assign_attrs(said)
@@ -187,7 +186,7 @@ def _losses(scene: Scene, torques: Arrays, theta2: int, threads: int | None) -> 
 def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:
     """Energies over time: a sample stands for the time that the crank takes to the next."""
     names = ["power", "omega2"] + ["friction_power"] * ("friction_power" in scene.table.quantity)
-    cycle = sweep(scene, theta2, names, threads=threads)
+    cycle = sweep(scene, theta2, of=names, threads=threads)
     times = 1.0 / abs(cycle["omega2"])
     lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)
     fed = (cycle["power"] * times).sum("theta2", skipna=False)

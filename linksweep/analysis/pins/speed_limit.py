@@ -41,7 +41,7 @@ TERMS = {
 """Each term by its ending: the numbers that leave it alone, its unit beside the force's, and its words."""
 
 
-def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, theta2: Any = 720) -> xr.Dataset:
+def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720) -> xr.Dataset:
     """Forces and torques as A·ω2² + B·α2 + C: one sweep for all speeds.
 
     Parameters
@@ -78,7 +78,7 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, theta2
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
-    cycle = sweep(scene, theta2, outputs=names)
+    cycle = sweep(scene, theta2, of=names)
     made = {}
     for ending, (changed, units, words) in TERMS.items():
         found = quantities_with(changed, sampled if ending == "static" else bare, grid, names)
@@ -90,7 +90,7 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, theta2
     return cycle[["status"]].assign(made).assign_attrs(cycle.attrs | {"command": command})
 
 
-def speed_limit(scene: Scene, of: str, below: float) -> xr.Dataset:
+def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
     """The highest crank speed at which the exact peak of a force or torque stays below a limit.
 
     Parameters
@@ -179,7 +179,7 @@ def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataAr
     index = scene.mechanism.index
     grid = crank_grid(SAMPLES, scene.period, index)
     sampled = scene.at(grid)
-    ok = sweep(scene, SAMPLES, outputs=[])["status"].drop_vars(index) == 0
+    ok = sweep(scene, SAMPLES, of=[])["status"].drop_vars(index) == 0
     growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts)
     standing = quantities_with({"omega2": 0.0}, sampled, grid, parts)
     roots = _roots([growing[part] for part in parts], [standing[part] for part in parts], below)

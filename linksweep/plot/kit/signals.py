@@ -45,7 +45,7 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     for name, sign in ((pin, 1.0), (back, -1.0)):
         if f"{name}x" in ds and f"{name}y" in ds:
             return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
-    raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with outputs=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
+    raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with of=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
 
 
 def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
@@ -75,7 +75,7 @@ def drive_name(ds: xr.Dataset) -> str:
     for name in names:
         if name in ds:
             return name
-    raise ValueError(f"the Dataset has no {' nor '.join(names)}: sweep with outputs=[..., {names[0]!r}]")
+    raise ValueError(f"the Dataset has no {' nor '.join(names)}: sweep with of=[..., {names[0]!r}]")
 
 
 def unit(signal: xr.DataArray, default: str) -> str:

@@ -63,7 +63,7 @@ def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | 
     """Return a cycle's own variables at other angles; None where one of its samples is not the scene's, but altered."""
     k = int(np.argmax((own["status"] == 0).values)) if "status" in own else 0
     names = [str(name) for name in own.data_vars]
-    more = sweep(scene, np.append(own[INDEX].values[k], angles), names)[names]
+    more = sweep(scene, np.append(own[INDEX].values[k], angles), of=names)[names]
     if not _equal(own.isel({INDEX: k}, missing_dims="ignore"), more.isel({INDEX: 0}, missing_dims="ignore")):
         return None
     return more.isel({INDEX: slice(1, None)}, missing_dims="ignore")

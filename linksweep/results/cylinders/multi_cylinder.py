@@ -21,7 +21,7 @@ from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
 from linksweep.mechanisms.capabilities import lack
-from linksweep.results.compute import requested
+from linksweep.results.compute import either, requested
 from linksweep.results.cylinders.cylinder_sums import (
     QUANTITIES,
     Derived,
@@ -184,33 +184,47 @@ class MultiCylinder(ByContent):
         }
         return tuple(turned[bank] for bank in banks)
 
-    def sweep(self, theta2: Any = 720, threads: int | None = None, outputs: Iterable[str] | None = None) -> xr.Dataset:
-        """Torque, shaking force and moments of all cylinders together over the cycle.
+    def sweep(
+        self,
+        theta2: Any = 720,
+        *,
+        of: str | Iterable[str] | None = None,
+        outputs: str | Iterable[str] | None = None,
+        threads: int | None = None,
+    ) -> xr.Dataset:
+        """Compute torque, shaking force and moments of all cylinders together over the cycle.
 
         Parameters
         ----------
-        theta2 : count of crank angles, or angles [degree], as `linksweep.sweep` takes them
-        threads : at most so many (default: all cores)
-        outputs : names of the variables wanted. Default: T12, the shaking force and its moments. Others are `power`,
-            `reduced_torque`, `reduced_inertia`, `F_main1`, `F_main1x` … and the like
+        theta2 : int or array of angles, default 720
+            Count of crank angles, or the angles themselves [degree], as in `linksweep.sweep`.
+        of : str or iterable of str, optional
+            Names of quantities. By default T12, the shaking force and its moments; others are `power`,
+            `reduced_torque`, `reduced_inertia`, `F_main1`, `F_main1x` … and the like.
+        outputs : str or iterable of str, optional
+            Another name of `of`.
+        threads : int, optional
+            The most threads to use; by default all cores. Results do not depend on it.
 
         Returns
         -------
-        Dataset over (design dims…, theta2): T12 [N m]; Fsx, Fsy, Fs [N]; Ms, Msx, Msy [N m]; status, the worst of all
-        cylinders. `linksweep.orders` takes it.
+        Dataset
+            Over (design dims…, theta2): T12 [N m]; Fsx, Fsy, Fs [N]; Ms, Msx, Msy [N m]; status, the worst of all
+            cylinders. `linksweep.orders` takes it.
 
         Raises
         ------
         ValueError
             For angles that are no angles, and unknown names.
         """
-        names = list(SHAKING) if outputs is None else requested("outputs", outputs)
-        refuse([problem for name in names for problem in name_problems("outputs", name, [*self.quantity, "status"])])
+        word, quantities = either(of=of, outputs=outputs)
+        names = list(SHAKING) if quantities is None else requested(word, quantities)
+        refuse([problem for name in names for problem in name_problems(word, name, [*self.quantity, "status"])])
         grid = crank_grid(theta2, self.period)
         wanted = dict.fromkeys((*names, "status"))
         sources = sources_of(wanted, self.rules)
         cycles = [
-            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), sources, threads=threads))
+            _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), of=sources, threads=threads))
             for scene, throw in zip(self.cylinders, self.throws, strict=True)
         ]
         found = combined(wanted, self.rules, self.throws, cycles)

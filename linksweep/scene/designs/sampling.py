@@ -22,6 +22,7 @@ FINEST = 2.0**-31
 def sample(
     scene: Scene,
     parameters: Mapping[str, Any],
+    *,
     n: int,
     method: str = "sobol",
     seed: int | None = 0,
