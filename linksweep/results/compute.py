@@ -12,7 +12,7 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
 from linksweep.mechanisms.capabilities import lack
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
@@ -151,4 +151,4 @@ def _for_any(good: Field, dims: tuple[str, ...]) -> np.ndarray:
     """Return whether any design that shares a number of these dims is good, with an axis for each dim."""
     others = tuple(k for k, dim in enumerate(good.dims) if dim not in dims)
     shared = tuple(dim for dim in good.dims if dim in dims)
-    return laid(Field(shared, np.any(good.values, axis=others)), dims)
+    return aligned(Field(shared, np.any(good.values, axis=others)), dims)

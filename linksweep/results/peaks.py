@@ -36,7 +36,7 @@ from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid, in_order
 from linksweep.scene.scene import Scene
 
@@ -268,7 +268,7 @@ def _over_time(
     fields, averages = compute(sampled, grid, names, threads, solver=solver), {}
     for name, power in powers:
         dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*fields[name].dims, *fields[pace].dims})
-        value, speed = laid(fields[name], dims), np.abs(laid(fields[pace], dims))
+        value, speed = aligned(fields[name], dims), np.abs(aligned(fields[pace], dims))
         with np.errstate(all="ignore"):
             known = ~np.isnan(value / speed)
             total, time = np.where(known, value**power / speed, 0.0), np.where(known, 1.0 / speed, 0.0)

@@ -15,7 +15,7 @@ from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
 from linksweep.results.dataset import cycle_coordinates, index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -150,10 +150,10 @@ def assembled(
     shape = tuple(sizes[dim] for dim in dims)
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
     for i, row in enumerate(equations):
-        rhs[..., i] = laid(fields[row.right_side], dims)
+        rhs[..., i] = aligned(fields[row.right_side], dims)
         for unknown, entry in row.coefficients.items():
             j = unknowns.index(unknown)
-            matrix[..., i, j] = entry[0] * laid(fields[entry[1]], dims) if isinstance(entry, tuple) else entry
+            matrix[..., i, j] = entry[0] * aligned(fields[entry[1]], dims) if isinstance(entry, tuple) else entry
     return dims, matrix, rhs
 
 
@@ -164,7 +164,7 @@ def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None 
     """
     unknowns, equations = of_form(scene, "reduced")
     dims, matrix, rhs = assembled(scene, grid, unknowns, equations, threads)
-    bad = np.broadcast_to(laid(status, dims) != 0, matrix.shape[:-2])
+    bad = np.broadcast_to(aligned(status, dims) != 0, matrix.shape[:-2])
     matrix[bad] = np.eye(matrix.shape[-1])  # such a sample becomes NaN: any regular matrix will do
     balanced, rows, columns = equilibrated(matrix, unknowns)
     with np.errstate(over="ignore", under="ignore"):  # numbers out of range become inf, or 0

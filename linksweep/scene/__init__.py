@@ -1,1 +1,1 @@
-"""What happens to a machine: scenes, loads, scene files. Everything a person says is checked here, at the door."""
+"""A machine in motion: scenes, loads, scene files. All input is checked here, by the constructors."""

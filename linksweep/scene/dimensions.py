@@ -14,27 +14,28 @@ from linksweep.base.validate import quote
 from linksweep.scene.storable import label_problem, name_problem
 
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
-"""Names that the index is likely to be meant by, without signs and spaces."""
+"""Names that probably mean the index, without signs and spaces."""
 TABLES = ("status", "arc", "toggle", "equation", "unknown", "spline")
-"""What results of `sweep`, `check` and `system` bring with them, besides the quantities."""
+"""Names of variables and dims in results of `sweep`, `check` and `system` besides the quantities."""
 
-Arrays = dict[str, xr.DataArray]  # by the path of the parameter that each is
+Arrays = dict[str, xr.DataArray]
+"""DataArrays by the path of the parameter."""
 
 
 def side_by_side(numbers: Iterable[Any]) -> tuple[tuple[str, ...], list[np.ndarray]]:
-    """Numbers as arrays of one shape over all of their dims, in the order in which these are named."""
+    """Return all dims of some numbers, in order of appearance, and the numbers as arrays of one shape over them."""
     numbers = list(numbers)
     dims = dims_of(numbers)
-    return dims, list(np.broadcast_arrays(*(np.asarray(laid(number, dims), dtype=float) for number in numbers)))
+    return dims, list(np.broadcast_arrays(*(np.asarray(aligned(number, dims), dtype=float) for number in numbers)))
 
 
 def dims_of(numbers: Iterable[Any]) -> tuple[str, ...]:
-    """The dims of some numbers, in the order in which these are named."""
+    """Return all dims of some numbers, in order of appearance."""
     return tuple(dict.fromkeys(str(dim) for number in numbers for dim in getattr(number, "dims", ())))
 
 
-def laid(number: Any, dims: tuple[str, ...]) -> Any:
-    """A number as an array with an axis for each of these dims, of length one where it has none; a float stays one."""
+def aligned(number: Any, dims: tuple[str, ...]) -> Any:
+    """Return a number as an array with an axis for each of these dims, of length one where it lacks one."""
     if not hasattr(number, "dims"):
         return number
     sizes = dict(zip(number.dims, number.values.shape, strict=True))
@@ -43,13 +44,16 @@ def laid(number: Any, dims: tuple[str, ...]) -> Any:
 
 
 def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) -> list[str]:
-    """What keeps a scene's arrays from standing in one Dataset.
+    """Return why a scene's arrays cannot be variables of one Dataset.
 
     Parameters
     ----------
-    arrays : DataArrays by the path of the parameter that each is
-    index : the dimension of the sweep, which compares sizes and labels itself
-    quantities : names of what can be computed
+    arrays : dict of str to DataArray
+        Arrays by the path of the parameter.
+    index : str
+        Dimension of the sweep, which compares sizes and labels itself.
+    quantities : collection of str
+        Names of the quantities of the scene.
     """
     by_dim: dict[object, Arrays] = {}
     for path, array in arrays.items():
@@ -67,6 +71,7 @@ def dimension_problems(arrays: Arrays, index: str, quantities: Collection[str]) 
 
 
 def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, results: Collection[str]) -> Iterator[str]:
+    """Yield why a dim cannot have its name."""
     path = next(iter(sharing))
     if problem := name_problem(dim):
         yield f"{path} has a dimension {quote(dim)}: {problem}; rename it"
@@ -79,6 +84,7 @@ def _name_problems(dim: object, index: str, sharing: Arrays, arrays: Arrays, res
 
 
 def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:
+    """Yield the arrays whose length along a dim differs from that of the first."""
     (path, first), *others = sharing.items()
     for other, array in others:
         if array.sizes[dim] != first.sizes[dim]:
@@ -89,6 +95,7 @@ def _length_problems(dim: object, sharing: Arrays) -> Iterator[str]:
 
 
 def _label_problems(dim: object, sharing: Arrays, arrays: Arrays) -> Iterator[str]:
+    """Yield the arrays whose labels along a dim no file can hold, or differ from those of others."""
     labels = {path: array[dim].variable for path, array in sharing.items() if dim in array.coords}
     if dim in arrays:  # a parameter over a dimension of its own name: its values are the labels
         expected, others = arrays[str(dim)].variable, f"the values of {dim}"

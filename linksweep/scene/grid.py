@@ -1,4 +1,4 @@
-"""The angles of a sweep, with the cosines and sines that the kernels start from."""
+"""The angles of a sweep, with the cosines and sines from which the kernels start."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from linksweep.engine.run import Grid
 from linksweep.scene.units import unit_problems
 
 NAMES = ("cos2", "sin2", "cos2_lo", "sin2_lo", "radians2")
+"""Rows of a grid's table."""
 
 
 def crank_grid(angles: Any, period: float, dim: str = "theta2") -> Grid:
@@ -62,10 +63,11 @@ def _angles(values: Any, name: str) -> np.ndarray:
 
 
 def in_order(grid: Grid) -> Grid:
-    """The same angles sorted, each once: what a search for peaks between neighbours needs."""
+    """Return the grid with its angles sorted, each once, as the search for peaks between neighbours needs them."""
     return grid if (np.diff(grid.angles) > 0.0).all() else _grid(np.unique(grid.angles), grid.period, grid.dim)
 
 
 def _grid(angles: np.ndarray, period: float, dim: str) -> Grid:
+    """Return a grid with its table."""
     table = np.array([*cos_sin_low_words(angles), np.radians(np.mod(angles, 360.0))])
     return Grid(dim, angles, period, NAMES, table)

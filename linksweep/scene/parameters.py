@@ -11,7 +11,7 @@ from typing import Any
 from linksweep.base.fields import FieldKind, below, declared, has_fields
 from linksweep.base.frozen import Owner, with_sound, with_values
 from linksweep.base.validate import is_array
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 
 
 def free(scene: Any) -> dict[str, tuple[Any, str]]:
@@ -39,7 +39,7 @@ def along(value: Any, dims: tuple[str, ...]) -> Any:
 
     Arrays with further dims stay as they are.
     """
-    return _with_arrays(value, lambda array: laid(array, dims) if {*array.dims} <= {*dims} else array)
+    return _with_arrays(value, lambda array: aligned(array, dims) if {*array.dims} <= {*dims} else array)
 
 
 def _with_arrays(value: Any, convert: Callable[[Any], Any]) -> Any:

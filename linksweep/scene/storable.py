@@ -1,6 +1,6 @@
-"""Names and labels that a file can hold and give back the same: those of NetCDF, as xarray writes and reads them.
+"""Names and labels that a NetCDF file holds, and that xarray reads as it wrote them.
 
-Names: `NC_check_name` of netCDF-C, which also turns them into Unicode's normal form C.
+Source for names: `NC_check_name` of netCDF-C, which also converts them to normal form C of Unicode.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from linksweep.base.validate import quote
 
 NAME = re.compile(r"(\w|[^\x00-\x7f])([^\x00-\x1f/\x7f]*[^\x00-\x20/\x7f])?", re.ASCII)
 LONGEST = 255
-"""Bytes of a name."""
+"""Largest length of a name in bytes."""
 TEXTS = (str, np.str_)
 LARGEST = 2**63 - 1
-"""Integer of TOML."""
+"""Largest integer of TOML."""
 UNITS_OF_TIME = ("ns", "us")
-"""Of times in NetCDF, and of those in the text of a scene."""
+"""Units of times: in NetCDF, and in the text of a scene."""
 
 
 def name_problem(name: Any) -> str:
@@ -60,6 +60,7 @@ def storable_coordinate(variable: xr.Variable) -> xr.Variable:
 
 
 def _text_problem(labels: list[Any]) -> str:
+    """Return why a file cannot hold labels that are texts or mixed; nothing where it can."""
     others = [label for label in labels if type(label) not in TEXTS]
     if others:
         return f"the label {quote(others[0])}: must be a text, or all an array of numbers, truth values or times"
@@ -70,6 +71,7 @@ def _text_problem(labels: list[Any]) -> str:
 
 
 def _time_problem(times: np.ndarray) -> str:
+    """Return which time a file cannot hold; nothing where it can hold all of them."""
     lost = np.isnat(times)
     for unit in UNITS_OF_TIME:
         lost |= times.astype(f"M8[{unit}]").astype(times.dtype) != times
@@ -78,7 +80,7 @@ def _time_problem(times: np.ndarray) -> str:
 
 
 def _is_sound(text: str) -> bool:
-    """Return whether a text can be written as UTF-8, and read back to its end."""
+    """Return whether a text can be written as UTF-8, and read to its end."""
     try:
         return b"\0" not in text.encode()
     except UnicodeEncodeError:

@@ -132,7 +132,6 @@ NOT_YET = {
     "TorsionSpring.sampled",
     "bearings",
     "breakdown",
-    "example",
     "load_spectrum",
     "peaks",
     "pin_friction",

@@ -19,7 +19,7 @@ from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
 from linksweep.results.peak_search.between import Array, Group, by_row, crossing, positions_at
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
@@ -122,4 +122,4 @@ def _below(field: Field, limit: float) -> Field:
 def _any_true(fields: list[Field], sizes: Mapping[str, int]) -> Array:
     """Return for each design whether any of these fields is true there."""
     shape = tuple(sizes.values())
-    return np.any([np.broadcast_to(laid(field, tuple(sizes)), shape) for field in fields], axis=0)
+    return np.any([np.broadcast_to(aligned(field, tuple(sizes)), shape) for field in fields], axis=0)

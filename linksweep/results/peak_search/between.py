@@ -16,7 +16,7 @@ import xarray as xr
 
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import Plan, plan
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.parameters import replaced
@@ -164,7 +164,7 @@ def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: A
     request, places = plan(scene.table, names, forms), places_of(inputs.sizes, designs)
     values = evaluate(request, _inputs_along(CHOSEN, request, inputs, places), grid, {CHOSEN: len(designs)})
     shape = len(designs), len(angles)
-    return np.stack([np.broadcast_to(laid(values[name], (CHOSEN, grid.dim)), shape) for name in names])
+    return np.stack([np.broadcast_to(aligned(values[name], (CHOSEN, grid.dim)), shape) for name in names])
 
 
 Point = tuple[Array, Array]

@@ -40,7 +40,7 @@ from linksweep.results.peak_search.between import (
 )
 from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.poles import may_have_poles
-from linksweep.scene.dimensions import laid
+from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -133,7 +133,7 @@ def _arcs_known(scene: Scene, names: tuple[str, ...], designs: Array) -> bool:
 def _designs_where(scene: Scene, field: Field, value: float) -> Array:
     """Return the designs at which a field has a value."""
     sizes = scene.inputs.sizes
-    return np.flatnonzero(np.broadcast_to(laid(field, tuple(sizes)) == value, tuple(sizes.values())))
+    return np.flatnonzero(np.broadcast_to(aligned(field, tuple(sizes)) == value, tuple(sizes.values())))
 
 
 def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
@@ -165,7 +165,7 @@ def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
     """Return a peak of the fused search, which knows a half-angle tangent, with its angle [degree]."""
     dims, value = peak.value
     away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
-    angle = away + laid(scene.mechanism.near_toggle_angle, dims)
+    angle = away + aligned(scene.mechanism.near_toggle_angle, dims)
     angle = np.where(np.isnan(value), np.nan, angle_in_period(angle, scene.period))
     return SignalPeak(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
 

@@ -1,4 +1,4 @@
-"""Scenes that come with the package. The comment that a file begins with is its title."""
+"""Example scenes of the package; the comment at the head of each file is its title."""
 
 from importlib.resources import files
 from itertools import takewhile
@@ -9,13 +9,19 @@ from linksweep.scene.scene import Scene
 
 
 def example(name: str) -> Scene:
-    """A scene that comes with the package.
+    """Load an example scene of the package.
 
     Parameters
     ----------
-    name : "press", a crank-rocker press of steel bars, 300 rpm, 80 lbf on the coupler; "engine", a
-        four-stroke engine with one cylinder of 0.5 litre, 3000 rpm; "quick-return", a shaper's inverted
-        slider-crank; "loop", the rocket car of document 3's example 17-4
+    name : str
+        "press", a crank-rocker press of steel bars, 300 rpm, 80 lbf on the coupler; "engine", a four-stroke engine with
+        one cylinder of 0.5 litre, 3000 rpm; "quick-return", a shaper's inverted slider-crank; "loop", the rocket car of
+        document 3's example 17-4.
+
+    Returns
+    -------
+    Scene
+        The scene.
 
     Raises
     ------
@@ -32,16 +38,17 @@ def example(name: str) -> Scene:
 
 
 def names() -> list[str]:
-    """Names of the scenes that come with the package."""
+    """Return the names of the example scenes."""
     return sorted(file.name.removesuffix(".toml") for file in files(__name__).iterdir() if file.name.endswith(".toml"))
 
 
 def title(name: str) -> str:
-    """What a scene is, in a sentence or two: the comment that its file begins with."""
+    """Return the title of an example scene, in a sentence or two: the comment at the head of its file."""
     lines = takewhile(lambda line: line.startswith("#"), _text(name).splitlines())
     return "\n".join(line.removeprefix("# ") for line in lines)
 
 
 def _text(name: str) -> str:
+    """Return the text of an example scene."""
     refuse(choice_problems("name", name, names()))
     return (files(__name__) / f"{name}.toml").read_text(encoding="utf-8")
