@@ -29,7 +29,7 @@ ROUNDS = 400
 
 # rows of `lanes`: the three points of a bracket; its half turn and signal; its width, at the last round and at first;
 # noise of the signal, rise that remains possible, whether it is done; predicted vertex, its uncertainty; outer samples
-XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, LEFT, DONE, VERTEX, REACH, FAA, FCC = range(17)
+XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, REMAINING, DONE, VERTEX, REACH, FAA, FCC = range(17)
 LANE_ROWS, LASTING_ROWS = 17, 11  # a lane carries the first 11 from round to round
 TRIALS = 3
 """Trials per lane and round."""
@@ -123,8 +123,8 @@ def open_lanes(row, x, before, after, far, joined, even, tag, lanes, count, best
 
 
 def might_reach(left, value, right, ratio):
-    """Return an upper estimate of the peak about a sample above its neighbours: the rises that both secants,
-    extrapolated, allow, added up. The right neighbour is `ratio` times as far away as the left one."""
+    """Return an upper estimate of the peak about a sample above its neighbours: add the rises that both extended
+    secants allow. The right neighbour is `ratio` times as far away as the left one."""
     return value + ((value - left) * ratio + (value - right) / ratio)
 
 
@@ -225,37 +225,36 @@ def place_trials(lanes, trials, count):
 
 
 def advance(lanes, trials, count, best):
-    """Insert the trials' values into the brackets, note the best, close lanes that are done; return the number left
-    open."""
+    """Insert the trials' values into the brackets, note the best, close lanes that are done; return how many remain."""
     update_brackets(lanes, trials, count)
     for k in range(count):
         tag = int(lanes[TAG, k])
         if lanes[FB, k] > best[PEAK, tag]:
             best[PEAK, tag], best[PEAK_X, tag], best[PEAK_FAR, tag] = lanes[FB, k], lanes[XB, k], lanes[FAR, k]
-    left = 0
+    still_open = 0
     for k in range(count):
         tag = int(lanes[TAG, k])
-        if lanes[DONE, k] > 0.0 or lanes[FB, k] + 2.0 * lanes[LEFT, k] < best[PEAK, tag]:
+        if lanes[DONE, k] > 0.0 or lanes[FB, k] + 2.0 * lanes[REMAINING, k] < best[PEAK, tag]:
             close_lane(lanes, k, best, tag)
         else:
-            if left < k:
+            if still_open < k:
                 for row in range(LASTING_ROWS):
-                    lanes[row, left] = lanes[row, k]
-            left += 1
-    return left
+                    lanes[row, still_open] = lanes[row, k]
+            still_open += 1
+    return still_open
 
 
 def update_brackets(lanes, trials, count):
     """Insert the trials of each lane into its bracket, and compute the rise that remains possible."""
     xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
-    first_width, floor, left, done = lanes[FIRST_WIDTH], lanes[FLOOR], lanes[LEFT], lanes[DONE]
+    first_width, floor, remaining, done = lanes[FIRST_WIDTH], lanes[FLOOR], lanes[REMAINING], lanes[DONE]
     x, value, room = trials[X], trials[VALUE], in_blocks(count)
     for k in range(room):
         bracket = insert_point((xa[k], fa[k], xb[k], fb[k], xc[k], fc[k]), x[k], value[k])
         bracket = insert_point(bracket, x[room + k], value[room + k])
         a, f_a, b, f_b, c, f_c = insert_point(bracket, x[2 * room + k], value[2 * room + k])
         xa[k], fa[k], xb[k], fb[k], xc[k], fc[k] = a, f_a, b, f_b, c, f_c
-        left[k], done[k] = remaining_rise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
+        remaining[k], done[k] = remaining_rise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
 
 
 def insert_point(bracket, x, f):
@@ -273,27 +272,26 @@ def insert_point(bracket, x, f):
 
 
 def remaining_rise(a, f_a, b, f_b, c, f_c, first_width, floor):
-    """Return how far a bracket's extrapolated secants rise above its middle; and 1 if it has converged, 2 if no number
-    is left in it."""
+    """Return how far a bracket's extended secants rise above its middle; and 1 if it has converged, 2 if empty."""
     top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
     forward, backward = (top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b))
     rise = forward if forward > backward else backward
     tolerance = RISE * abs(f_b) if RISE * abs(f_b) > floor else floor
-    shut = c - a <= 1e-15 * (1e-9 + abs(b))  # no number is left between its points
-    return rise, (2.0 if shut else (1.0 if (rise <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
+    empty = c - a <= 1e-15 * (1e-9 + abs(b))  # no number lies between its points
+    return rise, (2.0 if empty else (1.0 if (rise <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
 
 
 def close_lane(lanes, k, best, tag):
     """Note the result of a lane: its peak, the place, and the rise that remains possible."""
-    height, left, place = lanes[FB, k], lanes[LEFT, k], lanes[XB, k]
+    height, remaining, place = lanes[FB, k], lanes[REMAINING, k], lanes[XB, k]
     if height < best[PEAK, tag]:
         return
     before, after = place - lanes[XA, k], lanes[XC, k] - place
     if lanes[DONE, k] == 2.0:  # at a jump or a kink
-        left = height - max(lanes[FA, k], lanes[FC, k])
+        remaining = height - max(lanes[FA, k], lanes[FC, k])
     else:
         rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
         step = 0.5 * (rise * after - fall * before) / (rise + fall)
         place += step if -before < step < after else 0.0
     best[PEAK_X, tag], best[PEAK_FAR, tag] = place, lanes[FAR, k]
-    best[BEYOND, tag] = max(left, 0.0) + RISE * abs(height)
+    best[BEYOND, tag] = max(remaining, 0.0) + RISE * abs(height)

@@ -30,11 +30,11 @@ PAIR = 2.0**-86
 def relative_bound(
     results: tuple[Node, ...], exact: Callable[[str], bool], certain: Mapping[Node, Node | float]
 ) -> Node:
-    """Return a bound on the largest error of these results, relative to the largest of them; `exact` tells inputs by
-    name.
+    """Return a bound on the largest error of these results, relative to the largest of them.
 
-    Nodes in `certain` are computed in double-double. This analysis would take each of their operations for a rounded
-    one, so it treats them as inputs, with the error of a double-double cosine, in the units given, in addition.
+    `exact(name)` tells whether an input is exact. Nodes in `certain` are computed in double-double. This analysis would
+    take each of their operations for a rounded one, so it treats them as inputs, with the error of a double-double
+    cosine, in the units given, in addition.
     """
     known = {node: INPUT * abs(node) + PAIR * unit for node, unit in certain.items()}
     # tracing replaces −(−x) by x, so the operand of a negated node needs the bound, too
