@@ -210,9 +210,7 @@ def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, N
     rows = dict(zip(grid.names, grid.table, strict=True))
     return {
         node: _align(
-            plan,
-            node.dims,
-            Field((grid.dim,), rows[node.value]) if node.value in rows else inputs[node.value],
+            plan, node.dims, Field((grid.dim,), rows[node.value]) if node.value in rows else inputs[node.value]
         )
         for node in plan.nodes
         if node.operator == "input"

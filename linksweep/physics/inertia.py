@@ -67,10 +67,7 @@ def steady_effective_force(
     h_along, h_across, centripetal = mass * cg_x / length, mass * cg_y / length, omega * omega
     along = centripetal * h_along + alpha * h_across
     across = centripetal * h_across - alpha * h_along
-    return (
-        mass * gravity_x + along * rx - across * ry + Px,
-        mass * gravity_y + along * ry + across * rx + Py,
-    )
+    return (mass * gravity_x + along * rx - across * ry + Px, mass * gravity_y + along * ry + across * rx + Py)
 
 
 def steady_effective_moment(
@@ -109,14 +106,7 @@ def effective_moment(
 
 
 def inertia_power(
-    mass: Number,
-    inertia: Number,
-    vGx: Number,
-    vGy: Number,
-    aGx: Number,
-    aGy: Number,
-    omega: Number,
-    alpha: Number,
+    mass: Number, inertia: Number, vGx: Number, vGy: Number, aGx: Number, aGy: Number, omega: Number, alpha: Number
 ) -> Number:
     """Return the power of a link's inertia forces, −(m a_G·v_G + I α ω): minus the rate of its kinetic energy."""
     return -(mass * dot(aGx, aGy, vGx, vGy) + inertia * (alpha * omega))

@@ -92,13 +92,7 @@ def _root(z: Node, x: Node, dx: Node) -> Node:
     return dx / z
 
 
-_OPERATIONS: dict[str, Callable[..., Node]] = {
-    "+": _sum,
-    "-": _sum,
-    "*": _product,
-    "/": _quotient,
-    "sqrt": _root,
-}
+_OPERATIONS: dict[str, Callable[..., Node]] = {"+": _sum, "-": _sum, "*": _product, "/": _quotient, "sqrt": _root}
 
 
 def _zero(node: Node) -> Node:

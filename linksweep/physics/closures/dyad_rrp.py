@@ -10,12 +10,7 @@ from linksweep.physics.algebra.planar import dot
 
 
 def rrp_close(
-    low: Number,
-    high: Number,
-    rod_across: Number,
-    guide_cos: Number,
-    guide_sin: Number,
-    branch_sign: Number,
+    low: Number, high: Number, rod_across: Number, guide_cos: Number, guide_sin: Number, branch_sign: Number
 ) -> tuple[Number, Number, Number, Number]:
     """Return r3 in ground axes, its component along the guide, and the inverse of that component."""
     root = sqrt(low * high)
