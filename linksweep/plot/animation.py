@@ -57,28 +57,29 @@ class Frame(NamedTuple):
 def animate(
     scene: xr.Dataset | Scene | MultiCylinder, *, frames: int = 72, point: tuple[float, float] | None = None
 ) -> Film:
-    """Make a film of a mechanism over its cycle: forces as arrows at the pins, and where they are on their curves.
+    """Make a film of a machine over its cycle: forces as arrows at the pins, and dots on the curves below.
 
     Parameters
     ----------
-    scene : Dataset, Scene or MultiCylinder
-        A scene of one design, or a Dataset from `linksweep.sweep` that holds it: of its angles, if they are not a whole
-        cycle.
-    frames : int
+    scene : Scene, Dataset or MultiCylinder
+        Scene of one design, or a Dataset from `linksweep.sweep` that holds it: then of its angles, where they are no
+        whole cycle.
+    frames : int, default 72
         Count of frames in a cycle, 25 a second.
-    point : tuple of float, optional
-        The point whose curve is drawn, as `mechanism` takes it.
+    point : tuple of float, default None
+        Point whose curve is drawn, (distance [m], angle [degree]) as `mechanism` takes it.
 
     Returns
     -------
     Film
-        In a notebook it shows itself. ``film.save("machine.gif")`` and ``film.save("machine.html")`` write it. Arrows
-        are to one scale, that of the curves below them; where forces grow without bound, they end a little beyond it.
+        Film that a notebook shows as the last expression of a cell. ``film.save("machine.gif")`` and
+        ``film.save("machine.html")`` write it. Arrows are to one scale, that of the curves below them; where forces
+        grow without bound, they end a little beyond it.
 
     Raises
     ------
     ValueError
-        For more than one design, and when there is no result at two angles or more.
+        For more than one design, and where there is no result at two angles or more.
 
     Examples
     --------

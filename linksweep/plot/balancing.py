@@ -30,9 +30,11 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
 
     Parameters
     ----------
-    before, after : Scene
-        Of one design each, of the same kind of mechanism.
-    theta2 : int
+    before : Scene
+        Scene of one design.
+    after : Scene
+        Scene of one design of the same kind of mechanism.
+    theta2 : int, default 720
         Count of crank angles over the cycle.
 
     Returns
@@ -44,7 +46,7 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     Raises
     ------
     ValueError
-        For mechanisms that there are no plots of, and for more than one design.
+        For a mechanism without pins, and for more than one design.
 
     Examples
     --------

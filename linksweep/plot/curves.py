@@ -65,19 +65,18 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with magnitudes (F32) or components (F32x, F32y), of one design; of a single force
-        also up to six designs along one dimension, one line each.
-    of : iterable of str, optional
-        The forces, such as ["F32", "F43"]; by default those of all pins, and of the guide, that are in
-        the Dataset.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Cycle from `linksweep.sweep` with magnitudes (F32) or components (F32x, F32y), of one design; for a single force
+        also of up to six designs along one dimension, a line each.
+    of : iterable of str, default None
+        Forces, such as ["F32", "F43"]; None for those of all pins, and of the guide, that are in the Dataset.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        Angles without a result are a gap in the lines, shaded. Where forces grow without bound beside it, the axis
-        ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
+        Axes with a legend. Angles without a result are a gap in the lines, shaded. Where forces grow without bound
+        beside a gap, the axis ends at a usual size, and peaks beyond it are marked at the upper edge as off the scale.
 
     Raises
     ------
@@ -92,49 +91,48 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     """
     signals.require_angles(ds)
     ds = with_peaks(ds)
-    wanted = force_names(ds, of)
-    found = {name: signals.magnitude(ds, name) for name in wanted}
-    if len(wanted) > 1:
-        signals.require_one_design(found.values())
-    curves = _curves(ds, found)
+    names = force_names(ds, of)
+    by_name = {name: signals.magnitude(ds, name) for name in names}
+    if len(names) > 1:
+        signals.require_one_design(by_name.values())
+    curves = _curves(ds, by_name)
     peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
     top = signals.scale([curve.values for curve in curves], peaks)
     ax = axes_or_new(ax)
     _draw(ax, curves)
     ax.set_ylim(0.0, HEADROOM * top or 1.0)
-    units = signals.unit(found[wanted[0]], "N")
-    said = f"{kind_of(drawing_of_results(ds), wanted)} force"
-    said += f" {signals.symbol(wanted[0])}" if len(wanted) == 1 else ""
-    ax.set_ylabel(f"{said} [{units}]")
-    widest = shade_gaps(ax, ds, found[wanted[0]])
+    units = signals.unit(by_name[names[0]], "N")
+    title = f"{kind_of(drawing_of_results(ds), names)} force"
+    title += f" {signals.symbol(names[0])}" if len(names) == 1 else ""
+    ax.set_ylabel(f"{title} [{units}]")
+    widest = shade_gaps(ax, ds, by_name[names[0]])
     crank_angles(ax, curves[0].angles)
-    runaway = any(found and found.value > HEADROOM * top for found in peaks)
+    runaway = any(peak and peak.value > HEADROOM * top for peak in peaks)
     _legend(ax, curves, widest, runaway)
     marks = [
-        Mark(found, curve, curve.name_at_peak)
-        for found, curve in zip(peaks, curves, strict=True)
-        if found and found.value > 0.0
+        Mark(peak, curve, curve.name_at_peak)
+        for peak, curve in zip(peaks, curves, strict=True)
+        if peak and peak.value > 0.0
     ]
     _mark(ax, marks, units)
     return ax
 
 
 def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
-    """Plot the torque of the drive (T12, T13 or T14) [N m] over the crank angle [degree], largest and smallest marked.
-
-    Of a cylinder that drives, its force [N].
+    """Plot the torque [N m] or force [N] of the drive over the crank angle [degree], largest and smallest marked.
 
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with that of one design, or of up to six along one dimension, one line each.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Cycle from `linksweep.sweep` with the drive's torque or force, of one design, or of up to six along one
+        dimension, a line each.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With gaps as in `forces`.
+        Axes with gaps as in `forces`.
 
     Raises
     ------
@@ -153,7 +151,7 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     units = signals.unit(ds[name], "N m")
     curves = _curves(ds, {name: ds[name]})
     extremes = [(curve, _extremes(curve)) for curve in curves]
-    every = [found for _, pair in extremes for found in pair.values()]
+    every = [peak for _, pair in extremes for peak in pair.values()]
     size = signals.scale([curve.values for curve in curves], every)
     ax = axes_or_new(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
@@ -163,21 +161,21 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     widest = shade_gaps(ax, ds, ds[name])
     crank_angles(ax, curves[0].angles)
     if len(curves) > 1:
-        _legend(ax, curves, widest, any(abs(found.value) > size for found in every))
-    _mark(ax, [Mark(found, curve, said) for curve, pair in extremes for said, found in pair.items()], units)
+        _legend(ax, curves, widest, any(abs(peak.value) > size for peak in every))
+    _mark(ax, [Mark(peak, curve, end) for curve, pair in extremes for end, peak in pair.items()], units)
     return ax
 
 
 def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     if names is not None:
-        wanted = [names] if isinstance(names, str) else list(dict.fromkeys(names))
-        if wanted:
-            return wanted
+        chosen = [names] if isinstance(names, str) else list(dict.fromkeys(names))
+        if chosen:
+            return chosen
     forces = drawing_of_results(ds).forces
-    wanted = [name for name in forces if signals.has_pin(ds, name)]
-    if not wanted:
+    chosen = [name for name in forces if signals.has_pin(ds, name)]
+    if not chosen:
         raise ValueError(f"the Dataset has no pin force: sweep with of=[..., {', '.join(map(repr, forces))}]")
-    return wanted
+    return chosen
 
 
 def kind_of(drawing: Drawing, names: Iterable[str]) -> str:

@@ -35,23 +35,24 @@ TICK = 90.0  # degrees of the crank between named points
 
 
 def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
-    """Plot the crank's speed over the cycle with a flywheel, its largest and least.
+    """Plot the crank's speed over the cycle with a flywheel, its largest and least marked.
 
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.flywheel`, of one design.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Result of `linksweep.flywheel`, of one design.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
+        Axes with inertia and fluctuation in the title.
 
     Raises
     ------
     ValueError
-        For a Dataset without speed at every angle, and more than one design.
+        For a Dataset without speed at every angle, and for more than one design.
 
     Examples
     --------
@@ -112,15 +113,15 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _torques(ax: Axes, found: xr.Dataset) -> None:
+def _torques(ax: Axes, wheel: xr.Dataset) -> None:
     """Draw the torque at constant speed around the constant torque, excess and lack shaded."""
-    steady = replace(scene_of(found, whole=False), alpha2=0.0)
-    cycle = sweep(steady, found[signals.INDEX].values, of=["reduced_torque"])
+    steady = replace(scene_of(wheel, whole=False), alpha2=0.0)
+    cycle = sweep(steady, wheel[signals.INDEX].values, of=["reduced_torque"])
     angles, without = signals.revolution(cycle, cycle["reduced_torque"])
-    constant = float(found["drive_torque"])
+    constant = float(wheel["drive_torque"])
     grid(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8)
-    more = (constant - without) * np.sign(float(found["speed"].mean())) > 0.0
+    more = (constant - without) * np.sign(float(wheel["speed"].mean())) > 0.0
     for where, color, text in ((more, SKY, "gains speed"), (~more, ORANGE, "loses speed")):
         ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=text)
     ax.plot(angles, without, color=BLUE, label="without flywheel")
@@ -142,33 +143,33 @@ def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
 
 
 def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
-    """Plot the torque that a motor must give over its speed, beside the most that it can.
+    """Plot the torque that a motor must give over its speed, beside the most that it can give.
 
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.motor_load`, of one design.
+        Result of `linksweep.motor_load`, of one design.
     motor : Motor
-        The same.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Motor of that result.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        Where the motor is too weak, the path is red.
+        Axes with the path in red where the motor is too weak.
 
     Raises
     ------
     ValueError
-        For a Dataset without a motor's torque, and more than one design.
+        For a Dataset without a motor's torque, and for more than one design.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> servo = ls.Motor(speeds=(0.0, 300.0, 600.0), torques=(4.0, 4.0, 1.0), inertia=2e-4)
-    >>> found = ls.motor_load(ls.example("press"), servo, ratio=10.0)
-    >>> ls.plot.motor_load(found, servo).get_xlabel()
+    >>> load = ls.motor_load(ls.example("press"), servo, ratio=10.0)
+    >>> ls.plot.motor_load(load, servo).get_xlabel()
     'motor speed [rad/s]'
     """
     refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])

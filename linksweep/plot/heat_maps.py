@@ -58,34 +58,36 @@ def heat_map(
     contours: bool | str = False,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot a result over two design dims in colours, the best design marked, those that have no peaks hatched.
+    """Plot a result over two design dims in colours, the best design marked, those without peaks hatched.
 
     Parameters
     ----------
     ds : Dataset
-        Over designs, as from `linksweep.peaks`.
+        Results over designs, as from `linksweep.peaks`.
     of : str
-        The result, such as "F32_peak"; it depends on two dims.
-    x, y : str, optional
-        What lies along the axes: a dim, or a parameter over it ("crank.length"). Default: the second dim along x, the
-        first along y, each as the parameter that it is the label of, with its unit.
-    maximize : bool
-        Whether the largest value is the best; by default the least is.
-    contours : bool or str
-        Lines of equal value as well; of another result where its name is given, "transmission_angle_min".
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Result, such as "F32_peak", that depends on two dims.
+    x : str, default None
+        Dim along the horizontal axis, or a parameter over it ("crank.length"); None for the second dim, as the
+        parameter whose values are its labels.
+    y : str, default None
+        Dim along the vertical axis, or a parameter over it; None for the first dim, likewise.
+    maximize : bool, default False
+        True where the largest value is the best, False where the least is.
+    contours : bool or str, default False
+        True for lines of equal value; the name of another result, "transmission_angle_min", for lines of that.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With a colour bar beside them. Where a few designs lie far from the rest, as near toggles, they are off the
-        scale, and the colour bar has a pointed end.
+        Axes with a colour bar beside them. Where a few designs lie far from the others, as near toggles, they are off
+        the scale, and the colour bar has a pointed end.
 
     Raises
     ------
     ValueError
-        For unknown names, a result over other than two dims, and where no design is ok.
+        For unknown names, for a result over other than two dims, and where no design is ok.
 
     Examples
     --------

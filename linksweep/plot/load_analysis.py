@@ -26,27 +26,27 @@ HATCHES = ("", "///", "\\\\\\", "...")
 
 
 def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Plot what loads a pin over the revolution: the shares of its sources stacked, their sum as a line.
+    """Plot the sources of a pin's load over the revolution: their contributions stacked, their sum as a line.
 
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.breakdown`, of one design.
-    of : str, optional
-        The force or torque; by default the first in it.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Result of `linksweep.breakdown`, of one design.
+    of : str, default None
+        Force or torque; None for the first in the Dataset.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        Shares that load are stacked upwards from 0, those that relieve (or turn backwards) downwards. Where they grow
-        without bound beside angles that have no result, the axis ends at a usual size.
+        Axes with contributions that load stacked upwards from 0, those that relieve (or turn backwards) downwards.
+        Where they grow without bound beside angles that have no result, the axis ends at a usual size.
 
     Raises
     ------
     ValueError
-        For a Dataset without sources, an unknown name, and more than one design.
+        For a Dataset without sources, for an unknown name, and for more than one design.
 
     Examples
     --------
@@ -100,20 +100,20 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     Parameters
     ----------
     scene : Scene
-        Of one design; friction and dampers are allowed where no limit is given.
+        Scene of one design; with a limit, one without friction and dampers.
     of : str
-        A pin force, or the drive's torque: of a signed quantity, the largest magnitude.
-    speeds : array of speeds
-        [rad/s], in place of the scene's omega2.
-    below : float, optional
-        The limit [N or N m].
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Pin force, or the drive's torque; for a signed quantity the largest magnitude is drawn.
+    speeds : array_like
+        Speeds of the crank [rad/s], in place of the scene's omega2.
+    below : float, default None
+        Limit of the peak [N, N m]; None for no limit.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With the peak at rest as a dashed line: what weight and loads alone make.
+        Axes with the peak at rest, of weight and loads alone, as a dashed line.
 
     Raises
     ------

@@ -32,25 +32,25 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with the components of the force (F32x, F32y), of one design.
-    of : str
-        The force, as "Fij": of link i on link j.
-    frame : {"ground", "journal", "bearing"}
-        Axes of the components: "ground", or those of the link that has the "journal" or the "bearing", that turn with
-        it (x along its line of pins, of a slider along its guide); "link" is link j. Which link has the journal
-        `linksweep.bearings` tells; where links slide on each other, j counts as it.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Cycle from `linksweep.sweep` with the components of the force (F32x, F32y), of one design.
+    of : str, default "F32"
+        Force Fij, of link i on link j.
+    frame : {"ground", "journal", "bearing", "link"}, default "ground"
+        Axes of the components: of the ground, or of the link that has the journal or the bearing, that turn with it (x
+        along its line of pins, of a slider along its guide); "link" is link j. `linksweep.bearings` states which link
+        has the journal; where links slide on each other, j counts as it.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With equal scales; dots on the locus every 30 degrees of the crank, an arrow from the origin to the peak.
+        Axes with equal scales; dots on the locus every 30 degrees of the crank, an arrow from the origin to the peak.
 
     Raises
     ------
     ValueError
-        For a force that is not in the Dataset, an unknown frame, and more than one design.
+        For a force that is not in the Dataset, for an unknown frame, and for more than one design.
 
     Examples
     --------
@@ -88,20 +88,20 @@ def bearings(ds: xr.Dataset, *, frame: str = "ground") -> Figure:
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with the components of the pin forces, of one design.
-    frame : {"ground", "journal", "bearing"}
-        As `bearing` takes it.
+        Cycle from `linksweep.sweep` with the components of the pin forces, of one design.
+    frame : {"ground", "journal", "bearing"}, default "ground"
+        Axes of the components, as `bearing` takes them.
 
     Returns
     -------
     matplotlib Figure
-        7.1 inches wide, two panels in a row; scales differ from pin to pin. Of three pins, a fourth panel has all to
-        one scale.
+        Figure 7.1 inches wide, two panels in a row; scales differ from pin to pin. With three pins, a fourth panel has
+        all to one scale.
 
     Raises
     ------
     ValueError
-        For an unknown frame, more than one design, and without any pin's components in the Dataset.
+        For an unknown frame, for more than one design, and without any pin's components in the Dataset.
 
     Examples
     --------

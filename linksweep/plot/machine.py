@@ -45,32 +45,31 @@ def mechanism(
     point: tuple[float, float] | None = None,
     forces: bool = False,
 ) -> Axes:
-    """Draw the mechanism in the position of one crank angle, to scale [m].
+    """Draw the machine in the position of one crank angle, to scale [m].
 
     Parameters
     ----------
     scene : Scene or Dataset
-        A scene of one design, or a Dataset from `linksweep.sweep` that holds it.
-    theta2 : float
+        Scene of one design, or a Dataset from `linksweep.sweep` that holds it.
+    theta2 : float, default 45.0
         Crank angle [degree].
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
-    point : tuple of float, optional
-        The point of the coupler (rod) whose curve is drawn: (distance from pin B [m], angle from the line B→C
-        [degree]); by default its centre of gravity. Of an inverted slider-crank a point of the rocker, seen from D.
-    forces : bool
-        Whether to draw the forces F12 and F32 on the crank, F43 on the coupler (rod, block) and F14 on the rocker
-        (slider), to one scale.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
+    point : tuple of float, default None
+        Point of the coupler (rod) whose curve is drawn: (distance from pin B [m], angle from the line B→C [degree]);
+        for an inverted slider-crank a point of the rocker, from D. None for the link's centre of gravity.
+    forces : bool, default False
+        True for arrows of the force in each joint, to one scale.
 
     Returns
     -------
     matplotlib Axes
-        With equal scales.
+        Axes with equal scales.
 
     Raises
     ------
     ValueError
-        Where the mechanism cannot be assembled at that angle, and for more than one design.
+        Where the machine cannot be assembled at that angle, and for more than one design.
 
     Examples
     --------

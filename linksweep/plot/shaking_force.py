@@ -29,21 +29,21 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.sweep`, with the components (Fsx, Fsy) of one design.
-    of : str
-        The vector, its components without x and y.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Cycle from `linksweep.sweep` with the components (Fsx, Fsy), of one design.
+    of : str, default "Fs"
+        Vector, named as its components without x and y.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With equal scales, a dot every 30 degrees of the crank, and an arrow to the largest.
+        Axes with equal scales, a dot every 30 degrees of the crank, and an arrow to the largest.
 
     Raises
     ------
     ValueError
-        For components that are not in the Dataset, and more than one design.
+        For components that are not in the Dataset, and for more than one design.
 
     Examples
     --------
@@ -108,37 +108,37 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     Parameters
     ----------
     ds : Dataset
-        From `linksweep.orders`, of one design.
-    of : iterable of str, optional
-        The signals; by default all in it. They must have one unit.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Result of `linksweep.orders`, of one design.
+    of : iterable of str, default None
+        Signals with one common unit; None for all in the Dataset.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        Order 0 is the mean. The legend says the largest order of each signal.
+        Axes with order 0 as the mean, and the largest order of each signal in the legend.
 
     Raises
     ------
     ValueError
-        For a Dataset without orders, unknown signals, several units or designs, and more than five signals.
+        For a Dataset without orders, for unknown signals, several units or designs, and for more than five signals.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.orders(ls.sweep(ls.example("engine"), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
-    >>> ls.plot.orders(found).get_ylabel()
+    >>> shaking = ls.orders(ls.sweep(ls.example("engine"), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
+    >>> ls.plot.orders(shaking).get_ylabel()
     'amplitude [N]'
     """
     known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
-    wanted = known if of is None else [of] if isinstance(of, str) else list(of)
-    refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*wanted} - {*known}])
-    chosen = [ds[name + ENDING] for name in wanted]
+    names = known if of is None else [of] if isinstance(of, str) else list(of)
+    refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*names} - {*known}])
+    chosen = [ds[name + ENDING] for name in names]
     units = {amplitude.attrs["units"] for amplitude in chosen}
     several = "must share one unit: plot each alone"
-    refuse([f"of = {wanted}: {several}"] if len(units) > 1 else [])
-    refuse([] if 0 < len(wanted) <= len(COLORS) else [f"of: one to {len(COLORS)} signals, not {len(wanted)}"])
+    refuse([f"of = {names}: {several}"] if len(units) > 1 else [])
+    refuse([] if 0 < len(names) <= len(COLORS) else [f"of: one to {len(COLORS)} signals, not {len(names)}"])
     refuse([f"{a.name} is over {a.dims}: plot one design, as ds.isel(...)" for a in chosen if a.ndim > 1])
     from matplotlib.ticker import MaxNLocator
 
@@ -146,9 +146,9 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     grid(ax)
     order = ds["order"].values
     step = order[1] - order[0] if len(order) > 1 else 1.0
-    width = 0.8 * step / len(wanted)
-    for k, (name, amplitude) in enumerate(zip(wanted, chosen, strict=True)):
-        place = order + (k - 0.5 * (len(wanted) - 1)) * width
+    width = 0.8 * step / len(names)
+    for k, (name, amplitude) in enumerate(zip(names, chosen, strict=True)):
+        place = order + (k - 0.5 * (len(names) - 1)) * width
         ax.bar(place, amplitude.values, width, color=COLORS[k], label=_legend_text(name, amplitude))
     ax.xaxis.set_major_locator(MaxNLocator(16, integer=True))
     ax.set_xlabel("order [turns per turn of the crank]")

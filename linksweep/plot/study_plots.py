@@ -1,7 +1,7 @@
 """Plots of a study's designs: two results against each other with the Pareto front, and parallel coordinates.
 
-Of very many designs some are drawn, chosen by chance, the same ones each time; the legend says how many. Those that
-are marked, the front and the best, are found among all.
+Of very many designs some are drawn, chosen at random, equal for each call; the legend states how many. The front and
+the best, which are marked, are those of all designs.
 """
 
 from __future__ import annotations
@@ -56,24 +56,26 @@ def scatter(
     Parameters
     ----------
     ds : Dataset
-        Over designs, as from `linksweep.peaks`.
-    x, y : str
-        Names in it, such as "F32_peak", "T12_peak", "coupler.length".
-    color : str, optional
-        A third one, shown by colour.
-    maximize : iterable of str
+        Results over designs, as from `linksweep.peaks`.
+    x : str
+        Name for the horizontal axis, such as "F32_peak" or "coupler.length".
+    y : str
+        Name for the vertical axis.
+    color : str, default None
+        Name of a third one, drawn by colour; None for one colour.
+    maximize : iterable of str, default ()
         Those of x and y of which more is better; of the others less is.
-    front : bool
-        Whether to draw the front: designs that no other beats in both, as `linksweep.pareto` finds them. What is as
-        good as any of them lies on or beyond the steps.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+    front : bool, default True
+        True for the front: designs that no other beats in both, as `linksweep.pareto` selects them. A design as good as
+        any of them lies on or beyond the steps.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With the designs that are ok, be it over part of a revolution; of more than 20 000 so many, chosen by chance.
-        A few designs far from the rest are off the scale.
+        Axes with the designs that are ok, be it over part of a revolution; of more than 20 000, so many at random. A
+        few designs far from the others are off the scale.
 
     Raises
     ------
@@ -171,28 +173,28 @@ def parallel_coordinates(
     Parameters
     ----------
     ds : Dataset
-        Over designs, as from `linksweep.peaks`.
-    of : iterable of str, optional
-        What the axes show, from left to right; by default the parameters that vary, then the peaks.
-    color : str, optional
-        The objective; by default the last of the names.
-    maximize : bool
-        Whether the largest objective is the best; by default the least is.
-    best : int
-        How many of the best designs to mark.
-    ax : matplotlib Axes, optional
-        Where to draw; by default a new figure.
+        Results over designs, as from `linksweep.peaks`.
+    of : iterable of str, default None
+        Names for the axes, from left to right; None for the parameters that vary, then the peaks.
+    color : str, default None
+        Objective; None for the last of the names.
+    maximize : bool, default False
+        True where the largest objective is the best, False where the least is.
+    best : int, default 5
+        Count of the best designs to mark.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
 
     Returns
     -------
     matplotlib Axes
-        With the designs that are ok, be it over part of a revolution; of more than 1500 so many, chosen by chance,
-        better ones on top. Where a few designs lie far from the rest, their lines leave the axis at an arrow.
+        Axes with the designs that are ok, be it over part of a revolution; of more than 1500, so many at random, better
+        ones on top. Where a few designs lie far from the others, their lines leave the axis at an arrow.
 
     Raises
     ------
     ValueError
-        For unknown names, fewer than two or more than twelve of them, and where no design is ok.
+        For unknown names, for fewer than two or more than twelve of them, and where no design is ok.
 
     Examples
     --------

@@ -51,18 +51,22 @@ def report(
 
     Parameters
     ----------
-    scene : Scene of one design, or a Dataset of linksweep that holds one; or a MultiCylinder of one design
-    path : the file, "report.html"; it needs no other file and no network. One that exists is replaced only once the
-        new one is complete
-    title : its heading; by default the kind of mechanism
-    theta2 : (first, last) crank angle [degree] of a machine that moves over part of a turn, as a tipper does: checks,
-        figures and peaks are then of this part
+    scene : Scene, Dataset or MultiCylinder
+        Machine of one design; a Dataset of linksweep holds its scene.
+    path : str or PathLike
+        File to write, "report.html". It needs no other file and no network; an existing one is replaced only once the
+        new one is complete.
+    title : str, default None
+        Heading of the page; None for the kind of mechanism.
+    theta2 : pair of float, default None
+        First and last crank angle [degree] of a machine that moves over part of a turn, as a tipper does; checks,
+        figures and peaks are then of this part.
 
     Raises
     ------
     ValueError
-        For a scene over designs: choose one with `linksweep.scene_at`, or of a Dataset with isel; and for another
-        ending than .html, or angles that are none.
+        For a scene over designs (choose one with `linksweep.scene_at`, or in a Dataset with isel), for another ending
+        than .html, and for bad angles.
     OSError
         When the folder is missing or cannot be written.
 
@@ -85,7 +89,8 @@ def report(
     ending_of(path, ENDINGS, ADVICE)
     if isinstance(scene, MultiCylinder):
         refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
-        return write_text(page_of_cylinders(scene.in_memory, title), path)
+        write_text(page_of_cylinders(scene.in_memory, title), path)
+        return
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
     text = page(one, title, theta2)

@@ -52,16 +52,22 @@ PLAYER = """\
 
 
 class Film:
-    """A film. As the last expression of a notebook's cell it shows itself; `save` writes it to a file.
+    """A film that a notebook shows as the last expression of a cell; `save` writes it to a file.
 
     Parameters
     ----------
-    figure : matplotlib Figure, not of pyplot
-        With all that stands still.
+    figure : matplotlib Figure
+        Figure, not of pyplot, with all that stands still.
     draw : callable
-        Brings the frame of a number from 0 into the figure; returns the artists that differ from frame to frame.
+        Function that draws the frame of a number from 0 into the figure, and returns the artists that move.
     count : int
-        Of the frames.
+        Count of frames.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> len(ls.plot.animate(ls.example("press"), frames=12))
+    12
     """
 
     def __init__(self, figure: Figure, draw: Callable[[int], Iterable[Artist]], count: int) -> None:
@@ -82,7 +88,18 @@ class Film:
         return self._count
 
     def show(self, k: int) -> list[Artist]:
-        """Bring frame `k` into the figure; the artists that move come back, the lowest first."""
+        """Draw a frame into the figure.
+
+        Parameters
+        ----------
+        k : int
+            Number of the frame, from 0.
+
+        Returns
+        -------
+        list of matplotlib Artist
+            Artists that move, the lowest first.
+        """
         with small_type():
             moving = list(self._draw(k))
         for artist in moving:
@@ -90,7 +107,18 @@ class Film:
         return sorted(moving, key=Artist.get_zorder)
 
     def image(self, k: int) -> Image.Image:
-        """Frame `k` as a picture, in full colour."""
+        """Return a frame as a picture, in full colour.
+
+        Parameters
+        ----------
+        k : int
+            Number of the frame, from 0.
+
+        Returns
+        -------
+        PIL Image
+            Picture of the whole figure.
+        """
         moving = self.show(k)
         self._canvas.restore_region(self._still)
         with small_type():
@@ -100,6 +128,11 @@ class Film:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the film, whole or not at all: a .gif that runs for ever, or a page .html with a slider.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            File to write, with the ending .gif or .html.
 
         Raises
         ------
