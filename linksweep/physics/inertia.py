@@ -67,7 +67,10 @@ def steady_effective_force(
     h_along, h_across, centripetal = mass * cg_x / length, mass * cg_y / length, omega * omega
     along = centripetal * h_along + alpha * h_across
     across = centripetal * h_across - alpha * h_along
-    return (mass * gravity_x + along * rx - across * ry + Px, mass * gravity_y + along * ry + across * rx + Py)
+    return (
+        mass * gravity_x + along * rx - across * ry + Px,
+        mass * gravity_y + along * ry + across * rx + Py,
+    )
 
 
 def steady_effective_moment(
