@@ -127,11 +127,10 @@ def _with_masses(mechanism: Mechanism, labels: list[str]) -> Mechanism:
         chosen = np.array([label in [f"{role}.{word}" for word in words] for label in labels], dtype=float)
         return xr.DataArray(chosen, dims=PROBE) if labels else 0.0
 
-    parts, masses = mechanism.parts(), {}
+    numbers, masses = mechanism.parameters(), {}
     for role, own in mechanism.masses().items():
         place = own.cg_distance, own.cg_angle
         if labels:
-            length = parts.get(role, next(iter(parts.values()))).length
-            place = float(np.max(length)) * only(role, "mx", "my"), 90.0 * only(role, "my")
+            place = float(np.max(numbers[f"{role}_length"])) * only(role, "mx", "my"), 90.0 * only(role, "my")
         masses[role] = MassDistribution(*place, only(role, "m", "mx", "my"), only(role, "J"))
     return mechanism.with_masses(masses)
