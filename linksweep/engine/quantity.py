@@ -20,6 +20,11 @@ class Quantity:
     long_name: str
     squared: str | None = None
 
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components of a magnitude; of any other quantity its own."""
+        return (f"{self.name}x", f"{self.name}y") if self.squared else (self.name,)
+
 
 @dataclass(frozen=True)
 class Row:

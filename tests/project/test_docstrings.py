@@ -48,8 +48,6 @@ from linksweep.plot.kit.film import Film
 PACKAGE = Path(ls.__file__).parent
 
 NOT_YET = {
-    "Bearing",
-    "Bearing.exponent",
     "Damper",
     "Damper.approaches",
     "Damper.ends",
@@ -112,14 +110,8 @@ NOT_YET = {
     "TorsionSpring.parameters",
     "TorsionSpring.problems",
     "TorsionSpring.sampled",
-    "bearings",
-    "breakdown",
-    "load_spectrum",
     "peaks",
-    "pin_friction",
     "sample",
-    "speed_limit",
-    "speed_separation",
     "sweep",
     "system",
 }
@@ -284,7 +276,6 @@ def test_docstring(name):
 
 
 SHRINKING = {
-    "analysis": (28, 6),
     "mechanisms": (1, 8),
     "results": (14, 2),
     "scene": (57, 43),

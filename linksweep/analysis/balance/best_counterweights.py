@@ -25,7 +25,6 @@ from linksweep.analysis.balance.compare import sizes_named
 from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
 from linksweep.base.validate import Rule, name_problems, quote, refuse
-from linksweep.engine.quantity import Quantity
 from linksweep.results.compute import require
 from linksweep.results.sweep import sweep
 from linksweep.scene.checked_number import checked_number
@@ -161,7 +160,7 @@ def _spokes(radius: float) -> Array:
 def _aims(
     scene: Scene, sizes: Mapping[tuple[str, str], float], links: list[str], theta2: int, threads: int | None
 ) -> list[Aim]:
-    components = {name: components_of(scene.table.quantity[name]) for name, _ in sizes}
+    components = {name: scene.table.quantity[name].components for name, _ in sizes}
     names = [name for pair in components.values() for name in pair]
     coefficients, cycle = (
         regressor(scene, names, theta2=theta2, threads=threads),
@@ -181,11 +180,6 @@ def _aims(
             change = change - (change * share[:, None]).sum(axis=1, keepdims=True)
         aims.append(Aim(word, weight, base, change, share))
     return aims
-
-
-def components_of(quantity: Quantity) -> tuple[str, ...]:
-    """Return the components of a magnitude, or the name of any other quantity."""
-    return (f"{quantity.name}x", f"{quantity.name}y") if quantity.squared else (quantity.name,)
 
 
 def _over_angles(array: xr.DataArray, cycle: xr.Dataset) -> Array:

@@ -4,17 +4,17 @@
     L10 = (C/P)^p                        life that nine of ten reach, in million revolutions
     L10h = L10 · 10⁶ · 2π/∫ |dψ| · ∫ dt  in time, with dt = dθ2/|ω2|
 
-Where F is unbounded, so is the damage ∫ F^p |dψ|, and the life is none at all. At a toggle, δ before the limit of θ2,
+Where F is unbounded, so is the damage ∫ F^p |dψ|, and the life is 0. At a toggle, δ before the limit of θ2,
 the sine of the transmission angle μ goes with √δ: F grows as 1/μ under loads, as μ^-4 with inertia. The pins of coupler
 and rocker turn by |dψ| ∝ dμ, the crank's by |dψ| ∝ dδ ∝ μ dμ, so that ∫ F^p |dψ| ≥ ∫ μ^(1-p) dμ, which diverges for
 p ≥ 2. Where the driven link stands still, or friction wedges, F grows as 1/δ, |dψ| ∝ dδ, or δ dδ at the pin that stands
-still: ∫ δ^(1-p) dδ diverges as well. So no unbounded load is too short to count.
+still: ∫ δ^(1-p) dδ diverges as well. So every unbounded load counts, however short.
 
 Sources: ISO 281 (basic rating life); variable loads by the linear damage rule of A. Palmgren and M. A. Miner, as in R.
 G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, chapter "Rolling-Contact Bearings", and C. R.
-Mischke in Standard Handbook of Machine Design, 3rd ed., section 18.7. What turns to and fro counts with the whole angle
-that it turns, the simplest of the rules that O. Menck and M. Stammler review (Wind Energy Science 9 (2024) 777): swings
-so small that the rolling elements' paths do not overlap want more care.
+Mischke in Standard Handbook of Machine Design, 3rd ed., section 18.7. A journal that turns to and fro counts with the
+whole angle that it turns, the simplest of the rules that O. Menck and M. Stammler review (Wind Energy Science 9 (2024)
+777): swings so small that the rolling elements' paths do not overlap want more care.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ MILLION = 1e6
 MEANINGS = ("ok", "partial_revolution", "nothing_solved", "unbounded_load", "no_rotation")
 OK, PARTIAL, NOTHING, UNBOUNDED, STANDING = range(len(MEANINGS))
 WHOLE = 1.0 - 1e-9
-"""Of the crank's way: less of it that is ok is a part."""
+"""Share of the crank's way that must be ok for a whole revolution."""
 LARGEST = 1e300
 
 
 class Rotation(NamedTuple):
-    """How the pins turn under their loads on the crank's way.
+    """Rotation of the pins under their loads on the crank's way.
 
-    `way` [degree] is all that the crank turns; of the part that is `solved` [degree] are the `time` [s] and, by pin,
-    `rotation` [degree] and `damage` [N^p degree].
+    `way` [degree] is the crank's rotation, `solved` [degree] the part of it that is ok; `time` [s] and, by pin,
+    `rotation` [degree] and `damage` [N^p degree] are integrals over that part.
     """
 
     way: float

@@ -1,4 +1,4 @@
-"""bearings(scene, {...}): what each pin asks of its bearing over a cycle: load diagrams, pressure, friction, life.
+"""Bearings in the pins of a machine over a cycle: load diagrams, pressure, friction, life.
 
 Equations and sources: of rolling bearings `linksweep.analysis.pins.bearing_life`, of plain ones
 `linksweep.physics.bearing`.
@@ -31,7 +31,7 @@ from linksweep.scene.scene import Scene
 
 EXPONENTS = {"ball": 3.0, "roller": 10.0 / 3.0}
 FRAMES = ("ground", "journal", "bearing")
-SAID = {
+TEXTS = {
     "F": ("N", "magnitude of the pin force"),
     "Fx": ("N", "pin force Fij of link i on link j, component along the x axis of the frame"),
     "Fy": ("N", "pin force Fij of link i on link j, component along the y axis of the frame"),
@@ -52,20 +52,25 @@ SAID = {
 class Bearing(ByContent):
     """The bearing of a pin.
 
+    All sizes may be left out; results that need them are then NaN. Numbers may be DataArrays of design dims.
+
     Parameters
     ----------
-    diameter : of the journal [m]
-    length : of the bush [m]
-    friction : coefficient of Coulomb friction between the two; its friction circle is exact, μ·r/√(1 + μ²)
-    capacity : basic dynamic load rating C of a rolling bearing [N]
-    kind : "ball" or "roller", for the exponent of its life
-
-    All may be left out; what needs them is then NaN. Numbers may be DataArrays of design dims.
+    diameter : float or DataArray, default None
+        Diameter of the journal [m].
+    length : float or DataArray, default None
+        Length of the bush [m].
+    friction : float or DataArray, default 0.0
+        Coefficient of Coulomb friction between the two [1]; its friction circle is exact, μ·r/√(1 + μ²).
+    capacity : float or DataArray, default None
+        Basic dynamic load rating C of a rolling bearing [N].
+    kind : str, default "ball"
+        Rolling elements, "ball" or "roller", for the exponent of the life.
 
     Raises
     ------
     ValueError
-        One line for each parameter out of bounds.
+        If a parameter is out of bounds; one line for each.
 
     Examples
     --------
@@ -87,7 +92,7 @@ class Bearing(ByContent):
 
     @property
     def exponent(self) -> float:
-        """p of the module's equations."""
+        """Exponent p of the life's equation."""
         return EXPONENTS[self.kind]
 
 
@@ -98,52 +103,62 @@ def bearings(
     theta2: Any = 720,
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Loads, rotation, friction and life of the bearings in the pins of a mechanism.
+    """Compute loads, rotation, friction and life of the bearings in the pins of a machine.
 
     Parameters
     ----------
-    scene : Scene; or a MultiCylinder, for the main bearings of its crankshaft: dim `main` in place of `pin`
-    pins : a Bearing by pin, {"B": ls.Bearing(...)}, or by main bearing, {"main1": ls.Bearing(...)}; those that are not
-        named have one without sizes
-    theta2 : count of crank angles over the cycle; or, of a machine that moves over part of a turn, any array of angles
-        [degree], of which the least and the largest are the ends of its way
-    threads : at most so many (default: all cores)
+    scene : Scene or MultiCylinder
+        Machine with pins; of a MultiCylinder the main bearings of its crankshaft, with the dim `main` in place of
+        `pin`.
+    pins : mapping of str to Bearing, default None
+        Bearing of each pin, {"B": ls.Bearing(...)}, or main bearing, {"main1": ls.Bearing(...)}; the others have one
+        without sizes.
+    theta2 : int or array_like, default 720
+        Count of crank angles over the cycle; or, of a machine that moves over part of a turn, angles [degree], of which
+        the least and the largest are the ends of its way.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over (design dims…, pin, frame, theta2), each variable over those that it depends on:
+    Dataset
+        Results over (design dims…, pin, frame, theta2), each over those that it depends on:
 
-    - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on link j;
-      what link i feels is the opposite. "ground" are the ground's axes, "journal" and "bearing" those of the links that
-      have them (x along the line of pins, of a slider along its guide). At A and B the crank has the journal, at D the
-      rocker; at C the coupler, but of a slider-crank the slider, as an engine's piston has the gudgeon pin.
-    - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` of each sample in all rotation in the pin
-    - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
-      friction; `linksweep.pin_friction` couples the two
-    - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
-      revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of samples
-    - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
-
-    `status` is that of each sample; angles that are not ok are left out of integrals, of that over time too.
-    `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
-    unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
+        - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on link
+          - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on
+            link j; link i feels the opposite. "ground" are the ground's axes, "journal" and "bearing" those of the
+            links that have them (x along the line of pins, of a slider along its guide). At A and B the crank has the
+            journal, at D the rocker; at C the coupler, but of a slider-crank the slider, as an engine's piston has the
+            gudgeon pin.
+        - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` [1] of each sample in all rotation in
+          the
+          pin
+        - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
+          friction; `linksweep.pin_friction` couples the two
+        - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
+          revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of
+          samples
+        - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
+        - `status` of each sample; integrals, that over time too, leave out angles that are not ok
+        - `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
+          unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
 
     Raises
     ------
     ValueError
-        For a machine without pins, a pin that it lacks, what is no Bearing, angles that are none or of more than a
-        cycle, and arrays over theta2 that do not say of which angles they are.
+        If the machine lacks pins, or one of those named, a value is no Bearing, the angles span more than a cycle, or
+        an array over theta2 states no angles.
 
     Notes
     -----
-    Integrals to 1e-10. What moves to and fro over part of a turn is taken to come back as it went. Source: equations of
+    Integrals to 1e-10. A machine that moves over part of a turn is taken to come back as it went. Source: equations of
     `linksweep.analysis.pins.bearing_life` and `linksweep.physics.bearing`.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> found = ls.bearings(ls.example("press"), {"C": ls.Bearing(diameter=0.01, length=0.02, capacity=5000.0)})
-    >>> round(float(found.rotation.sel(pin="A")), 6), bool(found.L10.sel(pin="C") > 1.0)
+    >>> loads = ls.bearings(ls.example("press"), {"C": ls.Bearing(diameter=0.01, length=0.02, capacity=5000.0)})
+    >>> round(float(loads.rotation.sel(pin="A")), 6), bool(loads.L10.sel(pin="C") > 1.0)
     (360.0, True)
     """
     if isinstance(scene, MultiCylinder):
@@ -159,20 +174,20 @@ def bearings(
     cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)], threads=threads)
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
     forces, exponents = {pin: _force(pair) for pin, pair in links.items()}, {p: b.exponent for p, b in fitted.items()}
-    turned, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
+    rotation, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
     parts = [
         _of_pin(cycle, links[pin], cycle[f"omega_{pin}"], bearing, reach)
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
-        | of_life(turned, pin, bearing)
+        | of_life(rotation, pin, bearing)
         for pin, bearing in fitted.items()
     ]
-    found = {
+    results = {
         name: joined([part[name] for part in parts], "pin", links).assign_attrs(attributes_of(name))
         for name in parts[0]
     }
     angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
     attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
-    return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes)
+    return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
 
 
 def _part_problems(part: Part | None, period: float) -> list[str]:
@@ -186,7 +201,7 @@ def _part_problems(part: Part | None, period: float) -> list[str]:
 
 
 def checked_pins(scene: Scene, pins: Mapping[str, Bearing] | None) -> Mapping[str, tuple[int, int]]:
-    """The pins of a scene's mechanism; ValueError for a scene without, and for bearings of pins that it lacks."""
+    """Return the pins of a scene's machine; raise ValueError where it has none, or lacks the pin of a bearing."""
     require(scene, "pins")
     refuse(bearing_problems(pins, scene.mechanism.pins))
     return scene.mechanism.pins
@@ -210,9 +225,10 @@ def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
 
 
 def attributes_of(name: str) -> dict[str, Any]:
+    """Return unit and description of a result."""
     if name == "life_status":
-        return flags("which loads the life of the bearing is that of", MEANINGS)
-    return dict(zip(("units", "long_name"), SAID[name], strict=True))
+        return flags("loads for which the life of the bearing holds", MEANINGS)
+    return dict(zip(("units", "long_name"), TEXTS[name], strict=True))
 
 
 def _force(links: tuple[int, int]) -> str:
@@ -224,8 +240,8 @@ def _of_pin(
 ) -> dict[str, xr.DataArray]:
     """Return load, motion and friction at each sample."""
     force = cycle[_force(links)]
-    found = {"F": force, "rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
-    return found | on_journal(force, speed, bearing)
+    motion = {"rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
+    return {"F": force} | motion | on_journal(force, speed, bearing)
 
 
 def on_journal(force: xr.DataArray, speed: xr.DataArray, bearing: Bearing) -> dict[str, xr.DataArray]:
@@ -233,14 +249,13 @@ def on_journal(force: xr.DataArray, speed: xr.DataArray, bearing: Bearing) -> di
     diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
-    found = {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding}
-    radius = plain.friction_circle(bearing.friction, diameter)
-    return found | {"friction_loss": plain.friction_loss(radius, force, speed)}
+    loss = plain.friction_loss(plain.friction_circle(bearing.friction, diameter), force, speed)
+    return {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding, "friction_loss": loss}
 
 
-def of_life(turned: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
+def of_life(rotation: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
     """Return rotation, equivalent load and life of the bearing in a pin."""
-    return turned.life(pin, _or_nan(bearing.capacity), bearing.exponent)
+    return rotation.life(pin, _or_nan(bearing.capacity), bearing.exponent)
 
 
 def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
@@ -275,22 +290,25 @@ def _link_axes(link: int) -> str:
 
 
 def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
-    """How much of its rotation each pin makes under which load.
+    """Compute the share of its rotation that each pin makes under loads of each class.
 
     Parameters
     ----------
-    ds : Dataset from `linksweep.bearings`
-    classes : count of equal classes of load, from none to the largest sample of the pin
+    ds : Dataset
+        Loads from `linksweep.bearings`.
+    classes : int, default 10
+        Count of equal classes of load, from none to the largest sample of the pin.
 
     Returns
     -------
-    Dataset over (…, pin, load_class): `class_load` [N], the middle of each class, and `share` of the rotation in it;
-    the shares of a pin add up to 1. NaN where a load is unbounded: no classes reach up to it.
+    Dataset
+        Over (…, pin, load_class): `class_load` [N], the middle of each class, and `share` [1] of the rotation in it;
+        the shares of a pin add up to 1. NaN where a load is unbounded: no classes reach up to it.
 
     Raises
     ------
     ValueError
-        For a Dataset that does not hold F, rotation_share and life_status, or no count of classes.
+        If the Dataset lacks F, rotation_share or life_status, or classes is no count.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""breakdown(scene, "F32"): why is a pin loaded? The share of each link's inertia, of gravity, each load, friction.
+"""Breakdown of a pin's load: the share of each link's inertia, of gravity, each load, and friction.
 
 Forces are linear in these sources, so each share comes from the same plan with the other sources set to zero. Friction
-alone is not: its share is the force with friction less that without, which is what the friction force that acts would
-do as a load on a slider without friction.
+alone is not: its share is the force with friction less the force without, the effect of the acting friction force as a
+load on a slider without friction.
 """
 
 from __future__ import annotations
@@ -30,31 +30,36 @@ FORCE = re.compile("[FT][0-9][0-9][a-z]?")
 def breakdown(
     scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
 ) -> xr.Dataset:
-    """The share of each source in pin forces and in the drive's torque.
+    """Compute the share of each source in pin forces and in the drive's torque.
 
     Parameters
     ----------
-    scene : Scene of a machine with a crank
-    of : names of pin forces, of their components, or of the drive's torque or force; default: all pins and the torque
-    theta2 : a count of angles, or any array of angles [degree], as in `sweep`; ``[peaks.F32_peak_at]`` for the worst
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene of a machine with pins.
+    of : str or iterable of str, default None
+        Names of pin forces, of their components, or of the drive's torque or force; None for all pins and the torque.
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree], as in `linksweep.sweep`; ``[peaks.F32_peak_at]`` for the worst.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset over `source` and the dims of a sweep. Sources are "crank inertia", "coupler inertia", …, "gravity", each
-    load ("load1 (coupler)", …) and "friction", those that the scene has. The shares of a component or a torque add
-    up to it. Of a magnitude F32 they are the sources' forces along the direction of the whole force, so that they add
-    up to it too; a negative share relieves the pin. `status` as in `sweep`.
+    Dataset
+        Shares over `source` and the dims of a sweep. Sources are "crank inertia", "coupler inertia", …, "gravity", each
+        load ("load1 (coupler)", …) and "friction", as the scene has them. The shares of a component or a torque add up
+        to it. Of a magnitude F32 they are the sources' forces along the direction of the whole force, so that they add
+        up to it too; a negative share relieves the pin. `status` as in `linksweep.sweep`.
 
     Raises
     ------
     ValueError
-        For names that are no forces, and for a car in a loop.
+        If a name is no force of the scene, or the machine has no pins.
 
     Notes
     -----
-    Inertia is that at the scene's own omega2 and alpha2. Friction's share is the force with friction less that without.
-    Sums agree with `sweep` to 1e-13 of the largest share.
+    Inertia is that at the scene's own omega2 and alpha2. Friction's share is the force with friction less the force
+    without. Sums agree with `linksweep.sweep` to 1e-13 of the largest share.
 
     Examples
     --------
@@ -75,7 +80,7 @@ def breakdown(
     names = _names(scene, of)
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
-    parts = tuple(dict.fromkeys(part for name in names for part in _parts(scene, name)))
+    parts = tuple(dict.fromkeys(part for name in names for part in scene.table.quantity[name].components))
     cycle = sweep(scene, theta2, of=dict.fromkeys([*names, *parts]), threads=threads)
     shares = {
         source: quantities_with(changed, single, grid, parts, threads)
@@ -85,9 +90,9 @@ def breakdown(
         whole, smooth = (quantities_with(changed, sampled, grid, parts, threads) for changed in ({}, FRICTIONLESS))
         shares["friction"] = {part: whole[part] - smooth[part] for part in parts}
     stacked = {part: _stacked(part, shares) for part in parts}
-    made = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
-    found = cycle[["status"]].assign(made).transpose("source", ...).assign_coords(source=list(shares))
-    return found.assign_attrs(cycle.attrs | {"command": f"linksweep.breakdown(scene, {list(names)}, ...)"})
+    described = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
+    ds = cycle[["status"]].assign(described).transpose("source", ...).assign_coords(source=list(shares))
+    return ds.assign_attrs(cycle.attrs | {"command": f"linksweep.breakdown(scene, {list(names)}, ...)"})
 
 
 def _names(scene: Scene, of: Any) -> tuple[str, ...]:
@@ -99,35 +104,31 @@ def _names(scene: Scene, of: Any) -> tuple[str, ...]:
 
 
 def forces_of(scene: Scene) -> list[str]:
-    """Names of what is linear in the sources: the unknowns of the square system, and what is made of them."""
+    """Return the names of forces that are linear in the sources: unknowns of the square system, and their sums."""
     drive = scene.mechanism.drives[scene.drive]
     numbered = [name for name in scene.table.quantity if FORCE.fullmatch(name)]
     return list(dict.fromkeys([*numbered, drive, "reduced_torque"]))
 
 
-def _parts(scene: Scene, name: str) -> tuple[str, ...]:
-    """Of a magnitude, the components."""
-    return (f"{name}x", f"{name}y") if scene.table.quantity[name].squared else (name,)
-
-
 def has_friction(scene: Scene) -> bool:
+    """Return whether some part of the machine slides with friction."""
     return bool(np.any(scene.mechanism.friction != 0.0))
 
 
 def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
-    """For each source the scene with no loads but its own, and the parameters that silence the other sources."""
+    """Return for each source a scene with its loads alone, and the parameters that silence the other sources."""
     links = sampled.mechanism.links
     weightless = FRICTIONLESS | {"gravity_x": 0.0, "gravity_y": 0.0}
     bare = replace(sampled, loads=())
-    found = {
+    sources = {
         f"{link} inertia": (bare, weightless | _massless(other for other in links if other != link)) for link in links
     }
     if any(np.any(component != 0.0) for component in sampled.gravity):
-        found["gravity"] = (bare, FRICTIONLESS | {"omega2": 0.0, "alpha2": 0.0})
+        sources["gravity"] = (bare, FRICTIONLESS | {"omega2": 0.0, "alpha2": 0.0})
     for k, load in enumerate(sampled.loads, 1):
         alone = replace(sampled, loads=(load,))
-        found[f"load{k} ({load.form.place})"] = (alone, weightless | _massless(links))
-    return found
+        sources[f"load{k} ({load.form.place})"] = (alone, weightless | _massless(links))
+    return sources
 
 
 def _massless(links: Iterable[str]) -> dict[str, float]:
@@ -135,12 +136,12 @@ def _massless(links: Iterable[str]) -> dict[str, float]:
 
 
 def _stacked(name: str, shares: Mapping[str, dict[str, xr.DataArray]]) -> xr.DataArray:
-    arrays = xr.broadcast(*(found[name] for found in shares.values()))
+    arrays = xr.broadcast(*(forces[name] for forces in shares.values()))
     return xr.concat(arrays, "source", coords="minimal", compat="override", join="override")
 
 
 def _share(cycle: xr.Dataset, name: str, stacked: Mapping[str, xr.DataArray]) -> xr.DataArray:
-    """Shares of a component as they are; of a magnitude along the direction of the whole force, where it has one."""
+    """Return the shares of a component as they are; of a magnitude, along the direction of the whole force."""
     if name in stacked:
         return stacked[name]
     x, y, size = cycle[f"{name}x"], cycle[f"{name}y"], cycle[name]
@@ -149,5 +150,5 @@ def _share(cycle: xr.Dataset, name: str, stacked: Mapping[str, xr.DataArray]) ->
 
 
 def _described(whole: xr.DataArray, share: xr.DataArray) -> xr.DataArray:
-    said = {"units": whole.attrs["units"], "long_name": f"share of each source in: {whole.attrs['long_name']}"}
-    return share.where(whole.notnull()).assign_attrs(said)
+    attributes = {"units": whole.attrs["units"], "long_name": f"share of each source in: {whole.attrs['long_name']}"}
+    return share.where(whole.notnull()).assign_attrs(attributes)

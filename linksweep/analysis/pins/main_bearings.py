@@ -22,7 +22,7 @@ from linksweep.results.dataset import joined
 from linksweep.results.peaks import peaks
 
 FRAMES = ("ground", "journal")
-SAID = {
+TEXTS = {
     "F": ("N", "magnitude of the force of the main bearing on the crankshaft"),
     "Fx": ("N", "force of the main bearing on the crankshaft, component along the x axis of the frame"),
     "Fy": ("N", "force of the main bearing on the crankshaft, component along the y axis of the frame"),
@@ -30,7 +30,7 @@ SAID = {
     "F_peak_at": ("degree", "crank angle of the largest load"),
     "rotation_speed": ("rad s-1", "angular velocity of the crankshaft, positive counter-clockwise"),
 }
-NO_MAINS = "main_positions: nothing says where the main bearings are; give two places or more, main_positions=[...]"
+NO_MAINS = "main_positions: places of the main bearings are unknown; give two places or more, main_positions=[...]"
 
 
 def main_bearings(
@@ -44,7 +44,7 @@ def main_bearings(
     cycle = machine.sweep(
         theta2, threads=threads, of=[f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
     )
-    turned = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
+    rotation = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
     highest = peaks(machine, of=mains.values(), threads=threads)
     speed = xr.DataArray(machine.engine.omega2)
     parts = [
@@ -52,17 +52,19 @@ def main_bearings(
         | _in_frames(cycle, force)
         | {"rotation_speed": speed, "rotation_share": _share(cycle["status"])}
         | on_journal(cycle[force], speed, fitted[name])
-        | of_life(turned, name, fitted[name])
+        | of_life(rotation, name, fitted[name])
         for name, force in mains.items()
     ]
-    found = {n: joined([part[n] for part in parts], "main", mains).assign_attrs(_attributes(n)) for n in parts[0]}
+    results = {n: joined([part[n] for part in parts], "main", mains).assign_attrs(_attributes(n)) for n in parts[0]}
     place = xr.DataArray(list(machine.mains), dims="main", attrs={"units": "m", "long_name": "place along the shaft"})
     attributes = cycle.attrs | {"command": f"linksweep.bearings(engine, ..., theta2={theta2})"}
-    return xr.Dataset({**found, "status": cycle["status"]}, cycle.coords, attributes).assign_coords(main_position=place)
+    return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes).assign_coords(
+        main_position=place
+    )
 
 
 def _attributes(name: str) -> dict[str, Any]:
-    return dict(zip(("units", "long_name"), SAID[name], strict=True)) if name in SAID else attributes_of(name)
+    return dict(zip(("units", "long_name"), TEXTS[name], strict=True)) if name in TEXTS else attributes_of(name)
 
 
 def _in_frames(cycle: xr.Dataset, force: str) -> dict[str, xr.DataArray]:

@@ -1,4 +1,4 @@
-"""pin_friction(scene, {...}): the cycle with friction in the pins, coupled to the loads that it changes.
+"""The cycle with friction in the pins, coupled to the loads that it changes.
 
 A pin of radius r, loaded by F, resists with the moment ρ·F against its rotation: on link j of its force Fij and,
 opposite, on link i. F thus passes the pin's centre at the distance ρ = μ·r/√(1 + μ²), the radius of the friction circle
@@ -57,30 +57,36 @@ def pin_friction(
 
     Parameters
     ----------
-    scene : Scene, of one branch
-    pins : a Bearing with diameter and friction by pin; the others turn without friction
-    theta2 : count of crank angles over the cycle
-    of : names of the variables wanted, as `linksweep.sweep` takes them
-    iterations : at most so many
-    threads : at most so many (default: all cores)
+    scene : Scene
+        Scene of one branch.
+    pins : mapping of str to Bearing
+        Bearing with diameter and friction of each pin; the others turn without friction.
+    theta2 : int, default 720
+        Count of crank angles over the cycle.
+    of : iterable of str, default None
+        Names of quantities, as in `linksweep.sweep`.
+    iterations : int, default 100
+        Largest number of iterations.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
-    Dataset as from `linksweep.sweep`, and besides
+    Dataset
+        Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads. Besides:
 
-    - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
-    - `friction_loss` (…, pin, theta2) [W], never negative
-    - `convergence` (…, theta2): converged, not_converged; where it has not, forces and torques are NaN: friction in the
-      pins holds the machine fast there, or nearly
-    - `efficiency` (…): of the energy that goes into the machine in a cycle, the share that comes out again, at the
-      drive or at its loads; all friction counts as lost, that of a guide too
-
-    Its scene is the one given with the moments of friction as loads.
+        - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij - `friction_loss`
+          (…, pin, theta2) [W], never negative - `convergence` (…, theta2): converged, not_converged; where it has not,
+          forces and torques are NaN: friction in the
+          pins holds the machine fast there, or nearly
+        - `efficiency` (…) [1]: share of the energy fed in a cycle that comes out again, at the drive or at the loads;
+          all
+          friction counts as lost, in a guide too.
 
     Raises
     ------
     ValueError
-        For a machine without pins, a pin that it lacks, a bearing with friction but no diameter, and branch="both".
+        If the machine lacks pins, or one of those named, a bearing has friction but no diameter, or branch="both".
 
     Notes
     -----
@@ -98,25 +104,22 @@ def pin_friction(
     refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))
     senses = _senses(scene, rubbing, theta2, threads)
     with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations, threads)
-    wanted = None if of is None else [of] if isinstance(of, str) else list(of)
-    cycle = sweep(with_friction, theta2, of=wanted, threads=threads)
+    names = None if of is None else [of] if isinstance(of, str) else list(of)
+    cycle = sweep(with_friction, theta2, of=names, threads=threads)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
-    told = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
-    found = {
-        "friction_torque": joined(torques.values(), "pin", torques).assign_attrs(told),
-        "friction_loss": _losses(scene, torques, theta2, threads),
-    }
-    shown = cycle.assign(found)
-    forces = [name for name in shown.data_vars if name not in (*scene.mechanism.kinematics(), "status")]
-    shown = shown.assign({name: shown[name].where(~fast).assign_attrs(shown[name].attrs) for name in forces})
-    said = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
-    shown["convergence"] = fast.astype(np.int8).assign_attrs(said)
-    shown["efficiency"] = _efficiency(with_friction, shown["friction_loss"].sum("pin", skipna=False), theta2, threads)
-    return shown.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
+    moment = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
+    cycle["friction_torque"] = joined(torques.values(), "pin", torques).assign_attrs(moment)
+    cycle["friction_loss"] = _losses(scene, torques, theta2, threads)
+    forces = [name for name in cycle.data_vars if name not in (*scene.mechanism.kinematics(), "status")]
+    cycle = cycle.assign({name: cycle[name].where(~fast).assign_attrs(cycle[name].attrs) for name in forces})
+    agreement = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
+    cycle["convergence"] = fast.astype(np.int8).assign_attrs(agreement)
+    cycle["efficiency"] = _efficiency(with_friction, cycle["friction_loss"].sum("pin", skipna=False), theta2, threads)
+    return cycle.assign_attrs(command=f"linksweep.pin_friction(scene, ..., theta2={theta2})")
 
 
 def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]:
-    """Those of the pins that have friction."""
+    """Return the pins that have friction."""
     links = checked_pins(scene, pins)
     rubs = {pin: bearing for pin, bearing in pins.items() if np.any(bearing.friction)}
     refuse([f"pins.{pin} has friction but no diameter: give it" for pin, b in rubs.items() if b.diameter is None])
@@ -136,7 +139,7 @@ def _senses(scene: Scene, pins: Mapping[str, RubbingPin], theta2: int, threads: 
 def _converged(
     scene: Scene, pins: Mapping[str, RubbingPin], senses: Arrays, theta2: int, iterations: int, threads: int | None
 ) -> tuple[Scene, Arrays, xr.DataArray]:
-    """The scene with friction as loads, its moments by pin, and their last change, relative to the largest."""
+    """Return the scene with friction as loads, its moments by pin, and their last change, relative to the largest."""
     forces = [pin.force for pin in pins.values()]
     torques = {pin: 0.0 * senses[pin] for pin in pins}
     for _ in range(iterations):
@@ -152,7 +155,7 @@ def _converged(
 
 
 def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, theta2: int) -> list[Load]:
-    """Moments of friction as torques on the moving links."""
+    """Return the moments of friction as torques on the moving links."""
     angles = xr.Variable("theta2", np.arange(theta2) * (scene.period / theta2))
     loads = []
     for body in scene.mechanism.bodies:
@@ -165,7 +168,7 @@ def _as_loads(scene: Scene, pins: Mapping[str, RubbingPin], torques: Arrays, the
 
 
 def _bare(array: xr.DataArray) -> xr.DataArray:
-    """Values and labels alone: no attributes of what it was computed from."""
+    """Return values and labels alone, without attributes of their origin."""
     labels = {dim: array[dim].values for dim in array.dims if dim in array.coords}
     return xr.DataArray(array.values, labels, array.dims)
 
@@ -179,17 +182,17 @@ def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
 def _losses(scene: Scene, torques: Arrays, theta2: int, threads: int | None) -> xr.DataArray:
     speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in torques], threads=threads)
     losses = [abs(torque * speeds[f"omega_{pin}"]) for pin, torque in torques.items()]
-    said = {"units": "W", "long_name": "power that friction in the pin takes, never negative"}
-    return joined(losses, "pin", torques).assign_attrs(said)
+    attributes = {"units": "W", "long_name": "power that friction in the pin takes, never negative"}
+    return joined(losses, "pin", torques).assign_attrs(attributes)
 
 
 def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:
-    """Energies over time: a sample stands for the time that the crank takes to the next."""
+    """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next."""
     names = ["power", "omega2"] + ["friction_power"] * ("friction_power" in scene.table.quantity)
     cycle = sweep(scene, theta2, of=names, threads=threads)
     times = 1.0 / abs(cycle["omega2"])
     lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)
     fed = (cycle["power"] * times).sum("theta2", skipna=False)
     driven = ((fed - lost) / fed).clip(min=0.0)
-    said = {"units": "1", "long_name": "energy that comes out of the machine in a cycle over that which goes in"}
-    return xr.where(fed > 0.0, driven, fed / (fed - lost)).assign_attrs(said)
+    attributes = {"units": "1", "long_name": "energy that comes out of the machine in a cycle over the energy fed"}
+    return xr.where(fed > 0.0, driven, fed / (fed - lost)).assign_attrs(attributes)

@@ -1,9 +1,9 @@
-"""Speed and load: F = A·ω2² + B·α2 + C at every crank angle, and the highest speed at which a peak stays below a limit.
+"""Forces against speed: F = A·ω2² + B·α2 + C at every crank angle, and the highest speed below a limit of force.
 
 For a limit X the square of the force is |A w + S|² with w = ω2², S = B·α2 + C: a parabola in w, open upwards. The
 largest of all of them, the peak squared, is therefore convex in w: the speeds that keep it below X² are one interval.
-Its upper end is found from above: where the exact peak at a speed lies beyond X, the parabola of its angle gives the
-next, lower speed (Kelley's cutting planes, J. SIAM 8 (1960) 703, with parabolas for planes).
+Its upper end is approached from above: where the exact peak at a speed lies beyond X, the parabola of its angle gives
+the next, lower speed (Kelley's cutting planes, J. SIAM 8 (1960) 703, with parabolas for planes).
 """
 
 from __future__ import annotations
@@ -38,27 +38,31 @@ TERMS = {
     "per_alpha2": ({"omega2": 0.0, "alpha2": 1.0} | NO_WEIGHT, "s2 rad-1", "B of A·omega2² + B·alpha2 + C in"),
     "static": ({"omega2": 0.0, "alpha2": 0.0}, "", "C, at rest, of A·omega2² + B·alpha2 + C in"),
 }
-"""Each term by its ending: the numbers that leave it alone, its unit beside the force's, and its words."""
+"""Each term by its ending: the numbers that isolate it, its unit beside the force's, and its description."""
 
 
 def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720) -> xr.Dataset:
-    """Forces and torques as A·ω2² + B·α2 + C: one sweep for all speeds.
+    """Separate forces and torques into A·ω2² + B·α2 + C, valid for all speeds.
 
     Parameters
     ----------
-    scene : Scene of a machine with a crank, without friction and dampers; its omega2 and alpha2 do not matter
-    of : names of components of pin forces, or of the drive's torque or force; default: all of them
-    theta2 : as in `sweep`
+    scene : Scene
+        Scene of a machine with a crank, without friction and dampers; its omega2 and alpha2 do not matter.
+    of : str or iterable of str, default None
+        Names of components of pin forces, or of the drive's torque or force; None for all of them.
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree], as in `linksweep.sweep`.
 
     Returns
     -------
-    Dataset over the dims of a sweep, with `F32x_per_omega2_squared` [N s²/rad²], `F32x_per_alpha2` [N s²/rad] and
-    `F32x_static` [N] for each.
+    Dataset
+        Over the dims of a sweep, `F32x_per_omega2_squared` [N s²/rad²], `F32x_per_alpha2` [N s²/rad] and `F32x_static`
+        [N] for each.
 
     Raises
     ------
     ValueError
-        For magnitudes (take their components), friction and dampers, whose forces do not grow so, and a car in a loop.
+        If a name is a magnitude (give its components), or the scene has friction, dampers or no crank.
 
     Examples
     --------
@@ -79,39 +83,44 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, the
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
     cycle = sweep(scene, theta2, of=names)
-    made = {}
+    terms = {}
     for ending, (changed, units, words) in TERMS.items():
-        found = quantities_with(changed, sampled if ending == "static" else bare, grid, names)
+        forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names)
         for name in names:
             attributes = {"units": f"{cycle[name].units} {units}".strip()}
             attributes["long_name"] = f"{words}: {cycle[name].long_name}"
-            made[f"{name}_{ending}"] = found[name].where(cycle["status"] == 0).assign_attrs(attributes)
+            terms[f"{name}_{ending}"] = forces[name].where(cycle["status"] == 0).assign_attrs(attributes)
     command = f"linksweep.speed_separation(scene, {list(names)}, ...)"
-    return cycle[["status"]].assign(made).assign_attrs(cycle.attrs | {"command": command})
+    return cycle[["status"]].assign(terms).assign_attrs(cycle.attrs | {"command": command})
 
 
 def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
-    """The highest crank speed at which the exact peak of a force or torque stays below a limit.
+    """Compute the highest crank speed at which the exact peak of a force or torque stays below a limit.
 
     Parameters
     ----------
-    scene : Scene of a machine with a crank, without friction and dampers; alpha2 is kept, omega2 gives the direction
-    of : name of a pin force, of one of its components, or of the drive's torque or force
-    below : the limit, in its unit [N or N m]
+    scene : Scene
+        Scene of a machine with a crank, without friction and dampers; alpha2 is kept, omega2 gives the direction.
+    of : str
+        Name of a pin force, of one of its components, or of the drive's torque or force.
+    below : float
+        Limit [N, N m].
 
     Returns
     -------
-    Dataset over the design dims.
+    Dataset
+        Results over the design dims:
 
-    - `omega2_limit` [rad/s], not negative: inf where no speed exceeds the limit, NaN where none keeps it, because the
-      force at rest is beyond it and no speed relieves it, or forces grow without bound
-    - `omega2_limit_at` [degree]: the crank angle of the peak there
+        - `omega2_limit` [rad/s], not negative: inf where no speed exceeds the limit, NaN where none keeps it, because
+          the
+          force at rest is beyond it and no speed relieves it, or forces grow without bound
+        - `omega2_limit_at` [degree]: crank angle of the peak at that speed.
 
     Raises
     ------
     ValueError
-        For a name that is no force, a limit that is not positive, friction and dampers (take the peaks over an
-        array of speeds instead), branch="both", and a car in a loop.
+        If the name is no force, the limit is not positive, the scene has friction or dampers (compute the peaks over an
+        array of speeds instead), branch="both", or no crank.
 
     Examples
     --------
@@ -128,7 +137,7 @@ def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
     refuse(_branch_problems(scene))
     refuse(quantity_problems("of", name, forces_of(scene), scene))
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
-    parts = (f"{name}x", f"{name}y") if scene.table.quantity[name].squared else (name,)
+    parts = scene.table.quantity[name].components
     unit_speed = replace(scene, omega2=_one_each(scene))
     squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)
     for _ in range(CUTS):
@@ -139,21 +148,21 @@ def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
         squared = squared.where(~over, cut)
         if not bool(over.any()):
             break
-    said = f"highest angular velocity of the crank at which {name} stays below {below:g}"
-    made = {
-        "omega2_limit": (squared**0.5).assign_attrs(units="rad s-1", long_name=said),
+    long_name = f"highest angular velocity of the crank at which {name} stays below {below:g}"
+    results = {
+        "omega2_limit": (squared**0.5).assign_attrs(units="rad s-1", long_name=long_name),
         "omega2_limit_at": angle.where(np.isfinite(squared)).assign_attrs(
             units="degree", long_name=f"crank angle of the largest {name} at that speed"
         ),
     }
-    found = xr.Dataset({name: item.reset_coords(drop=True) for name, item in made.items()})
-    return found.assign_coords(design_coordinates(scene)).assign_attrs(
+    ds = xr.Dataset({name: item.reset_coords(drop=True) for name, item in results.items()})
+    return ds.assign_coords(design_coordinates(scene)).assign_attrs(
         command=f"linksweep.speed_limit(scene, {name!r}, below={below:g})"
     )
 
 
 def _problems(scene: Scene) -> list[str]:
-    """Why its forces are not A·omega2² + B·alpha2 + C."""
+    """Return why the forces of a scene are not A·omega2² + B·alpha2 + C."""
     advice = "take ls.peaks with an array of omega2 instead"
     problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
     dampers = [k for k, load in enumerate(scene.loads, 1) if load.form.damps]
@@ -166,7 +175,7 @@ def _branch_problems(scene: Scene) -> list[str]:
 
 
 def _one_each(scene: Scene) -> xr.DataArray:
-    """A speed of 1 rad/s in the scene's own direction, for each design."""
+    """Return a speed of 1 rad/s in the scene's own direction, for each design."""
     sizes = scene.at_one_angle.inputs.sizes
     omega2 = scene.at_one_angle.omega2
     sign = xr.where(xr.DataArray(omega2) < 0.0, -1.0, 1.0).drop_vars(scene.mechanism.index, errors="ignore")
@@ -175,11 +184,11 @@ def _one_each(scene: Scene) -> xr.DataArray:
 
 
 def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataArray:
-    """The largest ω2² that the samples of a grid allow, which the continuous revolution can only lower."""
+    """Return the largest ω2² that the samples of a grid allow; the continuous revolution can only lower it."""
     index = scene.mechanism.index
     grid = crank_grid(SAMPLES, scene.period, index)
     sampled = scene.at(grid)
-    ok = sweep(scene, SAMPLES, of=[])["status"].drop_vars(index) == 0
+    ok = sweep(scene, SAMPLES, of=[])["status"].drop_vars(index, errors="ignore") == 0
     growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts)
     standing = quantities_with({"omega2": 0.0}, sampled, grid, parts)
     roots = _roots([growing[part] for part in parts], [standing[part] for part in parts], below)
@@ -190,13 +199,13 @@ def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataAr
 
 
 def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
-    """Where |A w + S|² = X²; from minus to plus infinity where it never gets there, NaN where it is always beyond."""
+    """Return w where |A w + S|² = X²: minus and plus infinity where it stays below, NaN where it is always beyond."""
     a = sum(A * A for A in growing)
     b = sum(A * S for A, S in zip(growing, standing, strict=True))
     c = sum(S * S for S in standing) - below * below
     with np.errstate(all="ignore"):
         root = np.sqrt(b * b - a * c)
-        far = -(b + xr.where(b < 0.0, -root, root))  # of the two, the one that does not cancel
+        far = -(b + xr.where(b < 0.0, -root, root))  # the root that does not cancel
         first, second = far / a, c / far
         flat, kept = a == 0.0, xr.where(c <= 0.0, math.inf, math.nan)
         lower = xr.where(flat, -kept, np.minimum(first, second))
@@ -204,17 +213,17 @@ def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
 
 
 def _peak(scene: Scene, name: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """The exact peak of a magnitude, or of a signed quantity's magnitude, and its angle."""
-    found = peaks(scene, of=[name]).drop_vars("status")
-    found = found.drop_vars([coordinate for coordinate in found.coords if coordinate not in found.dims])
-    if f"{name}_peak_at" in found:
-        return found[f"{name}_peak"], found[f"{name}_peak_at"]
-    positive = found[f"{name}_max"] >= -found[f"{name}_min"]
-    return found[f"{name}_peak"], xr.where(positive, found[f"{name}_max_at"], found[f"{name}_min_at"])
+    """Return the exact peak of a magnitude, or of a signed quantity's magnitude, and its angle."""
+    worst = peaks(scene, of=[name]).drop_vars("status")
+    worst = worst.drop_vars([coordinate for coordinate in worst.coords if coordinate not in worst.dims])
+    if f"{name}_peak_at" in worst:
+        return worst[f"{name}_peak"], worst[f"{name}_peak_at"]
+    positive = worst[f"{name}_max"] >= -worst[f"{name}_min"]
+    return worst[f"{name}_peak"], xr.where(positive, worst[f"{name}_max_at"], worst[f"{name}_min_at"])
 
 
 def _cut(scene: Scene, parts: tuple[str, ...], angle: xr.DataArray, below: float) -> xr.DataArray:
-    """The upper root at this angle of each design: as low as this, the speed must be."""
+    """Return the upper root at this angle of each design, which bounds the speed from above."""
     speed = scene.omega2
     designs, angles = np.arange(speed.size), angle.broadcast_like(speed).transpose(*speed.dims).values.ravel()
     angles = np.where(np.isfinite(angles), angles, 0.0)
