@@ -138,7 +138,7 @@ def _any_four_bar(random: Random, n: int) -> ls.Scene:
 
 def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
     def scene(random: Random, n: int) -> ls.Scene:
-        """The crank turns fully where the rod is longer than the crank and the offset together."""
+        """Return machines whose crank turns fully: the rod is longer than crank and offset together."""
         a = np.exp(random.uniform(-1.5, 1.5, n))
         offset = a * random.uniform(-0.8, 0.8, n) * random.choice([0.0, 1.0], n)
         height = a + np.abs(offset)

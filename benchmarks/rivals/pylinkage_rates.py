@@ -40,7 +40,7 @@ def _pair(z: complex) -> tuple[float, float]:
 
 
 def _rates(q: Design, position: Array, velocity: Array, acceleration: Array) -> Array:
-    """omega3, omega4, alpha3, alpha4 from the pins' motion; components are A, D, B, C."""
+    """Return omega3, omega4, alpha3, alpha4 from the pins' motion; components are A, D, B, C."""
     D, B, C = (position[:, k] @ [1, 1j] for k in (1, 2, 3))
     (vB, vC), (aB, aC) = ([motion[:, k] @ [1, 1j] for k in (2, 3)] for motion in (velocity, acceleration))
     u, v = C - B, C - D

@@ -17,7 +17,7 @@ BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
 
 
 def reduced(function, row, angles) -> tuple[float, float]:
-    """A function of engine.reduce on plain Python numbers, as small requests run it."""
+    """A function of engine.kernel.reduce on plain Python numbers, as small requests run it."""
     return function(list(map(float, row)), list(map(float, angles)), np.empty(reduce.WORK))
 
 
