@@ -1,1 +1,1 @@
-"""Answer what shakes: orders, counterweights, regressor, comparison before and after."""
+"""Balance of moving masses: shaking moment, orders, regressor, counterweights, comparison before and after."""

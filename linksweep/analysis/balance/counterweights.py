@@ -137,9 +137,9 @@ def counterweights(scene: Scene, *, radius: Any, fraction: Number | None = None)
         Distance of the counterweights from their pins [m]: one number, or one for each link, {"crank": 0.05, "rocker":
         0.06}.
     fraction : float or DataArray, default None
-        Fraction of the first order of what reciprocates that the crank's counterweight takes [1], of a machine that
-        counterweights balance in part, as a slider-crank; None is half of it. 0 balances what turns, 1 moves the first
-        order wholly across the guide.
+        Fraction of the first order that the crank's counterweight takes [1], of a machine that counterweights balance
+        in part, as a slider-crank; None is a half. 0 balances the turning masses alone, 1 moves the first order wholly
+        across the guide.
 
     Returns
     -------

@@ -70,7 +70,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     angles = ds[index].values.astype(float)
     period = _period(angles, index)
     most = len(angles) * TURN / period / 2.0
-    few = f"n = {quote(n)}: {len(angles)} samples tell orders below {most:g}; sweep at more angles"
+    few = f"n = {quote(n)}: {len(angles)} samples resolve orders below {most:g}; sweep at more angles"
     refuse([] if n < most else [few])
     order = np.arange(int(n * period / TURN) + 1) * (TURN / period)
     waves = [xr.DataArray(wave, dims=("order", index)) for wave in cos_sin(np.multiply.outer(order, angles))]

@@ -1,1 +1,1 @@
-"""Choose a design: objective, Pareto front, geometry."""
+"""Choice of a design: geometry of the motion, objective for optimizers, Pareto front."""

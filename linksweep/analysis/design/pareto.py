@@ -55,7 +55,7 @@ def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[s
     >>> import linksweep as ls
     >>> study = ls.peaks(ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "omega2": (20, 30)}, n=64))
     >>> front = ls.pareto(study, minimize=["F32_peak"], maximize=["omega2"])
-    >>> bool((front.omega2.diff("design") > 0).all())  # in order of F32_peak: what costs more gives more
+    >>> bool((front.omega2.diff("design") > 0).all())  # in order of F32_peak: a larger force buys more speed
     True
     """
     objectives = _objectives(ds, minimize, maximize)
@@ -79,7 +79,7 @@ def has_peaks(ds: xr.Dataset) -> xr.DataArray:
 
 def front(costs: np.ndarray) -> np.ndarray:
     """Return the rows of costs (designs, objectives) that no other dominates, sorted by columns; equal rows too."""
-    order = np.lexsort(costs.T[::-1])  # only what comes before a row can dominate it
+    order = np.lexsort(costs.T[::-1])  # only an earlier row can dominate a row
     ordered = costs[order]
     first = np.ones(len(order), dtype=bool)
     first[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)

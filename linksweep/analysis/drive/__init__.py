@@ -1,1 +1,1 @@
-"""Answer what the drive must give: duty, motor, flywheel, several cylinders."""
+"""Load of the drive: duty over a cycle, flywheel, motor behind a gear."""

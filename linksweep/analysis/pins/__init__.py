@@ -1,1 +1,1 @@
-"""Answer what loads a pin: breakdown by cause, limits of speed, bearings and their friction."""
+"""Loads of pins: breakdown by cause, speed limits, bearings and their life, friction in the pins."""

@@ -162,7 +162,7 @@ def bearings(
     (360.0, True)
     """
     if isinstance(scene, MultiCylinder):
-        from linksweep.analysis.pins.main_bearings import main_bearings  # here: it takes what is below
+        from linksweep.analysis.pins.main_bearings import main_bearings  # here: it imports this module
 
         return main_bearings(scene.in_memory, pins, theta2, threads)
     links = checked_pins(scene, pins)
@@ -208,7 +208,7 @@ def checked_pins(scene: Scene, pins: Mapping[str, Bearing] | None) -> Mapping[st
 
 
 def bearing_problems(pins: Any, known: Iterable[str]) -> list[str]:
-    """List what is wrong with bearings by pin."""
+    """Return the problems of bearings by pin."""
     if not isinstance(pins, Mapping | None):
         return [f'pins = {quote(pins)}: must be as {{"B": ls.Bearing(...)}}']
     wrong = [problem for pin in pins or {} for problem in name_problems("pins", pin, known)]

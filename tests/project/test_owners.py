@@ -1,0 +1,46 @@
+"""A machine owns all that is its own: results and analyses ask it for capabilities, and name none.
+
+A name in code is looked for in the syntax tree, so that docstrings may name machines in examples.
+"""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import linksweep as ls
+from linksweep.mechanisms import MECHANISMS
+from linksweep.mechanisms.capabilities import CAPABILITIES, lack, offers
+
+PACKAGE = Path(ls.__file__).parent
+
+
+@pytest.mark.parametrize("room", ["results", "analysis"])
+def test_no_machine_is_named(room):
+    for path in sorted((PACKAGE / room).rglob("*.py")):
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        names = {node.id for node in nodes if isinstance(node, ast.Name)}
+        names |= {alias.name for node in nodes if isinstance(node, ast.ImportFrom) for alias in node.names}
+        texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+        assert not names & MECHANISMS.keys(), path
+        assert not texts & MECHANISMS.keys(), path
+
+
+OFFERED = {
+    "FourBar": {"bodies", "pins", "drives", "position_equation", "stroke_findings", "balancing_moments"},
+    "SliderCrank": {"bodies", "pins", "drives", "cylinder", "stroke_findings", "balancing_moments"},
+    "InvertedSliderCrank": {"bodies", "pins", "drives", "stroke_findings", "balancing_moments"},
+    "LoopTrack": set(),
+}
+
+
+@pytest.mark.parametrize("kind", OFFERED)
+def test_capabilities(kind):
+    assert {name for name in CAPABILITIES if offers(MECHANISMS[kind], name)} == OFFERED[kind]
+
+
+def test_the_sentence_names_machine_capability_and_alternatives():
+    loop, press = (ls.example(name).mechanism for name in ("loop", "press"))
+    others = "FourBar, InvertedSliderCrank, SliderCrank"
+    assert lack(loop, "pins") == f"a LoopTrack, which has no pins: give another machine ({others})"
+    assert lack(press, "pins") == ""
