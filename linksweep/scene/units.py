@@ -119,9 +119,9 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
             raise ValueError(f'must be a number or a text such as "{KINDS[kind].example}"')
         return _finite(number) if unit is None else _scaled(repr(_finite(number)), unit, kind)
     except OverflowError:
-        raise ValueError(f"{shown(value)}: {FINITE}") from None
+        raise ValueError(f"{as_toml(value)}: {FINITE}") from None
     except ValueError as error:
-        raise ValueError(f"{shown(value)}: {error}") from None
+        raise ValueError(f"{as_toml(value)}: {error}") from None
 
 
 def _require_short(text: str, longest: int) -> None:
@@ -140,16 +140,16 @@ def accepted_unit(unit: str, kind: str) -> str:
     raise ValueError(_not_accepted(unit, kind))
 
 
-def unit_problems(path: str, said: Any, kind: str) -> list[str]:
-    """What is wrong with the unit that an array says: values are taken as they are, so it must be that of its kind."""
+def unit_problems(path: str, stated: Any, kind: str) -> list[str]:
+    """Return the problem of the unit that an array states: values are not converted, so it must be that of the kind."""
     unit = KINDS[kind].unit
-    if not said or said == unit or (len(str(said)) <= LONGEST_UNIT and _is_si(str(said), kind)):
+    if not stated or stated == unit or (len(str(stated)) <= LONGEST_UNIT and _is_si(str(stated), kind)):
         return []
-    there = f'{path} has attrs["units"] = {shown(str(said))}'
+    there = f'{path} has attrs["units"] = {as_toml(str(stated))}'
     return [f'{there}: must be in {unit}; convert its values, and say units="{unit}"']
 
 
-def shown(value: object) -> str:
+def as_toml(value: object) -> str:
     """Return a value as it stands in a file, cut where it is long."""
     try:
         text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
@@ -159,19 +159,19 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def shown_key(key: str) -> str:
+def key_as_toml(key: str) -> str:
     """Return a key as it stands in a file: bare, or in quotes where it needs them, cut where it is long."""
-    return key if re.fullmatch(r"[\w-]{1,60}", key) else shown(key)
+    return key if re.fullmatch(r"[\w-]{1,60}", key) else as_toml(key)
 
 
 def _parted(text: str, kind: str) -> tuple[str, str]:
     """Split "8 cm" into its number and its unit."""
     if advice := _comma(text) or _fraction(text):
         raise ValueError(advice)
-    found = _NUMBER.match(text)
-    if not found:
+    match = _NUMBER.match(text)
+    if not match:
         raise ValueError(_no_number(text, kind))
-    number, rest = found[0], text[found.end() :]
+    number, rest = match[0], text[match.end() :]
     if advice := _bad_shape(number, rest, kind):
         raise ValueError(advice)
     unit = accepted_unit(rest.strip(), kind)
@@ -182,9 +182,9 @@ def _parted(text: str, kind: str) -> tuple[str, str]:
 
 def _comma(text: str) -> str | None:
     """Advise on "2,5 mm" and "1,500 rpm"."""
-    if not (found := _COMMAS.match(text)):
+    if not (match := _COMMAS.match(text)):
         return None
-    number, rest = found.groups()
+    number, rest = match.groups()
     point, plain = number.replace(",", "."), number.replace(",", "")
     meant = [point] if _NUMBER.fullmatch(point) else []
     meant += [plain] if _THOUSANDS.fullmatch(number) or not meant else []
@@ -194,9 +194,9 @@ def _comma(text: str) -> str | None:
 
 def _fraction(text: str) -> str | None:
     """Advise on "1 1/2 in"."""
-    if not (found := _FRACTION.match(text)):
+    if not (match := _FRACTION.match(text)):
         return None
-    sign, whole, upper, lower, rest = found.groups()
+    sign, whole, upper, lower, rest = match.groups()
     decimal = float(int(whole or 0) + Fraction(int(upper), int(lower)))
     return f'a fraction is not read; write the decimal number, "{sign}{decimal:.12g}{rest}"'
 
@@ -220,7 +220,7 @@ def _bad_shape(number: str, rest: str, kind: str) -> str | None:
 
 
 def _not_accepted(unit: str, kind: str) -> str:
-    """Say why a unit is refused, what may have been meant and what there is."""
+    """Explain why a unit is refused: the unit that was probably meant, and all that are accepted."""
     key, spellings = _factors(unit), KINDS[kind].spellings
     listed = f"accepted: {', '.join(spellings)}"
     for other, row in KINDS.items():
@@ -269,7 +269,7 @@ def _scaled(number: str, unit: str, kind: str) -> float:
 
 @lru_cache(maxsize=1024)
 def _is_si(unit: str, kind: str) -> bool:
-    """Whether a unit is that of the kind's plain numbers, however it is spelled: "metre", "m s-2"."""
+    """Return whether a unit is that of the kind's plain numbers, however it is spelled: "metre", "m s-2"."""
     unit = re.sub(r"(?<=[A-Za-z])(?=-?[0-9])", "^", unit)  # UDUNITS writes powers without a sign
     if _factors(unit) in map(_factors, (KINDS[kind].unit, *KINDS[kind].spellings)):
         return _factors(unit) == _factors(KINDS[kind].unit) or _factor(accepted_unit(unit, kind), kind) == 1
@@ -293,7 +293,7 @@ def _factor(spelling: str, kind: str) -> Fraction:
 
 @cache
 def _factors_kept() -> dict[str, Fraction]:
-    """All of them, as pint says, or as it said to an earlier process."""
+    """Return all factors by unit, as pint defines them; they are cached for later processes."""
     name = f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}"
     if kept := recall(name):
         return {unit: Fraction(factor) for unit, factor in json.loads(kept).items()}

@@ -1,4 +1,4 @@
-"""How an array goes on between its angles, or its positions: four kinds of curve, and the ringing of one of them.
+"""Interpolation of an array between its angles, or its positions: four kinds of curve, and the ringing of one.
 
     periodic cubic   smooth to its second derivative; rings beside steps, where it leaves the range of its data
     pchip            monotone between neighbours, so that it never leaves their range; smooth to its first derivative
@@ -30,7 +30,7 @@ INSIDE = np.arange(1, 16) / 16
 
 
 class OvershootWarning(UserWarning):
-    """A spline leaves the range of the data that it goes through by more than 1 % of that range."""
+    """A spline leaves the range of its data by more than 1 % of that range."""
 
 
 def interpolation_attribute(table: dict[str, Any]) -> dict[str, Any]:
@@ -51,11 +51,11 @@ class PeriodicCurve:
 
     def __call__(self, angles: Array) -> Array:
         """Return values (angle, …) at any angles [degree]; at known ones, and whole periods from them, to the bit."""
-        found = self._curve(self._folded(angles))
+        values = self._curve(self._folded(angles))
         place = {angle: k for k, angle in enumerate(np.mod(self.known, self.period).tolist())}
         held = np.array([place.get(angle, -1) for angle in np.mod(angles, self.period).tolist()])
-        found[held >= 0] = self.values[held[held >= 0]]
-        return found
+        values[held >= 0] = self.values[held[held >= 0]]
+        return values
 
     def slope(self, angles: Array) -> Array:
         """Return the slopes (angle, …) there, per degree."""
@@ -63,7 +63,7 @@ class PeriodicCurve:
 
     @cached_property
     def overshoot(self) -> float:
-        """How far it leaves its data's range, relative to that range: the most of all curves side by side."""
+        """Distance by which it leaves its data's range, relative to that range; the largest of all batched curves."""
         if self.interpolation != CUBIC:
             return 0.0
         steps = np.diff(self.known, append=self.known[0] + self.period)

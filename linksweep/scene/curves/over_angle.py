@@ -117,14 +117,14 @@ def at_angles(
 
 
 def called(path: str, function: Any, rule: Rule, angles: np.ndarray) -> xr.DataArray:
-    """Values of a function of theta2 [degree] at these angles. Raises ValueError as `at_angles`."""
+    """Evaluate a function of theta2 [degree] at these angles. Raises ValueError as `at_angles`."""
     try:
         returned = function(angles.copy())
         values = np.asarray(getattr(returned, "magnitude", returned))
     except Exception as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())
+        text = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
-            f"{path}: the function failed on an array of theta2 in degrees ({said}); "
+            f"{path}: the function failed on an array of theta2 in degrees ({text}); "
             f"write it with numpy, as in lambda theta2: 5 * np.cos(np.radians(theta2))"
         ) from error
     if is_quantity(returned):
@@ -217,14 +217,14 @@ def corners(value: Any, interpolation: str | None) -> tuple[float, ...]:
 
 
 def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
-    """Angles [degree] of an array over theta2 in order, and its values with theta2 as their first axis."""
+    """Return the angles [degree] of an array over theta2 in order, and its values with theta2 as their first axis."""
     order = np.argsort(value["theta2"].values, kind="stable")
     known = value["theta2"].values[order].astype(float)
     return known, np.moveaxis(value.values.astype(float), value.dims.index("theta2"), 0)[order]
 
 
 def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
-    """Values at the grid's angles, theta2 as their first axis, with the other dims of an array."""
+    """Return values at the grid's angles, theta2 as their first axis, as an array with the other dims of `value`."""
     others = [dim for dim in like.dims if dim != "theta2"]
     labels = {dim: like[dim].variable for dim in others if dim in like.coords}
     return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
@@ -233,13 +233,13 @@ def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArra
 def period_problems(
     path: str, known: np.ndarray, values: np.ndarray, period: float, interpolation: str = CUBIC
 ) -> list[str]:
-    """Why values at angles in order cannot be joined to a periodic curve. A step may hold for as long as it likes."""
-    said = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
+    """Return why values at angles in order cannot be joined to a periodic curve; a step may hold for any angle."""
+    beginning = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
     span, steps = known[-1] - known[0], interpolation == "step"
     least = 2 if steps else 3
     if len(known) < least + (span == period) or span > period:
         angles = f"{least} different angles within one period of {period:g} degrees"
-        return [f"{said} cannot be joined; give at least {angles}"]
+        return [f"{beginning} cannot be joined; give at least {angles}"]
     if span == period and not np.array_equal(values[0], values[-1]):
         return [
             f"{path}: its values at {known[0]:g} and {known[-1]:g} degrees differ, but they are the same position; "
@@ -247,5 +247,5 @@ def period_problems(
         ]
     gap = np.diff(known, append=known[0] + period).max()
     if gap > 0.5 * period and not steps:
-        return [f"{said} leave {gap:g} of {period:g} degrees open; give values all the way round"]
+        return [f"{beginning} leave {gap:g} of {period:g} degrees open; give values all the way round"]
     return []

@@ -97,6 +97,6 @@ def _called(path: str, function: Any, rule: Rule, positions: xr.DataArray) -> xr
             f"write it with numpy, as in lambda x: np.where(x < 0.012, -5000.0, 0.0)"
         ) from error
     refuse(number_problems(path, xr.DataArray(values, dims=POSITION), rule))
-    found = np.full(known.shape, np.nan)
-    found[known] = values
-    return positions.copy(data=found)
+    loads = np.full(known.shape, np.nan)
+    loads[known] = values
+    return positions.copy(data=loads)

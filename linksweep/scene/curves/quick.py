@@ -1,4 +1,4 @@
-"""Where functions and data over the revolution are quick: crank angles that show all that they do.
+"""Locate the crank angles at which functions and data over the revolution change quickly.
 
 A function is looked at every 0.02 degrees between its breaks. An interval is smooth where the polynomial through eight
 even samples, some of them beyond its ends, tells its middle; at a kink, one of two that end there does, and they cross
@@ -91,7 +91,7 @@ def of_function(function: Function, breaks: Iterable[float], period: float) -> Q
 
 
 def _tolerance(values: list[Array]) -> float:
-    """How well a function's values must be told by others; its own type says how many digits they have."""
+    """Return the tolerance on values interpolated from others; the function's own type limits their digits."""
     last = max(np.finfo(part.dtype).eps if part.dtype.kind == "f" else 0.0 for part in values)
     every = np.concatenate(values).astype(float)
     return TOLERANCE * float(np.ptp(every)) + ROUNDING * max(last, 2.0**-52) * float(np.max(np.abs(every)))
@@ -128,30 +128,30 @@ class _Piece:
 
     def quick(self, tolerance: float) -> Quick:
         """Return the ends and middles of rough intervals, and the sides of jumps."""
-        level, k, found = 0, np.arange(self.count(0)), [np.empty(0)]
+        level, k, angles = 0, np.arange(self.count(0)), [np.empty(0)]
         while True:
-            smooth, jumps = self._told(level, k, tolerance)
+            smooth, jumps = self._classified(level, k, tolerance)
             rough, rest = k[~smooth & ~jumps], k[~smooth]
-            found += [self.angles(level + 1, 2 * rough + side) for side in range(3)]
+            angles += [self.angles(level + 1, 2 * rough + side) for side in range(3)]
             last = self.end - self.start <= ASIDE * self.count(level)
             if last or (level >= LEVELS and not 0 < len(rest) <= MOST):
                 break
             level += 1
             k = np.arange(self.count(level)) if level <= LEVELS else np.concatenate([2 * rest, 2 * rest + 1])
-        found += [self.angles(level, rest + side) for side in range(2)]
-        return Quick(np.concatenate(found), not len(rest) or (last and not len(rough)))
+        angles += [self.angles(level, rest + side) for side in range(2)]
+        return Quick(np.concatenate(angles), not len(rest) or (last and not len(rough)))
 
-    def _told(self, level: int, k: Array, tolerance: float) -> tuple[Array, Array]:
+    def _classified(self, level: int, k: Array, tolerance: float) -> tuple[Array, Array]:
         """Return which intervals are smooth or have a kink, and which have a jump, as their neighbours tell."""
         smooth = np.abs(self._by_eight(level, k, 3) - self._middle(level, k)) <= tolerance
         jumps, others = np.zeros(k.shape, dtype=bool), np.flatnonzero(~smooth)
-        smooth[others], jumps[others] = self._told_by_sides(level, k[others], tolerance)
+        smooth[others], jumps[others] = self._classified_by_sides(level, k[others], tolerance)
         return smooth, jumps
 
     def _middle(self, level: int, k: Array) -> Array:
         return self.values(level + 1, 2 * k + 1).astype(float)
 
-    def _told_by_sides(self, level: int, k: Array, tolerance: Any) -> tuple[Array, Array]:
+    def _classified_by_sides(self, level: int, k: Array, tolerance: Any) -> tuple[Array, Array]:
         middle, around = self._middle(level, k), self._around(level, k)
         blur = LAST_DIGIT * self.count(level) / (self.end - self.start)
         tolerance = tolerance + blur * np.nanmax(np.abs(np.diff(around, axis=1)), axis=1, initial=0.0)
@@ -160,8 +160,8 @@ class _Piece:
         apart_before = left[:, -1] - (right * A_STEP_ON).sum(axis=-1)
         apart_after = (left * A_STEP_ON).sum(axis=-1) - right[:, -1]
         cross = np.sign(apart_before) * np.sign(apart_after) <= 0.0
-        told = np.min([np.abs(self._by_eight(level, k, reach) - middle) for reach in (0, 3, 6)], axis=0) <= tolerance
-        return told | (sides <= tolerance) & cross, (sides <= tolerance) & ~cross & ~told
+        fits = np.min([np.abs(self._by_eight(level, k, reach) - middle) for reach in (0, 3, 6)], axis=0) <= tolerance
+        return fits | (sides <= tolerance) & cross, (sides <= tolerance) & ~cross & ~fits
 
     def _around(self, level: int, k: Array) -> Array:
         """Return values (interval, sample) from six steps before to six after each interval; NaN beyond the piece."""

@@ -63,7 +63,7 @@ def tabulated(function: Any, turn: float) -> xr.DataArray | None:
 
 
 def _tabulated(function: Any, period: float, turn: float, first_values: bytes) -> xr.DataArray | None:
-    """As `tabulated`; a function that has other values than the last time has others at the first angles, too."""
+    """Compute `tabulated`; the values at the first angles are part of the key under which the result is cached."""
     angles = np.arange(0.0, period, STEP)
     while len(angles) <= MOST * period / turn:
         values, steps = values_at(function, angles), np.diff(angles, append=period)

@@ -14,7 +14,7 @@ from linksweep.scene.scene import Scene
 
 
 def chosen(scene: Scene, where: Mapping[str, Any]) -> Scene:
-    """The scene at one label of each dimension named; what then has no dims left is a plain number.
+    """Return the scene at one label of each dimension named; an array without dims left becomes a plain number.
 
     Raises ValueError for an unknown dimension or label, and where the scene of plain numbers is refused.
     """
@@ -27,14 +27,14 @@ def chosen(scene: Scene, where: Mapping[str, Any]) -> Scene:
 
 
 def design_labels(scene: Scene) -> dict[str, np.ndarray]:
-    """The labels of a scene's design dims; positions, from 0, where a dim has none."""
+    """Return the labels of a scene's design dims; positions, from 0, where a dim has none."""
     sizes = {str(dim): n for array in scene.arrays.values() for dim, n in array.sizes.items()}
     sizes.pop(scene.mechanism.index, None)
     return {dim: np.arange(n) for dim, n in sizes.items()} | {dim: item.values for dim, item in scene.labels.items()}
 
 
 def places(where: Mapping[str, Any], labels: Mapping[str, np.ndarray]) -> dict[str, int]:
-    """Positions of one label of each dimension named."""
+    """Return the position of one label of each dimension named."""
     at, problems = {}, []
     for dim, label in where.items():
         try:
@@ -49,25 +49,25 @@ def places(where: Mapping[str, Any], labels: Mapping[str, np.ndarray]) -> dict[s
 
 
 def _place(label: Any, labels: np.ndarray) -> int:
-    """Position of a label: where it is exactly, or for a number to twelve digits."""
-    wanted = np.asarray(getattr(label, "values", label))
-    if wanted.ndim or isinstance(label, slice):
+    """Return the position of a label: of the equal one, or for a number the one that agrees to twelve digits."""
+    requested = np.asarray(getattr(label, "values", label))
+    if requested.ndim or isinstance(label, slice):
         raise ValueError(f"{quote(label)}: must be one label")
-    numeric = wanted.dtype.kind in "fiu" and labels.dtype.kind in "fiu"
-    found = np.flatnonzero(labels == wanted)
-    if numeric and not found.size:
-        found = np.flatnonzero(np.isclose(labels, wanted, rtol=1e-12, atol=0.0))
-    if found.size == 1:
-        return int(found[0])
-    said_label = quote(wanted.item())
-    if found.size:
-        raise ValueError(f"{said_label}: {found.size} designs have this label; give them labels of their own")
+    numeric = requested.dtype.kind in "fiu" and labels.dtype.kind in "fiu"
+    matches = np.flatnonzero(labels == requested)
+    if numeric and not matches.size:
+        matches = np.flatnonzero(np.isclose(labels, requested, rtol=1e-12, atol=0.0))
+    if matches.size == 1:
+        return int(matches[0])
+    text = quote(requested.item())
+    if matches.size:
+        raise ValueError(f"{text}: {matches.size} designs have this label; give them labels of their own")
     nearest = (
-        f"nearest is {labels[np.argmin(abs(labels - wanted))]}"
+        f"nearest is {labels[np.argmin(abs(labels - requested))]}"
         if numeric
         else f"first is {quote(labels[:1].tolist()[0])}"
     )
-    raise ValueError(f"{said_label}: must be one of its {labels.size} labels, of which the {nearest}")
+    raise ValueError(f"{text}: must be one of its {labels.size} labels, of which the {nearest}")
 
 
 def _number(array: xr.DataArray) -> Any:

@@ -1,4 +1,4 @@
-"""What a parameter of a study may be: a range, a few values, a normal distribution, a tolerance.
+"""Values that a parameter of a study may take: a range, a few values, a normal distribution, a tolerance.
 
 Each gives the values below which lie given fractions of all (its quantiles), so that any even set of fractions in
 (0, 1) becomes an even set of values.
@@ -17,13 +17,15 @@ from linksweep.scene.units import quantity
 
 
 class Spread(Protocol):
-    """What a parameter may be. `around` says that it is measured from the scene's own value."""
+    """The values that a parameter may take."""
 
     @property
-    def around(self) -> bool: ...
+    def around(self) -> bool:
+        """True where they are measured from the scene's own value."""
+        ...
 
     def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
-        """Its values, in SI, below which lie these fractions, in (0, 1), of all."""
+        """Return the values [SI] below which these fractions, in (0, 1), of all values lie."""
 
 
 @dataclass(frozen=True)
@@ -32,18 +34,23 @@ class Normal:
 
     Parameters
     ----------
-    mean : in the parameter's unit, or text with a unit ("8 cm"); None (default): the scene's own value
-    deviation : standard deviation, likewise
-    within : at most so many deviations from the mean; what lies beyond is not drawn. None beyond by default
+    mean : float or str, default None
+        Mean in the parameter's [unit], or text with a unit ("8 cm"); None for the scene's own value.
+    deviation : float or str, default 0.0
+        Standard deviation, likewise [unit].
+    within : float, default inf
+        Largest distance from the mean in standard deviations [1]; values beyond it are not drawn.
 
-    Values are checked by the `sample` that takes it: ValueError there.
+    Notes
+    -----
+    The `sample` that takes it checks its values, and raises ValueError.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> gaps = {"crank.length": ls.Normal(deviation="0.02 mm", within=3), "gravity[2]": ls.Normal(-9.81, 0.01)}
-    >>> made = ls.sample(ls.example("press"), gaps, n=64)
-    >>> bool(abs(made.mechanism.crank.length - 0.08).max() <= 6e-5)
+    >>> drawn = ls.sample(ls.example("press"), gaps, n=64)
+    >>> bool(abs(drawn.mechanism.crank.length - 0.08).max() <= 6e-5)
     True
     """
 
@@ -53,9 +60,24 @@ class Normal:
 
     @property
     def around(self) -> bool:
+        """True where the mean is the scene's own value."""
         return self.mean is None
 
     def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
+        """Return the quantiles.
+
+        Parameters
+        ----------
+        levels : array
+            Fractions [1] of all values that lie below, in (0, 1).
+        kind : str
+            Kind of the parameter, such as "length".
+
+        Returns
+        -------
+        array
+            Values in the parameter's SI unit.
+        """
         from scipy.special import ndtr, ndtri  # here: only samples need it
 
         mean = 0.0 if self.mean is None else _value("mean", self.mean, kind)
@@ -67,19 +89,24 @@ class Normal:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """A tolerance on the scene's own value of a parameter, for `sample`: evenly anywhere between two limits.
+    """A tolerance on the scene's own value of a parameter, for `sample`: evenly between two limits.
 
     Parameters
     ----------
-    lower, upper : limit deviations from the scene's own value, in the parameter's unit, or text with a unit
+    lower : float or str
+        Lower limit deviation from the scene's own value in the parameter's [unit], or text with a unit.
+    upper : float or str
+        Upper limit deviation, likewise [unit].
 
-    Values are checked by the `sample` that takes it: ValueError there.
+    Notes
+    -----
+    The `sample` that takes it checks its values, and raises ValueError.
 
     Examples
     --------
     >>> import linksweep as ls
-    >>> made = ls.sample(ls.example("press"), {"crank.length": ls.Tolerance("0 um", "21 um")}, n=64)
-    >>> bool((made.mechanism.crank.length > 0.08).all())
+    >>> drawn = ls.sample(ls.example("press"), {"crank.length": ls.Tolerance("0 um", "21 um")}, n=64)
+    >>> bool((drawn.mechanism.crank.length > 0.08).all())
     True
     """
 
@@ -89,6 +116,20 @@ class Tolerance:
     around = True
 
     def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
+        """Return the quantiles.
+
+        Parameters
+        ----------
+        levels : array
+            Fractions [1] of all values that lie below, in (0, 1).
+        kind : str
+            Kind of the parameter, such as "length".
+
+        Returns
+        -------
+        array
+            Values in the parameter's SI unit.
+        """
         return _between("Tolerance", self.lower, self.upper, levels, kind)
 
 
@@ -133,18 +174,18 @@ class _Scipy:
         return np.asarray(self.quantiles(levels), dtype=float)
 
 
-def spread_of(given: Any) -> Spread:
-    """What was given for a parameter, as what it may be."""
-    if isinstance(given, Normal | Tolerance):
-        return given
-    if isinstance(given, tuple):
-        return _Range(given)
-    if isinstance(given, list) or ((isinstance(given, np.ndarray) or is_quantity(given)) and np.ndim(given) == 1):
-        return _Choice(list(given))
-    quantiles = getattr(given, "ppf", None) or getattr(given, "icdf", None)
-    if quantiles is None or isinstance(given, type):
+def spread_of(values: Any) -> Spread:
+    """Return the spread that a range, a list, or a distribution stands for."""
+    if isinstance(values, Normal | Tolerance):
+        return values
+    if isinstance(values, tuple):
+        return _Range(values)
+    if isinstance(values, list) or ((isinstance(values, np.ndarray) or is_quantity(values)) and np.ndim(values) == 1):
+        return _Choice(list(values))
+    quantiles = getattr(values, "ppf", None) or getattr(values, "icdf", None)
+    if quantiles is None or isinstance(values, type):
         raise ValueError(
-            f"{quote(given)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
+            f"{quote(values)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
             "distribution of scipy.stats"
         )
     return _Scipy(quantiles)

@@ -1,7 +1,7 @@
 """Scenes whose numbers are yet to be computed: DataArrays that are dask's.
 
-Nobody looks into such numbers at the door. What results look like does not depend on them, so that one design of
-made-up numbers shows it; they are checked where they have been computed.
+The constructor does not check such numbers; they are checked once computed. The form of results does not depend on
+them, so that one design of made-up numbers shows it.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from linksweep.scene.scene import Scene
 
 
 def lazy_paths(scene: Scene) -> list[str]:
-    """Paths of the parameters whose numbers are yet to be computed."""
+    """Return the paths of the parameters whose numbers are yet to be computed."""
     return [path for path, array in scene.arrays.items() if is_lazy(array)]
 
 
 def in_memory(scene: Scene, paths: Iterable[str] | None = None) -> Scene:
-    """The scene with these parameters (by default, all that are lazy) computed; itself where there are none.
+    """Compute these parameters of a scene, by default all that are lazy; the scene itself where there are none.
 
     Raises ValueError where their numbers are not allowed.
     """
@@ -33,7 +33,7 @@ def in_memory(scene: Scene, paths: Iterable[str] | None = None) -> Scene:
 
 
 def stand_in(scene: Scene) -> Scene:
-    """The first design, with made-up numbers in place of lazy ones; they are lazy too, so that nobody looks at them."""
+    """Return the first design with made-up lazy numbers in place of lazy ones, so that none is checked."""
     import dask.array
 
     sizes, made = design_sizes(scene), {}

@@ -28,37 +28,44 @@ def sample(
     seed: int | None = 0,
     dim: str = "design",
 ) -> Scene:
-    """A scene over n designs, drawn from what its parameters may be.
+    """Draw designs of a scene from ranges and distributions of its parameters.
 
     Parameters
     ----------
-    scene : Scene; parameters that are not named stay as they are, also those with dims of their own
-    parameters : what each may be, by its path ("coupler.length", "gravity[2]", "loads[1].force[1]", "omega2"):
-        a range (low, high), evenly; a list of values, each as likely as the others; `Normal(mean, deviation)`;
-        `Tolerance(lower, upper)` around the scene's own value; or any frozen distribution of scipy.stats.
-        Numbers are in the parameter's unit, or text with a unit: ("8 cm", "12 cm")
-    n : how many designs
-    method : "sobol", "halton" and "latin_hypercube" fill the space more evenly than "random" does (scipy.stats.qmc,
-        scrambled). Sobol points are at their best where n is a power of two; any n will do
-    seed : the same seed gives the same designs, to the bit; None gives others each time
-    dim : name of the dimension of the designs, which they are numbered along from 0
+    scene : Scene
+        Parameters that are not named stay as they are, also those with dims of their own.
+    parameters : mapping
+        Values that each parameter may take, by its path ("coupler.length", "gravity[2]", "loads[1].force[1]",
+        "omega2"): a range (low, high), evenly; a list of values, each as likely as the others;
+        `Normal(mean, deviation)`; `Tolerance(lower, upper)` around the scene's own value; or any frozen distribution
+        of scipy.stats. Numbers are in the parameter's [unit], or text with a unit: ("8 cm", "12 cm").
+    n : int
+        Number of designs.
+    method : str, default "sobol"
+        "sobol", "halton" and "latin_hypercube" fill the space more evenly than "random" does (scipy.stats.qmc,
+        scrambled). Sobol points are at their best where n is a power of two; any n will do.
+    seed : int, default 0
+        Seed of the points, the same designs to the bit for the same seed; None for others each time.
+    dim : str, default "design"
+        Name of the dimension of the designs, which are numbered along it from 0.
 
     Returns
     -------
-    Scene whose sampled parameters are DataArrays over `dim`, each independent of the others.
+    Scene
+        Its sampled parameters are DataArrays over `dim`, each independent of the others.
 
     Raises
     ------
     ValueError
-        One line for each parameter that is unknown or whose range is none, and for values that the scene refuses,
+        One line for each parameter that is unknown or whose range is invalid, and for values that the scene refuses,
         with how many of the n there are.
 
     Examples
     --------
     >>> import linksweep as ls
     >>> may_be = {"coupler.length": ("20 cm", "24 cm"), "crank.length": ls.Normal(deviation=1e-4), "omega2": [20, 30]}
-    >>> made = ls.sample(ls.example("press"), may_be, n=1024)
-    >>> dict(ls.peaks(made, of=["F32"]).F32_peak.sizes)
+    >>> drawn = ls.sample(ls.example("press"), may_be, n=1024)
+    >>> dict(ls.peaks(drawn, of=["F32"]).F32_peak.sizes)
     {'design': 1024}
     """
     refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
@@ -67,9 +74,9 @@ def sample(
     require_memory(f"n = {quote(n)}", 2.0 * 8.0 * n * len(parameters))
     points = _points(method, len(parameters), int(n), seed)
     values, problems = {}, []
-    for levels, (path, given) in zip(points, parameters.items(), strict=True):
+    for levels, (path, choice) in zip(points, parameters.items(), strict=True):
         try:
-            values[path] = _drawn(given, levels, dim, *own[path])
+            values[path] = _drawn(choice, levels, dim, *own[path])
         except ValueError as error:
             problems.append(f"{path}: {error}")
     refuse(problems)
@@ -79,10 +86,10 @@ def sample(
         raise ValueError("\n".join(_advised(line, parameters) for line in str(error).split("\n"))) from None
 
 
-def _drawn(given: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
-    spread = spread_of(given)
+def _drawn(choice: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
+    spread = spread_of(choice)
     if spread.around and (own is None or (callable(own) and not hasattr(own, "dims"))):
-        raise ValueError(f"{quote(given)} is around the scene's own value, {quote(own)}: give it a number")
+        raise ValueError(f"{quote(choice)} is around the scene's own value, {quote(own)}: give it a number")
     drawn = xr.DataArray(spread.at(levels, kind), {dim: np.arange(len(levels))}, dim)
     return own + drawn if spread.around else drawn
 
@@ -103,7 +110,7 @@ def _problems(scene: Scene, parameters: Any, n: Any, method: Any, seed: Any, dim
 
 
 def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:
-    """Points of the unit cube, one row a dimension."""
+    """Return points of the unit cube, one row a dimension."""
     random = np.random.default_rng(seed)
     if method == "random":
         points = random.random((n, dims))
@@ -118,6 +125,6 @@ def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:
 
 
 def _advised(line: str, parameters: Mapping[str, Any]) -> str:
-    """What the scene says of a value that was drawn, with what to do about it."""
+    """Return a problem of a drawn value, with advice."""
     drawn = any(line.startswith((f"{path} =", f"{path} holds")) for path in parameters)
     return f"{line}; or draw from a range (low, high), or from ls.Normal(..., within=3)" if drawn else line

@@ -14,13 +14,13 @@ Block = dict[str, slice]
 
 
 def design_sizes(scene: Scene) -> dict[str, int]:
-    """Sizes of the design dims that a scene's arrays bring, in the order in which its parameters do."""
+    """Return the sizes of the design dims of a scene's arrays, in the order of its parameters."""
     index = scene.mechanism.index
     return {str(dim): n for array in scene.arrays.values() for dim, n in array.sizes.items() if dim != index}
 
 
 def selected(scene: Scene, block: Block) -> Scene:
-    """The scene of some designs only; every dim stays, however short.
+    """Return the scene of some designs only; every dim stays, however short.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def selected(scene: Scene, block: Block) -> Scene:
 
 
 def blocks(sizes: Mapping[str, int], limit: int) -> list[Block]:
-    """Parts of at most `limit` designs that together are all of them; the longest dims are cut first.
+    """Return parts of at most `limit` designs that together are all of them; the longest dims are cut first.
 
     Examples
     --------

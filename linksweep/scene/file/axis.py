@@ -12,7 +12,7 @@ import xarray as xr
 from linksweep.base.validate import did_you_mean
 from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.storable import name_problem
-from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
+from linksweep.scene.units import accepted_unit, as_toml, key_as_toml, quantity
 
 MOST = 1_000_000
 """Numbers of an axis that is given by its ends."""
@@ -52,7 +52,7 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
     """
     listed = f"; a design axis has {', '.join(KEYS)}"
     unknown = [key for key in table if key not in KEYS]
-    problems = [f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in unknown]
+    problems = [f"{key_as_toml(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in unknown]
     dims = _dims(table, problems)
     values = _values(table, kind, problems)
     if not problems and values.ndim != len(dims):
@@ -72,7 +72,7 @@ def _dims(table: dict[str, Any], problems: list[str]) -> list[str]:
         problems.append('dim: missing; write dim = "name of the design axis"')
     elif not isinstance(dims, list) or len({*filter(_is_name, dims)}) < len(dims):
         must = "a list of different names" if key == "dims" else "a name"
-        problems.append(f"{key} = {shown(table[key])}: must be {must}")
+        problems.append(f"{key} = {as_toml(table[key])}: must be {must}")
     return dims
 
 
@@ -91,14 +91,14 @@ def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
         return None
     start, stop = (_read_nested(table[key], key, kind, unit, problems) for key in ("start", "stop"))
     if not isinstance(num := table["num"], int) or isinstance(num, bool) or num < 1:
-        problems.append(f"num = {shown(num)}: must be a count, 1 or more")
+        problems.append(f"num = {as_toml(num)}: must be a count, 1 or more")
     elif num > MOST:
-        problems.append(f"num = {shown(num)}: must be at most {MOST}; for more designs use sample or a DataArray")
+        problems.append(f"num = {as_toml(num)}: must be at most {MOST}; for more designs use sample or a DataArray")
     return None if problems else _evenly(start, stop, num)
 
 
 def _evenly(start: float, stop: float, num: int) -> Any:
-    """Space numbers as decimals: four from 0.06 to 0.09 have 0.07, where floats give 0.06999999999999999."""
+    """Return evenly spaced decimals: four from 0.06 to 0.09 have 0.07, where floats give 0.06999999999999999."""
     first, last = Fraction(repr(start)), Fraction(repr(stop))
     return np.array([float(first + (last - first) * Fraction(i, max(num - 1, 1))) for i in range(num)])
 
@@ -107,7 +107,7 @@ def _unit(table: dict[str, Any], kind: str, problems: list[str]) -> str | None:
     try:
         return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
     except ValueError as error:
-        problems.append(f"unit = {shown(table['unit'])}: {error}")
+        problems.append(f"unit = {as_toml(table['unit'])}: {error}")
         return None
 
 
@@ -138,7 +138,7 @@ def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, pr
     if not table.keys() & {"coords", *PLACES}:
         return {dims[0]: values} if alone and len(dims) == 1 and dims[0] not in PLACES else {}
     if not isinstance(coords := table.get("coords", {}), dict):
-        problems.append(f"coords = {shown(coords)}: must be a table, {{{dims[0]} = [...]}}")
+        problems.append(f"coords = {as_toml(coords)}: must be a table, {{{dims[0]} = [...]}}")
         return {}
     coords = coords | {dim: table[dim] for dim in PLACES if dim in table}
     for dim, kind in PLACES.items():
@@ -146,7 +146,7 @@ def _coords(table: dict[str, Any], dims: list[str], values: Any, alone: bool, pr
             coords[dim] = _read_nested(places, dim, kind, None, problems)
     for dim, labels in coords.items():
         if dim not in sizes:
-            problems.append(f"coords: {shown_key(dim)} is no dim of these values; they have {', '.join(dims)}")
+            problems.append(f"coords: {key_as_toml(dim)} is no dim of these values; they have {', '.join(dims)}")
         elif not isinstance(labels, list) or [type(label) is list for label in labels] != [False] * sizes[dim]:
             problems.append(f"coords: {dim} must be a list of {sizes[dim]} labels, one for each position")
     return coords

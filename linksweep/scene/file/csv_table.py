@@ -28,7 +28,7 @@ import xarray as xr
 from linksweep.base.validate import did_you_mean, name_problems, refuse
 from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.file.text_file import text_of
-from linksweep.scene.units import accepted_unit, quantity, shown, shown_key
+from linksweep.scene.units import accepted_unit, as_toml, key_as_toml, quantity
 
 KEYS = ("csv", "column", "unit", "interpolation")
 LONGEST_CELL = 1000
@@ -71,10 +71,10 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
         One problem a line, each starting with its key in the table; those of the file with its name and line.
     """
     listed = f"; a CSV column has {', '.join(KEYS)}"
-    refuse([f"{shown_key(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
+    refuse([f"{key_as_toml(key)}: unknown key{did_you_mean(key, KEYS) or listed}" for key in table if key not in KEYS])
     unit, attributes = _unit(table, kind), interpolation_attribute(table)
     if not isinstance(table["csv"], str) or not table["csv"].isprintable():
-        raise ValueError(f'csv = {shown(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
+        raise ValueError(f'csv = {as_toml(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
     samples = _samples(name, rows, _column(table, rows[0].cells))
     over = rows[0].cells[0]
@@ -90,11 +90,11 @@ def _unit(table: dict[str, Any], kind: str) -> str | None:
     try:
         return accepted_unit(str(table["unit"]), kind) if "unit" in table else None
     except ValueError as error:
-        raise ValueError(f"unit = {shown(table['unit'])}: {error}") from None
+        raise ValueError(f"unit = {as_toml(table['unit'])}: {error}") from None
 
 
 def _rows(name: str, folder: Path) -> list[Row]:
-    """The lines of the file that hold something, with their numbers."""
+    """Return the lines of the file that are not empty, with their line numbers."""
     text = text_of(folder / name, f"csv: {name}", ".csv", f" in {folder}", "; give its place from there")
     header = next((line for line in text.splitlines() if line.strip()), "")
     delimiter = max(",;\t", key=header.count)
@@ -113,18 +113,18 @@ def _rows(name: str, folder: Path) -> list[Row]:
 
 
 def _header_problems(name: str, rows: list[Row]) -> list[str]:
-    """Why the first line does not name the columns; the file may be another, of which no word is told."""
+    """Return the problem of a first line that does not name the columns; a file of another kind is not quoted."""
     line, cells = rows[0] if rows else (1, [])
     if cells[:1] in (["theta2"], ["position"]) and len(cells) > 1:
         return []
     known = [cell for cell in cells if "theta" in cell.lower()]
-    there = f"its columns are {', '.join(map(shown, cells))}: " if known else ""
+    there = f"its columns are {', '.join(map(as_toml, cells))}: " if known else ""
     must = "the first line must name the columns, the first of them theta2 (in degrees) or position, as in theta2,P"
     return [f"csv: {name}:{line}: {there}{must}"]
 
 
 def _column(table: dict[str, Any], header: list[str]) -> int:
-    """Place of the column asked for."""
+    """Return the position of the column that the table names."""
     if "column" not in table:
         listed = ", ".join(header[1:])
         refuse([] if len(header) == 2 else [f"csv: column is missing; write column = one of {listed}"])
@@ -135,19 +135,21 @@ def _column(table: dict[str, Any], header: list[str]) -> int:
 
 def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:
     header, *body = rows
-    found, samples = [], []
+    problems, samples = [], []
     for line, cells in body:
         if len(cells) != len(header.cells):
-            found.append(f"csv: {name}:{line}: has {len(cells)} cells, but the first line names {len(header.cells)}")
+            problems.append(f"csv: {name}:{line}: has {len(cells)} cells, but the first line names {len(header.cells)}")
             continue
         angle, value = _number(cells[0]), _number(cells[column])
         for k, number in {0: angle, column: value}.items():
             if not math.isfinite(number):
                 comma = ", with a decimal point" if "," in cells[k] else ""
-                found.append(f"csv: {name}:{line}: {header.cells[k]} = {shown(cells[k])}: must be a number{comma}")
+                problems.append(f"csv: {name}:{line}: {header.cells[k]} = {as_toml(cells[k])}: must be a number{comma}")
         samples.append(Sample(line, angle, value))
-    more = [f"csv: {name}: and {len(found) - MOST_SHOWN} more lines like these"] if len(found) > MOST_SHOWN else []
-    refuse(found[:MOST_SHOWN] + more)
+    more = (
+        [f"csv: {name}: and {len(problems) - MOST_SHOWN} more lines like these"] if len(problems) > MOST_SHOWN else []
+    )
+    refuse(problems[:MOST_SHOWN] + more)
     return samples
 
 

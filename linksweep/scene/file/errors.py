@@ -1,4 +1,4 @@
-"""What is wrong with a scene file, and in which line: TOML keeps no line numbers, so they are found again here."""
+"""Problems of a scene file with their lines: TOML keeps no line numbers, so they are located again here."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import did_you_mean
-from linksweep.scene.units import shown, shown_key
+from linksweep.scene.units import as_toml, key_as_toml
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
 
@@ -25,20 +25,20 @@ UNREAD: Any = "(not read)"
 def path_of(where: Where) -> str:
     """Return the path as the constructors name it: without "mechanism", lists counted from one."""
     keys = where[1:] if where[:1] == ("mechanism",) and where[1:] not in ((), ("type",)) else where
-    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{shown_key(key)}" for key in keys).lstrip(".")
+    return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key_as_toml(key)}" for key in keys).lstrip(".")
 
 
 class Log:
-    """What is wrong with a file, and where; and what numbers in it refer to.
+    """The problems of a file by place, and the arrays and files that its numbers refer to.
 
     Parameters
     ----------
     raw : the whole file
-    arrays : what ``{variable = "coupler.length"}`` in it refers to
+    arrays : arrays that ``{variable = "coupler.length"}`` in it refers to
     top : keys that belong at the top of a file
     machine : keys that belong to a mechanism, whose paths leave out "mechanism"
-    folder : where the file is, and what it names
-    whole : whether functions that no samples stand for are refused; else the samples among `arrays` will do
+    folder : folder of the file, and of the files that it names
+    whole : whether functions without samples that represent them are refused; else their samples in `arrays` are taken
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Log:
         return UNREAD if where in self.misplaced else self.problem(where, f": missing; {advice}")
 
     def unknown(self, key: str, known: Collection[str], owner: str, where: Where) -> None:
-        """Log a key that a table does not have: the scene's or the mechanism's, or misspelt."""
+        """Report a key that a table does not have: one of the scene or the mechanism, or misspelt."""
         if key in self.top:
             self.misplaced.add((key,))
             self.problem((*where, key), ": belongs at the top of the file, above the first [table]")
@@ -79,7 +79,7 @@ class Log:
     def variable(self, name: Any, where: Where) -> Any:
         if str(name) in self.arrays:
             return self.arrays[name]
-        return self.problem(where, f": there is no variable {shown(name)}{did_you_mean(name, self.arrays)}")
+        return self.problem(where, f": there is no variable {as_toml(name)}{did_you_mean(name, self.arrays)}")
 
     def function(self, text: str, where: Where) -> Any:
         samples = self.arrays.get(path_of(where))
@@ -95,7 +95,7 @@ class Log:
         return array
 
     def refused(self, error: ValueError, where: Where) -> Any:
-        """Log what a constructor says, one problem a line with its path first, but for what was not read."""
+        """Report the problems of a constructor, one a line with its path first, but for values that were not read."""
         known = {*self.misplaced, *(place for place, _ in self.problems)}
         above = {place[:k] for place in known for k in range(len(place))}
         for line in str(error).split("\n"):
@@ -179,7 +179,7 @@ _TOKEN = re.compile(
 
 
 def _opened(header: Where, start: int, lines: dict[Where, int], counts: Counter[Where]) -> Where:
-    """Note the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
+    """Store the line of the table that a header opens, and return its place; a [[header]] ends in 0."""
     table: Where = ()
     for key, following in zip(header, (*header[1:], ""), strict=True):
         if key != 0:

@@ -12,7 +12,7 @@ from linksweep.base.validate import choice_problems
 from linksweep.scene.file.axis import design_axis
 from linksweep.scene.file.csv_table import csv_column
 from linksweep.scene.file.errors import Log, Where
-from linksweep.scene.units import KINDS, quantity, shown
+from linksweep.scene.units import KINDS, as_toml, quantity
 
 INSTEAD = 'give it as a DataArray, with interpolation="step" where it jumps'
 """Advice for a function that no samples represent."""
@@ -31,7 +31,7 @@ def _number(kind: NumberField, raw: Any, where: Where, log: Log) -> Any:
         return read(PartField(kind.parts, tuple(kind.parts)), raw, where, log)
     if isinstance(raw, list):
         axis = f'{{dim = "{where[-1]}", values = [...]}}'
-        return log.problem(where, f" = {shown(raw)}: must be one number; for a design axis write {axis}")
+        return log.problem(where, f" = {as_toml(raw)}: must be one number; for a design axis write {axis}")
     try:
         return _number_table(kind, raw, where, log) if isinstance(raw, dict) else quantity(raw, kind.rule.kind)
     except ValueError as error:
@@ -67,7 +67,7 @@ def _pair(kind: PairField, raw: Any, where: Where, log: Log) -> Any:
 def _part(kind: PartField, raw: Any, where: Where, log: Log) -> Any:
     """Read a table of one of several classes, named by its `type`; without it, of the default class."""
     if not isinstance(raw, dict):
-        return log.problem(where, f" = {shown(raw)}: {advice(kind, where)}")
+        return log.problem(where, f" = {as_toml(raw)}: {advice(kind, where)}")
     classes, words = kind.by_name, {key: value for key, value in raw.items() if key != "type"}
     likely = max(classes, key=lambda name: len(kinds_of(classes[name]).keys() & words.keys()))
     name = raw.get("type", likely if classes[likely] is kind.default else None)

@@ -1,4 +1,4 @@
-"""What a scene requires of every load, and the register of all kinds of loads."""
+"""The base class of all loads, and the register of their kinds."""
 
 from __future__ import annotations
 
@@ -66,8 +66,10 @@ class Action(ByContent):
         return ()
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
-        """Return the names of pairs of quantities: one rises through 0 where its force may turn over quickly, the other
-        states within which angle of the crank [rad]."""
+        """Return the names of pairs of quantities that locate where its force may turn over quickly.
+
+        One rises through 0 there, the other states within which angle of the crank [rad].
+        """
         return ()
 
     def sampled(self, path: str, revolution: Revolution) -> Action:

@@ -34,21 +34,26 @@ ATMOSPHERE = 101325.0
 
 @dataclass(frozen=True, eq=False)
 class OttoCycle(ByContent):
-    """Ideal Otto cycle: isentropic compression and expansion, all the heat at top dead centre.
+    """Ideal Otto cycle: isentropic compression and expansion, all heat added at top dead centre.
 
     Parameters
     ----------
-    compression_ratio : largest over least volume [1]
-    peak_pressure : right after combustion [Pa]
-    intake_pressure : of intake and exhaust, absolute [Pa]
-    gamma : ratio of the specific heats [1]
-    strokes : 4 (the cycle takes 720 degrees) or 2 (360)
+    compression_ratio : float or DataArray
+        Largest over least volume [1].
+    peak_pressure : float or DataArray
+        Absolute pressure right after combustion [Pa].
+    intake_pressure : float or DataArray, default 101325.0
+        Absolute pressure of intake and exhaust [Pa].
+    gamma : float or DataArray, default 1.4
+        Ratio of the specific heats [1].
+    strokes : int, default 4
+        Strokes of a cycle: 4 (the cycle takes 720 degrees) or 2 (360).
 
-    Numbers may be DataArrays of design dims; a ValueError of the scene that takes it says what is wrong with them. It
-    fires at the top dead centre of the first revolution, where the crank points along the guide to the head. A crank
-    with omega2 < 0 runs through the same strokes, clockwise.
-
-    Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
+    Notes
+    -----
+    It fires at the top dead centre of the first revolution, where the crank points along the guide to the head. A crank
+    with omega2 < 0 runs through the same strokes, clockwise. The scene that takes the cycle checks its numbers, and
+    raises ValueError. Source: textbook air-standard analysis; efficiency 1 − r^(1 − γ).
 
     Examples
     --------
@@ -67,37 +72,76 @@ class OttoCycle(ByContent):
 
     @property
     def period(self) -> float:
+        """Crank angle of a whole cycle [degree]."""
         return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
-        found = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
-        found = found or _compression_problems(path, self)
-        end = "" if found else _below(self.peak_pressure, _compressed(self))
-        return found or ([f"{path}.peak_pressure = {end}"] if end else [])
+        """Return the problems of the cycle.
+
+        Parameters
+        ----------
+        path : str
+            Path of the cycle, with which each problem begins.
+
+        Returns
+        -------
+        list of str
+            One line for each problem.
+        """
+        problems = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        problems = problems or _compression_problems(path, self)
+        end = "" if problems else _below(self.peak_pressure, _compressed(self))
+        return problems or ([f"{path}.peak_pressure = {end}"] if end else [])
 
     def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
-        """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
+        """Return the absolute pressure at crank angles.
+
+        Parameters
+        ----------
+        engine : Mechanism
+            SliderCrank whose cylinder the cycle runs in.
+        theta2 : array_like
+            Crank angles [degree].
+        turning : float or DataArray, default 1.0
+            Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
+
+        Returns
+        -------
+        DataArray
+            Pressure [Pa] over the design dims and theta2.
+        """
         return _labelled(self, engine, theta2, turning)
 
     @property
     def combustion(self) -> tuple[Number, Number]:
-        """Pressure after it [Pa], and how far it lasts: volume over the least."""
+        """Pressure after combustion [Pa], and the volume at its end over the least."""
         return self.peak_pressure, 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class DieselCycle(ByContent):
-    """Ideal Diesel cycle: isentropic compression and expansion, heat at constant pressure until the cutoff.
+    """Ideal Diesel cycle: isentropic compression and expansion, heat added at constant pressure until the cutoff.
 
     Parameters
     ----------
-    compression_ratio : largest over least volume [1]
-    cutoff_ratio : volume at the end of combustion over the least [1], at most the compression ratio
-    peak_pressure : during combustion [Pa]; default: that at the end of compression. Where given it is larger, and part
-        of the heat comes at constant volume (mixed, or Seiliger cycle).
-    intake_pressure, gamma, strokes : as `OttoCycle`
+    compression_ratio : float or DataArray
+        Largest over least volume [1].
+    cutoff_ratio : float or DataArray
+        Volume at the end of combustion over the least [1], at most the compression ratio.
+    peak_pressure : float or DataArray, default None
+        Absolute pressure during combustion [Pa]; None for that at the end of compression. A larger one adds part of
+        the heat at constant volume (mixed, or Seiliger cycle).
+    intake_pressure : float or DataArray, default 101325.0
+        Absolute pressure of intake and exhaust [Pa].
+    gamma : float or DataArray, default 1.4
+        Ratio of the specific heats [1].
+    strokes : int, default 4
+        Strokes of a cycle: 4 (the cycle takes 720 degrees) or 2 (360).
 
-    It fires, and its numbers are checked, as those of an `OttoCycle`. Source: textbook air-standard analysis.
+    Notes
+    -----
+    It fires where an `OttoCycle` does, and the scene that takes it checks its numbers. Source: textbook air-standard
+    analysis.
 
     Examples
     --------
@@ -117,25 +161,53 @@ class DieselCycle(ByContent):
 
     @property
     def period(self) -> float:
+        """Crank angle of a whole cycle [degree]."""
         return 180.0 * float(self.strokes)
 
     def problems(self, path: str) -> list[str]:
-        found = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
-        found = found or _compression_problems(path, self)
-        over = False if found else self.cutoff_ratio > self.compression_ratio
+        """Return the problems of the cycle.
+
+        Parameters
+        ----------
+        path : str
+            Path of the cycle, with which each problem begins.
+
+        Returns
+        -------
+        list of str
+            One line for each problem.
+        """
+        problems = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
+        problems = problems or _compression_problems(path, self)
+        over = False if problems else self.cutoff_ratio > self.compression_ratio
         if not is_lazy(over) and np.any(over):
             largest = float(np.max(self.cutoff_ratio))
-            found.append(f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it")
-        end = "" if found or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
-        return found or ([f"{path}.peak_pressure = {end}"] if end else [])
+            problems.append(f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it")
+        end = "" if problems or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
+        return problems or ([f"{path}.peak_pressure = {end}"] if end else [])
 
     def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
-        """Absolute pressure [Pa] at crank angles [degree]; `turning` is -1 for a crank that turns clockwise."""
+        """Return the absolute pressure at crank angles.
+
+        Parameters
+        ----------
+        engine : Mechanism
+            SliderCrank whose cylinder the cycle runs in.
+        theta2 : array_like
+            Crank angles [degree].
+        turning : float or DataArray, default 1.0
+            Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
+
+        Returns
+        -------
+        DataArray
+            Pressure [Pa] over the design dims and theta2.
+        """
         return _labelled(self, engine, theta2, turning)
 
     @property
     def combustion(self) -> tuple[Number, Number]:
-        """Pressure during it [Pa], and how far it lasts: volume over the least."""
+        """Pressure during combustion [Pa], and the volume at its end over the least."""
         return _compressed(self) if self.peak_pressure is None else self.peak_pressure, self.cutoff_ratio
 
 
@@ -148,8 +220,8 @@ def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning:
 
     NaN for designs whose crank does not turn fully. The module's equations.
     """
-    given = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
-    taken = (turning, cylinder.slide_angle, cylinder.offset, cylinder.crank, cylinder.rod, *given)
+    numbers_of_cycle = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
+    taken = (turning, cylinder.slide_angle, cylinder.offset, cylinder.crank, cylinder.rod, *numbers_of_cycle)
     dims = (*(dim for dim in dims_of(taken) if dim != "theta2"), "theta2")
     cycle, cylinder, turning = along(cycle, dims), along(cylinder, dims), along(turning, dims)
     (peak, cutoff), (top, bottom), opened = cycle.combustion, cylinder.dead_centres(), cylinder.opening(angles)
@@ -164,7 +236,7 @@ def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning:
 
 
 def _labelled(cycle: Cycle, engine: Mechanism, theta2: Any, turning: Number) -> xr.DataArray:
-    """Pressure over crank angles [degree], with all labels."""
+    """Return the pressure over crank angles [degree], with all labels."""
     missing = lack(engine, "cylinder")
     refuse([f"engine is {missing}"] if missing else [])
     angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
@@ -181,7 +253,7 @@ def _labelled(cycle: Cycle, engine: Mechanism, theta2: Any, turning: Number) -> 
 
 
 def _compressed(cycle: Cycle) -> Number:
-    """Pressure at the end of compression [Pa]."""
+    """Return the pressure at the end of compression [Pa]."""
     try:
         with np.errstate(over="ignore"):
             return cycle.intake_pressure * cycle.compression_ratio**cycle.gamma
@@ -199,7 +271,7 @@ def _compression_problems(path: str, cycle: Cycle) -> list[str]:
 
 
 def _below(peak: Number, compressed: Number) -> str:
-    """What is wrong with a peak pressure that compression alone exceeds."""
+    """Return the problem of a peak pressure that compression alone exceeds; an empty text for none."""
     peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
     if is_lazy(peak) or is_lazy(compressed) or not (short := (peak < compressed).values).any():
         return ""

@@ -31,13 +31,19 @@ class GasPressure(ChangingLoad):
 
     Parameters
     ----------
-    bore : diameter of the cylinder [m]
-    pressure : in the cylinder, absolute [Pa]: a number, a DataArray, a function of theta2 [degree], or an `OttoCycle`
-        or `DieselCycle`, which need no data
-    crankcase : pressure on the other side of the piston, absolute [Pa]
-    breaks : angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`
-    interpolation : of DataArrays over theta2, as that of a `Load`
+    bore : float or DataArray
+        Diameter of the cylinder [m].
+    pressure : float, DataArray, function, OttoCycle or DieselCycle
+        Absolute pressure in the cylinder [Pa]; a function is one of theta2 [degree].
+    crankcase : float, DataArray or function, default 101325.0
+        Absolute pressure on the other side of the piston [Pa].
+    breaks : list of float, default ()
+        Angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`.
+    interpolation : str, default None
+        Curve through DataArrays over theta2, as that of a `Load`.
 
+    Notes
+    -----
     The force acts at C along the guide, (p − crankcase)·π·bore²/4. The head is where the rod reaches farthest: ahead
     of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
     direction; with branch "crossed" the head is behind, and pressure pushes it forward.
@@ -47,11 +53,8 @@ class GasPressure(ChangingLoad):
     In a study, a design whose crank does not turn fully has no ideal cycle: none of its samples is ok (status
     `no_cycle` where it can be assembled), and its forces are NaN.
 
-    Raises
-    ------
-    ValueError
-        By the scene that takes it: for a mechanism without such a cylinder, branch="both", numbers out of bounds,
-        and a cycle in an engine whose crank does not turn fully.
+    The scene that takes the load raises ValueError for a mechanism without such a cylinder, for branch="both", for
+    numbers out of bounds, and for a cycle in an engine whose crank does not turn fully.
 
     Examples
     --------
@@ -71,21 +74,26 @@ class GasPressure(ChangingLoad):
 
     @property
     def changing(self) -> tuple[Any, ...]:
+        """The numbers that may change over the revolution."""
         return self.pressure, self.crankcase
 
     @property
     def form(self) -> LoadForm:
+        """Form of its rows."""
         return LoadForm("slider", force=True, torque=False, link_axes=True, full_turns=self.cycle is not None)
 
     @property
     def cycle(self) -> Cycle | None:
+        """The ideal air cycle in the cylinder; None for any other pressure."""
         return self.pressure if isinstance(self.pressure, Cycle) else None
 
     @property
     def period(self) -> float:
+        """Period of the cycle [degree]; 0 for any other pressure."""
         return self.cycle.period if self.cycle else 0.0
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        """Return the problems of the load on a machine of these links."""
         of_cycle = self.cycle.problems(f"{path}.pressure") if self.cycle else []
         problems = field_problems(self, path + ".")
         with np.errstate(over="ignore"):
@@ -93,6 +101,7 @@ class GasPressure(ChangingLoad):
         return problems + of_cycle + self.interpolation_problems(path)
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
+        """Return why this mechanism cannot take the load, which is valid in itself."""
         if missing := lack(mechanism, "cylinder"):
             return [f"{path} is a GasPressure on {missing}, or a Load"]
         if mechanism.branch not in BRANCH_SIGN:
@@ -106,6 +115,7 @@ class GasPressure(ChangingLoad):
         return []
 
     def sampled(self, path: str, revolution: Revolution) -> GasPressure:
+        """Return the load with all that changes over the revolution at its angles."""
         crankcase = revolution.sample(f"{path}.crankcase", self.crankcase, PRESSURE)
         if self.cycle is None:
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)

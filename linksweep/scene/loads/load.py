@@ -41,39 +41,50 @@ class Load(ChangingLoad):
 
     Parameters
     ----------
-    link : the link it acts on, by name ("crank", "coupler", "rocker")
-    force : (Fx, Fy) [N], or None for no force; on a slider also one number, along the guide (frame "link")
-    at : the point, in the link's own polar coordinates: (distance [m], angle from the line of pins [degree])
-    frame : axes of the force: "ground", or "link" (x along the line of pins)
-    torque : [N m], positive counter-clockwise, or None for no torque
-    origin : what `at` is measured from: the link's first "pin", or its "cg" (centre of gravity)
-    breaks : angles theta2 [degree] at which the force or torque jumps, or is narrower than 0.02 degrees, in a list:
-        exact peaks look at both sides of each, and closely between them
-    interpolation : of DataArrays over theta2, at angles that they do not hold: "periodic cubic" (spline, by default),
-        "pchip" (monotone between neighbours, does not ring), "linear", or "step" (each value holds from its angle up
-        to the next)
+    link : str
+        The link that it acts on: "crank", "coupler", "rocker", "rod", "slider" or "block".
+    force : pair of float, DataArray or function, default None
+        (Fx, Fy) [N]; None for no force. On a slider also one number, along its guide (frame "link").
+    at : pair of float or DataArray, default (0.0, 0.0)
+        Point of action in the link's own polar coordinates: distance [m], angle from its line of pins [degree].
+    frame : str, default "ground"
+        Axes of the force: "ground", or "link" (x along the link's line of pins).
+    torque : float, DataArray or function, default None
+        Torque [N m], positive counter-clockwise; None for no torque.
+    origin : str, default "pin"
+        Origin of `at`: the link's first "pin", or its centre of gravity, "cg".
+    breaks : list of float, default ()
+        Angles theta2 [degree] at which force or torque jumps, or is narrower than 0.02 degrees: exact peaks look at
+        both sides of each, and closely between them. Positions of a load over a position.
+    interpolation : str, default None
+        Curve through DataArrays over theta2, between their angles: "periodic cubic" (a spline; for None), "pchip"
+        (monotone between neighbours, does not ring), "linear", or "step" (each value holds up to the next angle).
+    over : str, default None
+        Position that force and torque follow in place of the crank angle: of a `SliderCrank` "slider.position"
+        (`x_slider`, along the guide from the foot of A on it) or "slider.to_end" (distance to the outer dead centre,
+        where crank and rod are stretched) [m]; of a `FourBar` "rocker.angle" (`theta4`) [degree]; of an
+        `InvertedSliderCrank` "block.position" (`slide`) [m].
+    while_ : str, default None
+        Direction of motion in which it acts: of a slider "closing" (towards its outer dead centre) or "opening"; of a
+        block "extending" (away from the rocker's pivot) or "retracting"; of a rocker "counter-clockwise" or
+        "clockwise". None for both.
 
-    over : None, or the position that force and torque follow in place of the crank angle: on a `SliderCrank`
-        "slider.position" (`x_slider`, along the guide from the foot of A on it) or "slider.to_end" (what is left to the
-        outer dead centre, where crank and rod are stretched) [m]; on a `FourBar` "rocker.angle" (`theta4`) [degree]; on
-        an `InvertedSliderCrank` "block.position" (`slide`) [m]
-    while_ : None, or the way on which it acts: "closing" (the slider goes towards its outer dead centre) or "opening";
-        of a block "extending" (it goes away from the rocker's pivot) or "retracting"; of a rocker "counter-clockwise"
-        or "clockwise"
+    Warns
+    -----
+    OvershootWarning
+        Where a spline leaves its data's range by more than 1 % of it, when it is first used; one through steps rings.
 
-    Forces and torques may be numbers, DataArrays (design dims and theta2) or functions of theta2 [degree]; the
-    point may be DataArrays of design dims. A DataArray over theta2 is reproduced exactly at angles that it holds. Its
-    period is one turn, or as many as its angles span (two in a four-stroke engine): then theta2 of the whole scene runs
-    over these, and what comes round sooner repeats. Values are checked by the scene that takes the load, with a
-    ValueError there.
+    Notes
+    -----
+    The scene that takes the load checks its values, and raises ValueError. DataArrays have design dims; those of force
+    and torque may have theta2, too, and their values come back to the bit at angles that they hold. Their period is
+    one turn, or as many turns as their angles span (two in a four-stroke engine): then theta2 of the whole scene spans
+    as many.
 
-    A load over a position may be a number, a DataArray over the dim "position" alone, in [m] or [degree], or a function
-    of it. Between its positions an array is interpolated "linear" (by default), "pchip" or "step"; before its first and
-    after its last position their values hold. `breaks` are positions, too. Each design has its own crank angles for it:
-    exact peaks look at both sides of those where an array bends or jumps, and where the link turns round.
-
-    A spline through a load with steps rings. Where one leaves its data's range by more than 1 % of it, it warns
-    (`OvershootWarning`) when it is first used, and `linksweep.check` tells by how much.
+    Over a position, force and torque are numbers, DataArrays over the dim "position" alone [m] or [degree], or
+    functions of it. A DataArray is interpolated "linear" (by default), "pchip" or "step"; beyond its ends its end
+    values hold. Each design has its own crank angles for it: exact peaks look at both sides of those where an array
+    bends or jumps, and where the link reverses.
 
     Examples
     --------
@@ -107,19 +118,23 @@ class Load(ChangingLoad):
 
     @property
     def changing(self) -> tuple[Any, ...]:
+        """The numbers that may change over the revolution."""
         components = self.force if isinstance(self.force, tuple | list) else ()
         return (*components, self.torque)
 
     @property
     def over_positions(self) -> tuple[Any, ...]:
+        """Tables and functions of a position."""
         curves = () if self.over is None else self.changing
         return tuple(number for number in curves if is_table(number) or is_function(number))
 
     @property
     def form(self) -> LoadForm:
+        """Form of its rows."""
         return LoadForm(self.link, self.force is not None, self.torque is not None, self.frame == "link")
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        """Return the problems of the load on a machine of these links."""
         problems = choice_problems(f"{path}.link", self.link, links)
         problems += self.interpolation_problems(path) + self._position_problems(path)
         if self.force is None and self.torque is None:
@@ -132,6 +147,7 @@ class Load(ChangingLoad):
         return self.link if self.origin == "cg" else ""
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
+        """Return why this mechanism cannot take the load, which is valid in itself."""
         if self.over is None:
             return []
         if mechanism.branch not in BRANCH_SIGN:
@@ -159,6 +175,7 @@ class Load(ChangingLoad):
         return [*forces, (f"{path}.torque", self.torque)]
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
+        """Return the crank angles [degree] at which its force or torque jumps, kinks or is narrow."""
         if self.over is None:
             return super().jumps(mechanism)
         stroke = self._stroke(mechanism)
@@ -167,6 +184,7 @@ class Load(ChangingLoad):
         return (*reached, *(stroke.turning if self.while_ else ()))
 
     def sampled(self, path: str, revolution: Revolution) -> Load:
+        """Return the load with all that changes over the revolution at its angles."""
         following = self.over is not None
         sample = partial(self._followed, *self._positions(revolution)) if following else revolution.sample
         rules = (*(FORCE,) * len(self.force or ()), TORQUE)

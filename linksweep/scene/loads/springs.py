@@ -41,6 +41,7 @@ class _Line(Action):
     to: End = of_kind(EndField(example='["rocker", "10 cm", 15]'))
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        """Return the problems of the load on a machine of these links."""
         problems = field_problems(self, path + ".")
         if not problems:
             problems += link_problems(f"{path}.from_[1]", self.from_[0], links)
@@ -48,6 +49,7 @@ class _Line(Action):
         return problems or same_link_problems(f"{path}.to[1]", self.from_[0], self.to[0])
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
+        """Return the names of the quantities that locate where its ends come closest."""
         return (approach(name),)
 
     def ends(self, name: str) -> dict[str, Number]:
@@ -62,14 +64,21 @@ class Spring(_Line):
 
     Parameters
     ----------
-    from_, to : its ends, each on another link: ("ground", x [m], y [m]) in ground axes from A, or
-        (link, distance [m], angle [degree]) in the link's own polar coordinates, from its first pin
-    rate : [N/m]
-    free_length : its length without force [m]; a longer one pulls, a shorter one pushes
+    from_ : tuple
+        One end, on another link than `to`: ("ground", x [m], y [m]) in ground axes from A, or (link, distance [m],
+        angle [degree]) in the link's own polar coordinates, from its first pin.
+    to : tuple
+        The other end [m], [degree], likewise.
+    rate : float or DataArray
+        Spring rate [N/m].
+    free_length : float or DataArray
+        Length without force [m]; a longer spring pulls, a shorter one pushes.
 
-    Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load checks it, and can then
-    be asked for loadk_length, loadk_tension and loadk_power. What is wrong with it is a ValueError of that scene. With
-    its ends in one point a spring has no direction: its force is 0 there.
+    Notes
+    -----
+    Results of the scene that takes the spring as its k-th load have loadk_length, loadk_tension and loadk_power on
+    request. That scene checks its values, and raises ValueError. With its ends in one point a spring has no direction:
+    its force is 0 there.
 
     Examples
     --------
@@ -83,9 +92,11 @@ class Spring(_Line):
 
     @property
     def form(self) -> SpringForm:
+        """Form of its rows."""
         return SpringForm(self.from_[0], self.to[0])
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the load\'s numbers under the names that its rows take."""
         return {f"{name}_rate": self.rate, f"{name}_free_length": self.free_length} | self.ends(name)
 
 
@@ -96,12 +107,18 @@ class Damper(_Line):
 
     Parameters
     ----------
-    from_, to : its ends, as those of a Spring
-    coefficient : [N s/m]
+    from_ : tuple
+        One end, on another link than `to`: ("ground", x [m], y [m]) in ground axes from A, or (link, distance [m],
+        angle [degree]) in the link's own polar coordinates, from its first pin.
+    to : tuple
+        The other end [m], [degree], likewise.
+    coefficient : float or DataArray
+        Damping coefficient [N s/m].
 
-    Numbers may be DataArrays of design dims. The scene that takes the damper as its k-th load can be asked for
-    loadk_length, loadk_tension and loadk_power. With its ends in one point its force is 0. What is wrong with it is a
-    ValueError of that scene.
+    Notes
+    -----
+    Results of the scene that takes the damper as its k-th load have loadk_length, loadk_tension and loadk_power on
+    request. That scene checks its values, and raises ValueError. With its ends in one point its force is 0.
 
     Examples
     --------
@@ -114,9 +131,11 @@ class Damper(_Line):
 
     @property
     def form(self) -> DamperForm:
+        """Form of its rows."""
         return DamperForm(self.from_[0], self.to[0])
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the load\'s numbers under the names that its rows take."""
         return {f"{name}_coefficient": self.coefficient} | self.ends(name)
 
 

@@ -28,6 +28,7 @@ class _Turning(Action):
     to: str = word('"rocker"')
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
+        """Return the problems of the load on a machine of these links."""
         problems = link_problems(f"{path}.from_", self.from_, links) + link_problems(f"{path}.to", self.to, links)
         problems = problems or same_link_problems(f"{path}.to", self.from_, self.to)
         return problems + field_problems(self, path + ".")
@@ -40,17 +41,24 @@ class TorsionSpring(_Turning):
 
     Parameters
     ----------
-    from_, to : two links by name; one may be "ground"
-    rate : [N m/rad]
-    free_angle : angle from the line of pins of `from_` (of the ground: from x) to that of `to`, counter-clockwise,
-        at which it exerts no torque [degree]
+    from_ : str
+        One link, or "ground".
+    to : str
+        The other link, or "ground".
+    rate : float or DataArray
+        Torsional rate [N m/rad].
+    free_angle : float or DataArray, default 0.0
+        Angle [degree] without torque, counter-clockwise from the line of pins of `from_` (of the ground: from x) to
+        that of `to`.
 
+    Notes
+    -----
     The twist is the angle between the links less the free angle, folded to (-180, 180]: it follows from the position
     alone, and no turns are counted. Where a link turns so far that the twist passes 180, the torque jumps; `peaks`
-    looks at both sides of the jump of a spring between crank and ground, of others only at the samples.
+    looks at both sides of the jump of a spring between crank and ground, at other springs only at the samples.
 
-    Numbers may be DataArrays of design dims. The scene that takes the spring as its k-th load can be asked for
-    loadk_twist [degree], loadk_to_torque and loadk_power. What is wrong with it is a ValueError of that scene.
+    Results of the scene that takes the spring as its k-th load have loadk_twist [degree], loadk_to_torque and
+    loadk_power on request. That scene checks its values, and raises ValueError.
 
     Examples
     --------
@@ -64,9 +72,11 @@ class TorsionSpring(_Turning):
 
     @property
     def form(self) -> TorsionSpringForm:
+        """Form of its rows."""
         return TorsionSpringForm(self.from_, self.to)
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
+        """Return the load\'s numbers under the names that its rows take."""
         cos, sin = cos_sin(self.free_angle)
         return {f"{name}_rate": self.rate, f"{name}_free_cos": cos, f"{name}_free_sin": sin}
 
@@ -83,11 +93,17 @@ class TorsionDamper(_Turning):
 
     Parameters
     ----------
-    from_, to : two links by name; one may be "ground"
-    coefficient : [N m s/rad], DataArray of design dims allowed
+    from_ : str
+        One link, or "ground".
+    to : str
+        The other link, or "ground".
+    coefficient : float or DataArray
+        Damping coefficient [N m s/rad].
 
-    The scene that takes it as its k-th load can be asked for loadk_to_torque and loadk_power. What is wrong with it is
-    a ValueError of that scene.
+    Notes
+    -----
+    Results of the scene that takes it as its k-th load have loadk_to_torque and loadk_power on request. That scene
+    checks its values, and raises ValueError.
 
     Examples
     --------
@@ -100,6 +116,7 @@ class TorsionDamper(_Turning):
 
     @property
     def form(self) -> TorsionDamperForm:
+        """Form of its rows."""
         return TorsionDamperForm(self.from_, self.to)
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
