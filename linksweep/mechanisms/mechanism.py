@@ -20,7 +20,7 @@ from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import AnyLink, Link, links_of
 from linksweep.mechanisms.rows.bodies import Body, Equation
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, OverDesigns
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins
 from linksweep.mechanisms.strokes import Stroke
@@ -72,7 +72,7 @@ class Mechanism(ByContent, ABC):
     """Number of the link that carries the journal of each pin."""
     bodies: ClassVar[tuple[Body, ...]] = ()
     """The moving links as bodies with mass."""
-    status_meanings: ClassVar[tuple[str, ...]] = ("ok", "cannot_assemble", "toggle", "dead_centre")
+    status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_CRANK
     """Meaning of each value of `status`."""
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     """Description of the status of peaks."""

@@ -45,6 +45,7 @@ def _uniform(count: int, period: float, dim: str) -> Grid:
 
 
 def _angles(values: Any, name: str) -> np.ndarray:
+    """Return a list of angles as float64 [degree]."""
     refuse(unit_problems(name, getattr(values, "attrs", {}).get("units"), "angle"))
     try:
         angles = np.asarray(all_to_float64(values, "angle"))

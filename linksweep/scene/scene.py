@@ -139,8 +139,7 @@ class Scene(ByContent):
         """Return the fields with arrays labelled, and the mechanism's defaults."""
         values = {name: _own_label(name, value) for name, value in field_values(self).items()}
         defaults = self.mechanism.defaults if isinstance(self.mechanism, Mechanism) else {}
-        values |= {name: default for name, default in defaults.items() if left_out(values[name])}
-        return values
+        return values | {name: default for name, default in defaults.items() if left_out(values[name])}
 
     def _problems(self) -> list[str]:
         """Return the problems of each parameter by itself."""

@@ -14,10 +14,9 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
-STATUS_OF_SLIDER = (
-    *("ok", "cannot_assemble", "toggle", "dead_centre"),
-    *("jammed", "no_cycle", "jammed_two_solutions"),
-)
+STATUS_OF_CRANK = ("ok", "cannot_assemble", "toggle", "dead_centre")
+"""Status by number of every machine with a crank."""
+STATUS_OF_SLIDER = (*STATUS_OF_CRANK, "jammed", "no_cycle", "jammed_two_solutions")
 """Status by number of every machine in which friction may wedge a sliding part."""
 
 OverDesigns = tuple[tuple[Callable[..., Mapping[str, Any]], tuple[Number, ...]], ...]
@@ -42,12 +41,8 @@ def near_toggle_rows(middle: str) -> list[Row]:
 
 def straight_rows(cos: str, sin: str, minus_sin: bool = False) -> list[Row]:
     """Return rows of the crank's angle from a near-toggle that lies along an axis: tabulated numbers, to the bit."""
-    sine = planar.opposite if minus_sin else planar.identity
-    return [
-        Row(planar.identity, PSI[:1], (cos,)),
-        Row(planar.identity, PSI[1:2], (f"{cos}_lo",)),
-        Row(sine, PSI[2:], (sin,)),
-    ]
+    cosine = [Row(planar.identity, (psi,), (name,)) for psi, name in zip(PSI, (cos, f"{cos}_lo"), strict=False)]
+    return [*cosine, Row(planar.opposite if minus_sin else planar.identity, PSI[2:], (sin,))]
 
 
 def between_rows(middle_cos: str | float, middle_sin: str | float) -> tuple[Row, ...]:

@@ -25,12 +25,12 @@ class Form(Protocol):
 
     @property
     def full_turns(self) -> bool:
-        """Whether the load has values only on a crank that turns fully; the status of other designs says so."""
+        """True for a load that has values only on a crank that turns fully; other designs have status no_cycle."""
         ...
 
     @property
     def damps(self) -> bool:
-        """Whether its force grows with the speed."""
+        """True for a load whose force grows with the speed."""
         ...
 
     @property
