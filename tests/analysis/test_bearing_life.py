@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from judges import LinkData, mp
 from oracle import FourBarData, solve
 from oracle import to_scene as scene_of_oracle
+from references import LinkData, mp
 from refusals import refusal
 
 import linksweep as ls

@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-import judges
 import numpy as np
 import oracle
 import pytest
+import references
 import xarray as xr
 from drawn import closed_figures, line, plt, texts  # noqa: F401
-from judges import mp
+from references import mp
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
@@ -106,13 +106,13 @@ def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_i
 
 @pytest.mark.parametrize("theta2", [20.0, 145.0, 290.0])
 def test_of_the_four_bar_by_60_digits(theta2):
-    links = [judges.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
+    links = [references.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
     data = oracle.FourBarData(*links, ground=0.2)
 
     def centre(k, link, angle):
         corners = oracle.close_loop(data, angle)
         first, second = corners["ABD"[k]], corners["BCC"[k]]
-        return first + link.cg_distance * (second - first) / link.length * judges.turn(link.cg_angle)
+        return first + link.cg_distance * (second - first) / link.length * references.turn(link.cg_angle)
 
     def line_of_pins(k, angle):
         corners = oracle.close_loop(data, angle)

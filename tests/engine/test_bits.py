@@ -1,4 +1,4 @@
-"""The same numbers to the last bit, however they are computed.
+"""Results are equal to the last bit, however they are computed.
 
 By numpy or compiled, by one thread or two, in any order, alone or among others, in one sweep or in chunks.
 """
@@ -45,12 +45,12 @@ def sweep(monkeypatch):
     return swept
 
 
-def assert_same_bits(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_same_bits(result: xr.Dataset, expected: xr.Dataset) -> None:
     """Equal dims and equal bits; any NaN is as good as another."""
-    assert set(found.data_vars) == set(expected.data_vars)
+    assert set(result.data_vars) == set(expected.data_vars)
     for name, value in expected.data_vars.items():
-        x, y = found[name].values, value.values
-        assert found[name].dims == value.dims, name
+        x, y = result[name].values, value.values
+        assert result[name].dims == value.dims, name
         assert x.dtype == y.dtype, name
         assert np.all((x.view(f"i{x.itemsize}") == y.view(f"i{y.itemsize}")) | (np.isnan(x) & np.isnan(y))), name
 
@@ -128,7 +128,7 @@ def test_one_thread_and_two_agree(sweep, monkeypatch):
 
 
 def test_threads_share_the_work(sweep, monkeypatch):
-    """What the test above relies on."""
+    """The test above relies on this."""
     monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)
     pools = []
     pool = run.ThreadPoolExecutor
@@ -140,7 +140,7 @@ def test_threads_share_the_work(sweep, monkeypatch):
 
 
 def reversed_designs(scene: ls.Scene) -> ls.Scene:
-    """The same designs in the opposite order."""
+    """Return the designs in the opposite order."""
 
     def turned(value):
         return value.isel(design=slice(None, None, -1)) if "design" in getattr(value, "dims", ()) else value
@@ -185,7 +185,7 @@ def test_compiled_subset_is_what_it_is_among_all(sweep):
 @pytest.mark.parametrize("way", ["compiled", "interpreted"])
 @pytest.mark.parametrize("scene", ["plain", "loaded", "designs"])
 def test_chunks_of_a_sweep_are_the_sweep(sweep, way, scene):
-    """Nothing depends on the previous angle, nor on how the grid was said."""
+    """Nothing depends on the previous angle, nor on how the grid was requested."""
     scene = SCENES[scene]()
     whole = sweep(way, scene, 72)
     for chunk in (slice(0, 72), slice(0, 1), slice(5, 30), slice(None, None, -1)):
@@ -216,7 +216,7 @@ def test_a_grid_of_designs_is_the_designs_in_a_loop(sweep, way):
             assert_same_bits(grid.isel(length=i, mass=k, missing_dims="ignore"), single)
 
 
-def test_what_designs_share_is_blank_only_where_none_of_them_is_ok(sweep):
+def test_a_shared_value_is_nan_only_where_no_design_is_ok(sweep):
     """Pin B does not know the coupler's length; where no length can be assembled, nobody may rely on it."""
     grid = sweep("interpreted", on_grid(LENGTHS[2:], MASSES), 24, outputs=["Bx", "aG2y"])
     assert (grid.status == 0).any("length").all()
@@ -249,7 +249,7 @@ def test_variables_carry_only_the_dims_they_depend_on(sweep, way):
     assert all(array.dims[-1] == "theta2" for array in grid.data_vars.values() if "theta2" in array.dims)
 
 
-def test_what_a_mass_cannot_change_is_computed_once():
+def test_quantities_without_masses_are_computed_once():
     """In the work, not only in the result: no kinematic operation is in the loop over masses."""
     scene = on_grid(LENGTHS, MASSES)
     kinematics = plan(scene.table, KINEMATICS, scene.inputs.forms)

@@ -60,10 +60,10 @@ def test_so_many_dims(count):
     speeds, coupler = many.omega2, many.mechanism.coupler
     row_coupler = replace(coupler, mass=in_a_row(coupler.mass, speeds))
     row = replace(many, mechanism=replace(many.mechanism, coupler=row_coupler), omega2=in_a_row(speeds, speeds))
-    for found, expected in zip(results(many), results(row), strict=True):
+    for result, expected in zip(results(many), results(row), strict=True):
         for name, values in expected.data_vars.items():
             if "row" in values.dims:
-                wide = in_a_row(found[name], speeds)
+                wide = in_a_row(result[name], speeds)
                 np.testing.assert_array_equal(wide, values.transpose("row", ...), err_msg=name)
 
 
@@ -84,5 +84,5 @@ def test_folded_and_nested_loops_give_the_same_bits(deepest, speeds, masses, mon
     nested = results(of)
     monkeypatch.setattr(writer, "DEEPEST", deepest)
     run.runner.cache_clear(), find_peaks.searcher.cache_clear()
-    for found, expected in zip(results(of), nested, strict=True):
-        xr.testing.assert_identical(found, expected)
+    for result, expected in zip(results(of), nested, strict=True):
+        xr.testing.assert_identical(result, expected)

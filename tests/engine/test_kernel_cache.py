@@ -1,4 +1,4 @@
-"""Compiled kernels are kept safely: never stale, never half written, and not missed where nothing can be kept."""
+"""Compiled kernels are cached safely: never stale, never half written, and not missed if nothing can be cached."""
 
 import errno
 import math
@@ -123,7 +123,7 @@ def plant(folder, mark):
 
 
 @posix
-def test_what_the_user_alone_may_write_is_trusted(folder, tmp_path):
+def test_a_cache_that_only_the_user_may_write_is_trusted(folder, tmp_path):
     """The trap works: tests below that find no mark do so because it was not read."""
     root_of_two()
     plant(folder, tmp_path / "mark")
@@ -135,7 +135,7 @@ def test_what_the_user_alone_may_write_is_trusted(folder, tmp_path):
 @posix
 @pytest.mark.parametrize("who", ["the folder", "the kernel"])
 @pytest.mark.parametrize("mode", [stat.S_IWGRP, stat.S_IWOTH])
-def test_what_others_may_write_is_not_read(folder, tmp_path, who, mode):
+def test_a_cache_that_others_may_write_is_not_read(folder, tmp_path, who, mode):
     root_of_two()
     path = plant(folder, tmp_path / "mark")
     written = folder if who == "the folder" else path
@@ -147,7 +147,7 @@ def test_what_others_may_write_is_not_read(folder, tmp_path, who, mode):
 
 @posix
 @pytest.mark.parametrize("who", ["the folder", "the kernel", "a link to the folder"])
-def test_what_another_user_owns_is_not_read(folder, tmp_path, monkeypatch, who):
+def test_a_cache_that_another_user_owns_is_not_read(folder, tmp_path, monkeypatch, who):
     root_of_two()
     path = plant(folder, tmp_path / "mark")
     others = {"the folder": folder, "the kernel": path, "a link to the folder": tmp_path / "link"}[who]

@@ -32,9 +32,9 @@ def planned(scene: ls.Scene, *names: str) -> Plan:
     return plan(scene.table, names, scene.inputs.forms)
 
 
-def makes(found: Plan) -> set[str]:
+def makes(result: Plan) -> set[str]:
     """Names of all that the plan's functions make."""
-    return {name for function in found.functions for name in function.split(" → ")[1].split(", ")}
+    return {name for function in result.functions for name in function.split(" → ")[1].split(", ")}
 
 
 def cost(scene: ls.Scene, *names: str) -> int:
@@ -43,10 +43,10 @@ def cost(scene: ls.Scene, *names: str) -> int:
 
 
 def test_velocities_need_no_inertia_and_no_force():
-    found = planned(scene(loads=[ls.Load("rocker", force=(1.0, 2.0), at=(0.05, 10.0))]), "omega3")
-    assert {"r3x", "ratio3", "omega3"} <= makes(found)
-    assert not {name for name in makes(found) if name[0] in "FQNPMTJ" or name.startswith(("alpha", "aB", "load"))}
-    assert set(found.inputs) <= {
+    result = planned(scene(loads=[ls.Load("rocker", force=(1.0, 2.0), at=(0.05, 10.0))]), "omega3")
+    assert {"r3x", "ratio3", "omega3"} <= makes(result)
+    assert not {name for name in makes(result) if name[0] in "FQNPMTJ" or name.startswith(("alpha", "aB", "load"))}
+    assert set(result.inputs) <= {
         *("cos2", "sin2", "cos2_lo", "sin2_lo", "omega2", "branch_sign"),
         *(f"{link}_length" for link in ("crank", "coupler", "rocker", "ground")),
         *("ground_cos", "ground_sin", "ground_cos_lo", "ground_sin_lo"),
@@ -55,9 +55,9 @@ def test_velocities_need_no_inertia_and_no_force():
 
 def test_torque_needs_no_pin_force():
     """Virtual work gives it without."""
-    found = planned(scene(), "T12")
-    assert makes(found).isdisjoint(PIN_FORCES)
-    assert "work" in makes(found)
+    result = planned(scene(), "T12")
+    assert makes(result).isdisjoint(PIN_FORCES)
+    assert "work" in makes(result)
     assert cost(scene(), "T12") < 0.9 * cost(scene(), *UNKNOWNS)
 
 
@@ -66,7 +66,7 @@ def test_forces_need_no_torque_and_no_power():
 
 
 def test_one_pin_force_needs_only_what_leads_to_it():
-    """F43 is found first; the others follow by addition, each by its own."""
+    """F43 is solved first; the others follow by addition, each by its own."""
     assert makes(planned(scene(), "F43x")) & PIN_FORCES == {"F43x", "F43y"}
     assert makes(planned(scene(), "F32x")) & PIN_FORCES == {"F43x", "F43y", "F32x", "F32y"}
     assert makes(planned(scene(), "F14y")) & PIN_FORCES == {"F43x", "F43y", "F14x", "F14y"}
@@ -85,9 +85,9 @@ def test_all_of_the_kinematics_is_shared_by_the_forces():
 
 
 def test_one_root_and_one_division_an_angle():
-    """What makes the kernel fast: all that is divided by belongs to the design, or is shared."""
-    found = planned(scene(), *UNKNOWNS).operations("theta2")
-    assert (found["sqrt"], found["/"]) == (1, 1)
+    """Divisors belong to the design, or are shared: that makes the kernel fast."""
+    result = planned(scene(), *UNKNOWNS).operations("theta2")
+    assert (result["sqrt"], result["/"]) == (1, 1)
 
 
 # ---- what is zero costs nothing -----
@@ -140,7 +140,7 @@ def test_nothing_costs_nothing(nothing):
 
 @pytest.mark.parametrize("nothing", WITHOUT)
 def test_leaving_nothing_out_changes_no_number(nothing):
-    """The cheaper plan against the full one, which is told the same zeros as arrays of one design."""
+    """The cheaper plan against the full one, which has the same zeros as arrays of one design."""
 
     def as_array(value):
         return xr.DataArray([float(value)], dims="design")
@@ -157,9 +157,9 @@ def test_leaving_nothing_out_changes_no_number(nothing):
         alpha2=as_array(cheap.alpha2),
         gravity=tuple(map(as_array, cheap.gravity)),
     )
-    expected, found = ls.sweep(full, 36), ls.sweep(cheap, 36)
+    expected, result = ls.sweep(full, 36), ls.sweep(cheap, 36)
     for name in expected.data_vars:
-        np.testing.assert_array_equal(*np.broadcast_arrays(found[name], expected[name].isel(design=0)), err_msg=name)
+        np.testing.assert_array_equal(*np.broadcast_arrays(result[name], expected[name].isel(design=0)), err_msg=name)
 
 
 def test_massless_machine_at_rest_has_nothing_to_do():
@@ -168,11 +168,11 @@ def test_massless_machine_at_rest_has_nothing_to_do():
     assert not any(ls.sweep(still, 8, outputs=UNKNOWNS)[name].any() for name in UNKNOWNS)
 
 
-def test_what_belongs_to_the_design_is_done_once():
+def test_operations_of_a_design_are_done_once():
     """Moments of inertia and the like are no work at the angles."""
-    found = planned(scene(), *UNKNOWNS)
-    assert found.operations().total() > 20
-    once = {"J2", "J3", "J4"} & makes(found)
+    result = planned(scene(), *UNKNOWNS)
+    assert result.operations().total() > 20
+    once = {"J2", "J3", "J4"} & makes(result)
     assert once == {"J2", "J3", "J4"}
     heavy = planned(scene(coupler=links()["coupler"]), "J3")
     assert heavy.operations("theta2").total() == 0

@@ -1,4 +1,4 @@
-"""What enters linearly is a sum of a few cycles: the same results, with less to do for each design."""
+"""Superposed requests sum a few cycles for parameters that enter linearly: equal results, less work a design."""
 
 from dataclasses import replace
 from functools import partial
@@ -91,7 +91,7 @@ def test_other_machines_over_their_speed(name):
         np.testing.assert_allclose(summed[force], plain[force], rtol=0.0, atol=1e-13 * largest)
 
 
-def test_what_does_not_enter_linearly_is_left_alone():
+def test_parameters_that_do_not_enter_linearly_are_not_superposed():
     request, same = plans(scene(batch(5, *LENGTHS)), "F32x", "T12")
     assert same is request
 
@@ -107,7 +107,7 @@ def test_at_rest_only_what_stands_is_left():
 
 @pytest.mark.parametrize("solver", long_but(["fast", "superposed"], "superposed"))
 @pytest.mark.parametrize("count", [1, 3, 4, 6])
-def test_designs_done_abreast_have_the_bits_of_those_interpreted(count, solver, monkeypatch):
+def test_batched_designs_have_the_bits_of_those_interpreted(count, solver, monkeypatch):
     machine = scene(batch(count, "m3"))
     find = partial(ls.peaks, machine, theta2=TURN, threads=1, solver=solver)
     interpreted = find()
@@ -132,13 +132,13 @@ def test_a_study_takes_the_word_along(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda s: ls.peaks(s, solver="superposed"), r'solver = "superposed": is for samples.*give theta2'),
         (lambda s: ls.peaks(s, theta2=9, solver="dense"), r"solver = 'dense': must be one of fast, superposed"),
         (lambda s: ls.sweep(s, 9, of=["error_bound"], solver="superposed"), r"of: error_bound is of what"),
     ],
 )
-def test_what_cannot_be_superposed_is_refused(call, said):
-    with pytest.raises(ValueError, match=said):
+def test_requests_that_cannot_be_superposed_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
         call(ls.example("press"))

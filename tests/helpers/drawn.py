@@ -1,4 +1,4 @@
-"""What is really on the paper: reading plots back, and whether anything on them hides anything else."""
+"""Read plots back from the figure, and check that nothing on them hides anything else."""
 
 from itertools import combinations
 
@@ -57,11 +57,11 @@ def boxes(ax):
 def page_hides_nothing(figure):
     """Labels, words and legends lie inside their axes, off each other and off the curves."""
     for ax in figure.axes:
-        found, frame = boxes(ax), ax.get_window_extent()
+        result, frame = boxes(ax), ax.get_window_extent()
         others = [text.get_window_extent() for text in ax.texts if text.get_text()]
         if ax.get_legend() is not None:
             others.append(ax.get_legend().get_window_extent())
-        assert not any(one.overlaps(other) for one, other in combinations([*found, *others], 2))
-        assert not any(box.count_contains(pixels(curve)) for box in found for curve in curves(ax))
-        assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in found)
-        assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in found)
+        assert not any(one.overlaps(other) for one, other in combinations([*result, *others], 2))
+        assert not any(box.count_contains(pixels(curve)) for box in result for curve in curves(ax))
+        assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in result)
+        assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in result)

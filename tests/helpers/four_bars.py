@@ -1,12 +1,12 @@
-"""Random four-bars for tests of laws, swept with everything asked for."""
+"""Random four-bars for tests of laws, swept for all quantities."""
 
 from itertools import product
 
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES
 from oracle import LINKS, FourBarData, random_data, random_theta2, to_scene, torque_name
+from references import BRANCHES
 
 import linksweep as ls
 
@@ -23,15 +23,15 @@ RATES = ("omega3", "omega4", "alpha3", "alpha4")
 EVERYTHING = (*ANGLES, *RATES, "transmission_angle", *COMPONENTS, *PINS, "power")
 
 
-def random_case(branch: str, drive: str, seed: int, **given) -> tuple[FourBarData, np.ndarray]:
-    """A scene and five crank angles away from its toggles."""
+def random_case(branch: str, drive: str, seed: int, **parameters) -> tuple[FourBarData, np.ndarray]:
+    """Return a scene and five crank angles away from its toggles."""
     rng = np.random.default_rng([seed, BRANCHES.index(branch), LINKS.index(drive)])
-    data = random_data(rng, branch=branch, drive=drive, **given)
+    data = random_data(rng, branch=branch, drive=drive, **parameters)
     return data, np.array([random_theta2(rng, data) for _ in range(5)])
 
 
 def swept(data: FourBarData, theta2, names=EVERYTHING) -> xr.Dataset:
-    """All that can be asked for, by position along theta2 instead of by angle; the drive's torque is called T."""
+    """Return all quantities, by position along theta2 instead of by angle; the drive's torque is called T."""
     torque = torque_name(data)
     cycle = ls.sweep(to_scene(data), theta2, outputs=(*names, torque))
     assert not cycle.status.any()

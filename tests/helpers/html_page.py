@@ -24,15 +24,15 @@ class Page(HTMLParser):
         assert not self.open
 
     def handle_starttag(self, name, attributes):
-        given = dict(attributes)
+        parameters = dict(attributes)
         self.tags.add(name)
         self.references += [value for key, value in attributes if key in ("src", "href", "srcset", "action", "data")]
         if name in VOID:
             if name == "img":
-                self.images[given["alt"]] = given["src"]
+                self.images[parameters["alt"]] = parameters["src"]
             return
         self.open.append(name)
-        self.in_warning |= given.get("class") == "warning"
+        self.in_warning |= parameters.get("class") == "warning"
         if name == "h2":
             self.title = ""
         elif name == "tr":
@@ -40,9 +40,9 @@ class Page(HTMLParser):
         elif name in ("td", "th"):
             self.sections[self.title][-1].append(("", []))
         elif name == "data":
-            self.numbers.append(("", float(given["value"])))
+            self.numbers.append(("", float(parameters["value"])))
             self.sections.get(self.title, [[("", [])]])[-1][-1][1].append(
-                float(given["value"])
+                float(parameters["value"])
             ) if "td" in self.open else None
 
     def handle_endtag(self, name):

@@ -1,8 +1,8 @@
-"""What the judges are held to the laws of mechanics with, in 60 digits: agreement, derivatives, energy."""
+"""Check the reference solutions against the laws of mechanics, in 60 digits: agreement, derivatives, energy."""
 
 from dataclasses import replace
 
-from judges import mp
+from references import mp
 
 # identities of 60-digit numbers, less the digits that a toggle margin of 0.1 may cost
 TIGHT = mp.mpf("1e-40")
@@ -21,7 +21,7 @@ def dot(F, v):
 
 
 def history(motion, data, theta2):
-    """The motion as a function of time, with alpha2 constant."""
+    """Return the motion as a function of time, with alpha2 constant."""
     w, a = mp.mpf(data.omega2), mp.mpf(data.alpha2)
 
     def at(t):
@@ -31,7 +31,7 @@ def history(motion, data, theta2):
 
 
 def derivative(at, of, n=1):
-    """n-th time derivative, by finite differences, of a quantity of the motion."""
+    """Return the n-th time derivative, by finite differences, of a quantity of the motion."""
     return mp.diff(lambda t: of(at(t)), 0, n)
 
 

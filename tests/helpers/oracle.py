@@ -1,4 +1,4 @@
-"""The independent judge: one four-bar at one crank angle, in 60-digit arithmetic.
+"""The independent reference solution: one four-bar at one crank angle, in 60-digit arithmetic.
 
 Nothing here knows the product. The loop closes by intersecting two circles, rates come from the
 differentiated loop equation, and the forces from the full 9x9 Newton-Euler system by Gaussian elimination.
@@ -15,7 +15,7 @@ Vectors are complex numbers, x + jy, from pin A.
 from dataclasses import dataclass
 
 import numpy as np
-from judges import (
+from references import (
     BRANCHES,
     FOLD,
     FORCES,
@@ -29,7 +29,6 @@ from judges import (
     components,
     crank_angle,
     cross,
-    happening,
     joined,
     largest_force,
     linear_solve,
@@ -40,6 +39,7 @@ from judges import (
     random_gravity,
     random_link,
     random_load,
+    scene_parameters,
     turn,
     two_rates,
 )
@@ -163,12 +163,12 @@ def largest_torque(result: dict, data: FourBarData):
 
 
 def to_scene(data: FourBarData):
-    """The same as the public `linksweep.Scene`."""
+    """Return the public `linksweep.Scene` of these data."""
     import linksweep as ls
 
     bars = {name: ls.Link(**vars(link)) for name, link in links(data).items()}
     mechanism = ls.FourBar(**bars, ground=data.ground, branch=data.branch, ground_angle=data.ground_angle)
-    return ls.Scene(mechanism, **happening(data))
+    return ls.Scene(mechanism, **scene_parameters(data))
 
 
 # ---- random scenes -----
@@ -194,7 +194,7 @@ def random_lengths(rng: np.random.Generator, kind: str) -> list[float]:
         assembles = s + p + q - longest > margin
         if assembles and abs(s + longest - p - q) > margin and grashof_kind(*lengths) == kind:
             return lengths
-    raise ValueError(f"no four-bar of kind {kind!r} found")
+    raise ValueError(f"no four-bar of kind {kind!r}")
 
 
 def random_data(
@@ -206,7 +206,7 @@ def random_data(
     scale: float | None = None,
     loads: int | None = None,
 ) -> FourBarData:
-    """A random four-bar scene; what is not given is drawn.
+    """Return a random four-bar scene; parameters that are left out are drawn.
 
     `scale` [m] is the upper bound of the lengths (drawn from 1e-6 to 1e3), `loads` their number (0 to 4).
     Loads and alpha2 are comparable with the inertial ones, so that no term hides behind another.
@@ -232,7 +232,7 @@ def random_data(
 
 
 def toggle_margin(data: FourBarData, theta2: float) -> float:
-    """How far from a toggle, as a sine: of the transmission angle, or of the drive's hold if that is less.
+    """Return the distance from a toggle as a sine: of the transmission angle, or of the drive's hold if that is less.
 
     Zero where the loop does not close.
     """
@@ -244,5 +244,5 @@ def toggle_margin(data: FourBarData, theta2: float) -> float:
 
 
 def random_theta2(rng: np.random.Generator, data: FourBarData, margin: float = 0.1) -> float:
-    """A crank angle [degree] where the loop closes with a toggle margin above the given one."""
+    """Return a crank angle [degree] where the loop closes with a toggle margin above this one."""
     return crank_angle(rng, lambda theta2: toggle_margin(data, theta2) > margin)

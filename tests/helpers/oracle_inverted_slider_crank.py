@@ -1,4 +1,4 @@
-"""The independent judge of the inverted slider-crank: one crank angle, 60 digits.
+"""The independent reference solution of the inverted slider-crank: one crank angle, 60 digits.
 
 As in `oracle`, nothing here knows the product. The block on the crank's pin B slides along the rocker's line, direction
 r = exp(j theta4), which passes the pivot D at the offset e along its left normal n = j r. Vectors are complex numbers,
@@ -21,7 +21,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from judges import (
+from oracle_slider_crank import Jammed, TwoSolutions
+from references import (
     BRANCHES,
     FOLD,
     FORCES,
@@ -34,7 +35,6 @@ from judges import (
     centres,
     components,
     crank_angle,
-    happening,
     joined,
     largest_force,
     linear_solve,
@@ -45,9 +45,9 @@ from judges import (
     random_gravity,
     random_link,
     random_load,
+    scene_parameters,
     turn,
 )
-from oracle_slider_crank import Jammed, TwoSolutions
 
 LINKS = ("crank", "block", "rocker")
 NUMBER = {"crank": 2, "block": 3, "rocker": 4}
@@ -237,14 +237,14 @@ def largest_torque(result: dict, data: InvertedSliderCrankData):
 
 
 def to_scene(data: InvertedSliderCrankData):
-    """The same as the public `linksweep.Scene`."""
+    """Return the public `linksweep.Scene` of these data."""
     import linksweep as ls
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rocker")}
     rest = ("ground", "block_mass", "block_inertia", "offset", "branch", "ground_angle")
     rest += ("block_cg_distance", "block_cg_angle", "friction")
     mechanism = ls.InvertedSliderCrank(**bars, **{name: getattr(data, name) for name in rest})
-    return ls.Scene(mechanism, **happening(data))
+    return ls.Scene(mechanism, **scene_parameters(data))
 
 
 # ---- random scenes -----
@@ -266,7 +266,7 @@ def random_lengths(rng: np.random.Generator, kind: str) -> tuple[float, float, f
         margin = abs(abs(ground - crank) - abs(offset))
         if margin > 0.01 * (crank + ground) and kind_of(crank, ground, offset) == kind:
             return crank, ground, offset
-    raise ValueError(f"no inverted slider-crank of kind {kind!r} found")
+    raise ValueError(f"no inverted slider-crank of kind {kind!r}")
 
 
 def random_data(
@@ -279,7 +279,7 @@ def random_data(
     loads: int | None = None,
     friction: float = 0.0,
 ) -> InvertedSliderCrankData:
-    """A random scene; what is not given is drawn.
+    """Return a random scene; parameters that are left out are drawn.
 
     `scale` [m] is the upper bound of the lengths (drawn from 1e-5 to 1e2), `loads` their number (0 to 4). Loads and
     alpha2 are comparable with the inertial ones, so that no term hides behind another.
@@ -321,14 +321,14 @@ def toggle_margin(data: InvertedSliderCrankData, theta2: float) -> float:
 
 
 def random_theta2(rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1) -> float:
-    """A crank angle [degree] with a toggle margin above the given one."""
+    """Return a crank angle [degree] with a toggle margin above this one."""
     return crank_angle(rng, lambda theta2: toggle_margin(data, theta2) > margin)
 
 
 def random_rubbing_theta2(
     rng: np.random.Generator, data: InvertedSliderCrankData, margin: float = 0.1, jammed: bool = False
 ) -> float:
-    """A crank angle [degree] as `random_theta2`, where the block moves and `wedging` is at least 0.05 away from 1."""
+    """Return a crank angle as `random_theta2`, where the block moves and `wedging` is at least 0.05 away from 1."""
 
     def good(theta2: float) -> bool:
         if toggle_margin(data, theta2) <= margin:

@@ -1,4 +1,4 @@
-"""The independent judge of the slider-crank: one crank angle, Coulomb friction at the guide, 60 digits.
+"""The independent reference solution of the slider-crank: one crank angle, Coulomb friction at the guide, 60 digits.
 
 As in `oracle`, nothing here knows the product. The guide runs along s = (cos g, sin g), at the offset e from the
 crank's pivot A along its left normal n = j s. Vectors are complex numbers, x + jy, from A.
@@ -19,7 +19,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from judges import (
+from oracle import torque_name
+from references import (
     BRANCHES,
     FOLD,
     FORCES,
@@ -33,7 +34,6 @@ from judges import (
     components,
     crank_angle,
     cross,
-    happening,
     joined,
     largest_force,
     linear_solve,
@@ -44,10 +44,10 @@ from judges import (
     random_gravity,
     random_link,
     random_load,
+    scene_parameters,
     turn,
     two_rates,
 )
-from oracle import torque_name
 
 LINKS = ("crank", "rod", "slider")
 NUMBER = {"crank": 2, "rod": 3, "slider": 4}
@@ -173,7 +173,7 @@ def system(data: SliderCrankData, move: Motion, sign: int) -> tuple[list, list]:
 
 
 def hold(data: SliderCrankData, move: Motion, sign: int = 0):
-    """How well the guide's force turns the link without the drive, as a sine times its length; 0: no balance.
+    """Return the arm of the guide's force about the link without the drive, as a sine times its length; 0: no balance.
 
     For sign = 0 without friction: the rod's hold vanishes at a toggle, the crank's where it stands along n.
     """
@@ -260,17 +260,17 @@ def largest_torque(result: dict, data: SliderCrankData):
 
 
 def to_scene(data: SliderCrankData):
-    """The same as the public `linksweep.Scene`."""
+    """Return the public `linksweep.Scene` of these data."""
     import linksweep as ls
 
     bars = {name: ls.Link(**vars(getattr(data, name))) for name in ("crank", "rod")}
     own = ("slider_mass", "offset", "friction", "branch", "slide_angle", "slider_cg_distance", "slider_cg_angle")
     mechanism = ls.SliderCrank(**bars, **{name: getattr(data, name) for name in own})
-    return ls.Scene(mechanism, **happening(data))
+    return ls.Scene(mechanism, **scene_parameters(data))
 
 
 def mirrored(data: SliderCrankData) -> SliderCrankData:
-    """The same seen from behind: x stays, y and every turn change sign."""
+    """Return the machine seen from behind: x stays, y and every rotation change sign."""
 
     def load(one):
         (Fx, Fy), (distance, angle) = one.force, one.at
@@ -297,7 +297,7 @@ def random_lengths(rng: np.random.Generator, kind: str) -> tuple[float, float, f
         spare = rod - crank - abs(offset)
         if abs(spare) > 0.01 * (crank + rod + abs(offset)) and (spare > 0) == (kind == "full_turn"):
             return crank, rod, offset
-    raise ValueError(f"no slider-crank of kind {kind!r} found")
+    raise ValueError(f"no slider-crank of kind {kind!r}")
 
 
 def random_friction(rng: np.random.Generator) -> float:
@@ -315,7 +315,7 @@ def random_data(
     scale: float | None = None,
     loads: int | None = None,
 ) -> SliderCrankData:
-    """A random slider-crank scene; what is not given is drawn.
+    """Return a random slider-crank scene; parameters that are left out are drawn.
 
     `scale` [m] is the upper bound of crank and rod (drawn from 1e-5 to 1e2), `loads` their number (0 to 4).
     Loads and alpha2 are comparable with the inertial ones, so that no term hides behind another.
@@ -362,7 +362,7 @@ def toggle_margin(data: SliderCrankData, theta2: float) -> float:
 def random_theta2(
     rng: np.random.Generator, data: SliderCrankData, margin: float = 0.1, jammed: bool | None = None
 ) -> float:
-    """A crank angle [degree] with a toggle margin above the given one, and `wedging` at least 0.05 away from 1.
+    """Return a crank angle [degree] with a toggle margin above this one, and `wedging` at least 0.05 away from 1.
 
     `jammed` asks for an angle where the slider wedges (True) or does not (False).
     """

@@ -167,7 +167,7 @@ listed = st.recursive(
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(keys, inner, max_size=3)),
     max_leaves=5,
 )
-"""What a TOML file can have in any place."""
+"""Values that a TOML file can have in any place."""
 
 objects = st.sampled_from([
     *(None, 1j, b"8 cm", object(), ..., [], {}, np.array(0.1), np.array([0.1, 0.2]), np.float32(0.1), np.int8(1)),
@@ -181,7 +181,7 @@ objects = st.sampled_from([
     xr.DataArray([0.1, 0.2], {"n": [3, 1]}, "n", attrs={"units": "mm"}),
     xr.DataArray(np.array(["2020-01-01"], "M8[ns]"), dims="n"),
 ])  # fmt: skip
-"""What Python can give besides."""
+"""Values that only Python can pass."""
 
 
 @st.composite

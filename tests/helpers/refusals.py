@@ -1,4 +1,4 @@
-"""A sound scene to spoil, and how a refusal is read."""
+"""Provide a sound scene to spoil, and read the lines of a refusal."""
 
 import re
 from dataclasses import replace
@@ -46,12 +46,12 @@ def scene(**changes) -> ls.Scene:
 
 
 def load(**changes) -> ls.Scene:
-    """The scene with its second load changed."""
+    """Return the scene with its second load changed."""
     return replace(SCENE, loads=[SCENE.loads[0], replace(LOAD, **changes)])
 
 
 def refusal(call, *arguments, **options) -> list[str]:
-    """The lines of a ValueError; what holds for every message is seen to here."""
+    """Return the lines of a ValueError, and check the form that all messages have."""
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         call(*arguments, **options)
     lines = str(refused.value).split("\n")

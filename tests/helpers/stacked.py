@@ -1,11 +1,11 @@
-"""Random designs of the judges as one scene along the dim "design", each on both branches; and alone, to compare."""
+"""Stack the references' random designs into one scene along the dim "design", and compare each with itself alone."""
 
 from dataclasses import fields, replace
 from itertools import product
 
 import numpy as np
 import xarray as xr
-from judges import BRANCHES, LinkData, LoadData
+from references import BRANCHES, LinkData, LoadData
 
 import linksweep as ls
 
@@ -20,7 +20,7 @@ def pairs_over_designs(owners: list, name: str) -> tuple[xr.DataArray, xr.DataAr
 
 
 def stacked(designs: list, mechanism: type, links: tuple[str, ...], *frame: str) -> ls.Scene:
-    """All designs, of a mechanism with these links and these other numbers; their loads are of the same forms."""
+    """Return one scene of all designs: a mechanism with these links and other numbers, and loads of equal forms."""
     numbers = [field.name for field in fields(LinkData)]
     bars = {link: ls.Link(**over_designs([getattr(d, link) for d in designs], *numbers)) for link in links}
     return ls.Scene(
@@ -43,7 +43,7 @@ def stacked_load(loads: list[LoadData]) -> ls.Load:
 
 
 def assert_each_is_as_alone(batch: xr.Dataset, designs: list, to_scene, names: tuple[str, ...]) -> None:
-    """Every design on either branch has the bits in the batch that it has alone."""
+    """Assert that every design on either branch has the bits in the batch that it has alone."""
     for (k, design), branch in product(enumerate(designs), BRANCHES):
         single = ls.sweep(to_scene(replace(design, branch=branch)), batch.theta2, outputs=names)
         for name in (*names, "status"):

@@ -29,7 +29,7 @@ def grid() -> ls.Scene:
 
 
 def sliding() -> ls.Scene:
-    """Where friction wedges the slider for some only, and where other designs do not close."""
+    """Return designs of which friction wedges some, and some do not close."""
     mechanism = replace(ENGINE, friction=over("mu", 0.05, 0.1, 5.0, 9.0), offset=over("aside", 0.0, 0.01, 0.12))
     return ls.Scene(mechanism, omega2=100.0, gravity=(0.0, -9.81))
 
@@ -71,16 +71,16 @@ def many() -> ls.Scene:
     return replace(PRESS, omega2=over("speed", *np.linspace(1.0, 60.0, 60)))
 
 
-def assert_same(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_same(result: xr.Dataset, expected: xr.Dataset) -> None:
     """Everything but the command, and numbers to the bit."""
-    found, expected = found.copy(), expected.copy()
-    assert found.attrs.pop("command").startswith("linksweep.study(scene")
+    result, expected = result.copy(), expected.copy()
+    assert result.attrs.pop("command").startswith("linksweep.study(scene")
     assert expected.attrs.pop("command").startswith("linksweep.peaks(scene")
-    xr.testing.assert_identical(found, expected)
-    assert list(found.variables) == list(expected.variables)
-    assert dict(found.sizes) == dict(expected.sizes)
+    xr.testing.assert_identical(result, expected)
+    assert list(result.variables) == list(expected.variables)
+    assert dict(result.sizes) == dict(expected.sizes)
     for name, values in expected.variables.items():
-        assert values.dtype.kind in "OUT" or found[name].values.tobytes() == values.values.tobytes()
+        assert values.dtype.kind in "OUT" or result[name].values.tobytes() == values.values.tobytes()
 
 
 def flipped(path: Path, byte: int, bit: int = 0) -> None:

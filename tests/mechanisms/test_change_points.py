@@ -6,8 +6,8 @@ mechanism with a change point keeps to its side. At the fold itself the status i
 
 import numpy as np
 import pytest
-from judges import LinkData, largest_force, mp
 from oracle import FourBarData, solve, to_scene
+from references import LinkData, largest_force, mp
 from test_simpler_machines import OPPOSITE_SIDES, heavy_parallelogram
 
 import linksweep as ls
@@ -180,13 +180,13 @@ def test_a_batch_of_both_kinds_has_the_bits_of_single_designs():
     arrays = {name: xr.DataArray(values, dims="design") for name, values in lengths.items()}
     names = ("theta3", "alpha3", "F14x", "T12")
 
-    def found(lengths):
+    def result(lengths):
         links = (ls.Link(lengths[name], 1.0, 0.1, 0.07) for name in LENGTHS[:3])
         return ls.sweep(ls.Scene(ls.FourBar(*links, ground=lengths["ground"]), omega2=3.0), 36, outputs=names)
 
-    batch = found(arrays)
+    batch = result(arrays)
     for k in range(2):
-        alone = found({name: values[k] for name, values in lengths.items()})
+        alone = result({name: values[k] for name, values in lengths.items()})
         for name in names:
             np.testing.assert_array_equal(batch[name].isel(design=k), alone[name])
 

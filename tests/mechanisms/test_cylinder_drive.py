@@ -1,4 +1,4 @@
-"""An inverted slider-crank driven by its own cylinder: by hand, at its dead centres, against loads that say the same.
+"""An inverted slider-crank driven by its own cylinder: by hand, at its dead centres, against equivalent loads.
 
 The random scenes against 60 digits are in `test_inverted_slider_crank`, which takes every drive.
 """
@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import closed_figures, page_hides_nothing, texts  # noqa: F401
-from judges import BRANCHES, LinkData, LoadData, largest_force
 from oracle_inverted_slider_crank import (
     KINDS,
     InvertedSliderCrankData,
@@ -20,6 +19,7 @@ from oracle_inverted_slider_crank import (
     solve,
     to_scene,
 )
+from references import BRANCHES, LinkData, LoadData, largest_force
 
 import linksweep as ls
 from linksweep import plot
@@ -127,28 +127,28 @@ def test_a_cylinder_is_a_pair_of_loads(kind, seed):
     force, s = float(result["cylinder_force"]), float(result["slide"])
     at_pin = float(np.hypot(s, data.offset)), float(np.degrees(np.arctan2(data.offset, s)))
     pair = LoadData("block", (force, 0.0), frame="link"), LoadData("rocker", (-force, 0.0), at_pin, "link")
-    found = ls.sweep(to_scene(replace(data, drive="crank", loads=(*data.loads, *pair))), [theta2])
+    cycle = ls.sweep(to_scene(replace(data, drive="crank", loads=(*data.loads, *pair))), [theta2])
     size = float(largest_force(result))
-    assert abs(found.T12.item()) < 1e-11 * float(largest_torque(result, data))
+    assert abs(cycle.T12.item()) < 1e-11 * float(largest_torque(result, data))
     for name in ("F12x", "F12y", "F32x", "F32y", "F14x", "F14y", "F43n"):
-        assert abs(found[name].item() - float(result[name])) < 1e-11 * size, name
+        assert abs(cycle[name].item() - float(result[name])) < 1e-11 * size, name
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_to_do_where_the_crank_is_driven(kind):
-    """The crank's own torque given as a load: no force in the cylinder at any angle, F43 square to the line."""
+    """The crank's own torque as a load: no force in the cylinder at any angle, F43 square to the line."""
     data, _, _ = random_case(kind, 7)
     by_crank = to_scene(replace(data, drive="crank"))
     theta2 = np.arange(24) * 15.0 + 1.0 + data.ground_angle
     driven = ls.sweep(by_crank, theta2)
     torque = ls.Load("crank", torque=driven.T12.fillna(0.0))
-    found = ls.sweep(replace(by_crank, drive="cylinder", loads=(*by_crank.loads, torque)), theta2)
+    cycle = ls.sweep(replace(by_crank, drive="cylinder", loads=(*by_crank.loads, torque)), theta2)
     size = driven.T12.max() / data.crank.length + abs(driven[PINS].to_dataarray()).max("variable")
-    assert found.status.values.tolist() == driven.status.values.tolist() and np.sum(found.status == 0) > 5
+    assert cycle.status.values.tolist() == driven.status.values.tolist() and np.sum(cycle.status == 0) > 5
     close = abs(driven.slide_velocity / data.omega2 / data.crank.length) > 0.1
     for name in ("cylinder_force", "F43x", "F43y", "F14x"):
         expected = driven.get(name, 0.0)
-        assert float((abs(found[name] - expected) / size).where(close).max()) < 1e-11, name
+        assert float((abs(cycle[name] - expected) / size).where(close).max()) < 1e-11, name
 
 
 # ---- dead centres -----
@@ -160,22 +160,22 @@ def test_nothing_to_do_where_the_crank_is_driven(kind):
 def test_dead_centres_lie_in_line_with_the_ground(ground_angle, offset, branch):
     """Crank 3, ground 4: B is 1 or 7 from D. The block stands still there at any speed, and beside it does not."""
     scene = to_scene(pythagoras(offset=offset, ground_angle=ground_angle, branch=branch))
-    found = ls.check(scene)
-    assert found.dead_centre.values.tolist() == ["nearest", "farthest"]
+    limits = ls.check(scene)
+    assert limits.dead_centre.values.tolist() == ["nearest", "farthest"]
     expected = np.mod([ground_angle, ground_angle + 180.0], 360.0)
-    np.testing.assert_allclose(found.dead_centre_angle, expected, rtol=0.0, atol=1e-12)
-    np.testing.assert_allclose(found.slide_at_dead_centre, np.sqrt([1 - offset**2, 49 - offset**2]), rtol=1e-15)
-    near, far = found.dead_centre_angle.values
+    np.testing.assert_allclose(limits.dead_centre_angle, expected, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(limits.slide_at_dead_centre, np.sqrt([1 - offset**2, 49 - offset**2]), rtol=1e-15)
+    near, far = limits.dead_centre_angle.values
     cycle = ls.sweep(scene, [near, far, near - 1e-3, far + 1e-3])
     assert cycle.status.values.tolist() == [3, 3, 0, 0]
     assert np.isnan(cycle.cylinder_force[:2]).all() and np.isfinite(cycle.cylinder_force[2:]).all()
     kinematics = ls.sweep(replace(scene, drive="crank"), [near, far])
     assert np.all(np.abs(kinematics.slide_velocity) < 1e-14)
-    np.testing.assert_allclose(np.abs(kinematics.slide), found.slide_at_dead_centre, rtol=1e-14)
+    np.testing.assert_allclose(np.abs(kinematics.slide), limits.slide_at_dead_centre, rtol=1e-14)
 
 
 def test_a_dead_centre_out_of_reach():
-    """Where the rocker's line misses B at its nearest, only the farther is one; at a toggle it is the toggle."""
+    """If the rocker's line misses B at its nearest, only the farther is a dead centre; at a toggle it is the toggle."""
     scene = to_scene(pythagoras(offset=2.0))
     assert np.isnan(ls.check(scene).dead_centre_angle.values).tolist() == [True, False]
     assert np.isnan(ls.check(scene).slide_at_dead_centre.values).tolist() == [True, False]
@@ -216,7 +216,7 @@ def test_peaks_know_the_dead_centres(tipper):
     assert lift.cylinder_force_peak.units == "N"
 
 
-# ---- files, command line, plots, the door -----
+# ---- files, command line, plots, input -----
 
 
 def test_files_and_command_line(tipper, tmp_path, capsys):
@@ -232,12 +232,12 @@ def test_files_and_command_line(tipper, tmp_path, capsys):
         )
     capsys.readouterr()
     assert cli.main(["peaks", paths[0]]) == 0
-    said = capsys.readouterr().out
-    assert re.search(r"^cylinder_force_max +inf +N +155\.00°$", said, re.MULTILINE)
+    text = capsys.readouterr().out
+    assert re.search(r"^cylinder_force_max +inf +N +155\.00°$", text, re.MULTILINE)
     assert cli.main(["check", paths[0]]) == 0
-    said = capsys.readouterr().out
-    assert re.search(r"^dead centre angle: +335° \(nearest\), 155° \(farthest\)$", said, re.MULTILINE)
-    assert re.search(r"^slide at dead centre: +0\.2 m \(nearest\), 3\.4 m \(farthest\)$", said, re.MULTILINE)
+    text = capsys.readouterr().out
+    assert re.search(r"^dead centre angle: +335° \(nearest\), 155° \(farthest\)$", text, re.MULTILINE)
+    assert re.search(r"^slide at dead centre: +0\.2 m \(nearest\), 3\.4 m \(farthest\)$", text, re.MULTILINE)
 
 
 def test_plots_say_what_drives(tipper):

@@ -10,8 +10,8 @@ from functools import cache
 import numpy as np
 import pytest
 from documents import PAGE_MATRIX, PAGE_RHS
-from judges import FORCES, LinkData, largest_force, mp
 from oracle import FourBarData, largest_torque, solve
+from references import FORCES, LinkData, largest_force, mp
 
 import linksweep as ls
 

@@ -1,4 +1,4 @@
-"""error_bound: never below the true rounding error of the pin forces, and seldom far above; free unless asked for."""
+"""error_bound: never below the true rounding error of the pin forces, and seldom far above; free unless requested."""
 
 from dataclasses import replace
 
@@ -12,28 +12,28 @@ import linksweep as ls
 from linksweep.engine.trace.plan import plan
 
 COMPONENTS = tuple(f"{pin}{axis}" for pin in ("F12", "F32", "F43", "F14") for axis in "xy")
-JUDGES = {"four-bar": oracle, "slider-crank": oracle_slider_crank}
+REFERENCES = {"four-bar": oracle, "slider-crank": oracle_slider_crank}
 
 
-def true_error(judge, data, theta2: float, cycle) -> float:
+def true_error(reference, data, theta2: float, cycle) -> float:
     """Largest error of a component against 60 digits, relative to the largest component."""
-    exact = judge.solve(data, theta2)
+    exact = reference.solve(data, theta2)
     exact = [exact[name] for name in COMPONENTS]
     errors = [abs(float(cycle[name].values.flat[0]) - value) for name, value in zip(COMPONENTS, exact, strict=True)]
     return float(max(errors) / max(map(abs, exact)))
 
 
 @pytest.mark.parametrize("count", long_but([30, 120], 30))
-@pytest.mark.parametrize("machine", JUDGES)
+@pytest.mark.parametrize("machine", REFERENCES)
 def test_it_holds_and_is_not_far_off(machine, count):
-    judge, rng = JUDGES[machine], np.random.default_rng(51)
+    reference, rng = REFERENCES[machine], np.random.default_rng(51)
     ratios = []
     for _ in range(count):
-        data = judge.random_data(rng)
-        theta2 = judge.random_theta2(rng, data)
-        cycle = ls.sweep(judge.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
+        data = reference.random_data(rng)
+        theta2 = reference.random_theta2(rng, data)
+        cycle = ls.sweep(reference.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
         if int(cycle.status.values.flat[0]) == 0:
-            error, bound = true_error(judge, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
+            error, bound = true_error(reference, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
             assert error <= bound
             ratios.append(bound / max(error, 2.0**-53))
     assert len(ratios) > count * 2 / 3

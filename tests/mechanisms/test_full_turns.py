@@ -1,4 +1,4 @@
-"""An ideal air cycle takes full turns of the crank: what becomes of the designs of a study that have none."""
+"""An ideal air cycle takes full turns of the crank: designs of a study without any have no peaks."""
 
 from dataclasses import replace
 
@@ -31,11 +31,11 @@ def test_a_design_that_does_not_turn_has_no_cycle(cycle, branch, friction, drive
     closes = np.abs(0.11 - 0.04 * np.sin(np.radians(angles))) < 0.14
     assert 0 < closes.sum() < closes.size
     for solver in ("fast", "dense"):
-        found = ls.sweep(study, angles, solver=solver).isel(e=1)
-        meanings = np.array(found.status.attrs["flag_meanings"].split())
-        np.testing.assert_array_equal(meanings[found.status.values], np.where(closes, "no_cycle", "cannot_assemble"))
-        numbers = [name for name in found.data_vars if name != "status" and "theta2" in found[name].dims]
-        assert numbers and all(np.isnan(found[name]).all() for name in numbers)
+        results = ls.sweep(study, angles, solver=solver).isel(e=1)
+        meanings = np.array(results.status.attrs["flag_meanings"].split())
+        np.testing.assert_array_equal(meanings[results.status.values], np.where(closes, "no_cycle", "cannot_assemble"))
+        numbers = [name for name in results.data_vars if name != "status" and "theta2" in results[name].dims]
+        assert numbers and all(np.isnan(results[name]).all() for name in numbers)
     torque = {"crank": "T12", "coupler": "T13"}[drive]
     summaries = [f"{torque}_mean", "F32_rms"] if drive == "crank" else []  # beside dead centres they have no end
     peaks = ls.peaks(study, of=["F12", "F32", "F43", "F14", torque, *summaries]).isel(e=1)
@@ -45,9 +45,9 @@ def test_a_design_that_does_not_turn_has_no_cycle(cycle, branch, friction, drive
 
 def test_other_pressures_need_no_full_turn():
     engine = replace(ENGINE, offset=xr.DataArray([0.0, 0.11], dims="e"))
-    found, one = ls.sweep(scene(7e5, engine), 72).isel(e=1), ls.sweep(scene(7e5, replace(ENGINE, offset=0.11)), 72)
-    assert set(found.status.values) == set(one.status.values) == {0, 1}
-    np.testing.assert_array_equal(found.T12, one.T12)
+    result, one = ls.sweep(scene(7e5, engine), 72).isel(e=1), ls.sweep(scene(7e5, replace(ENGINE, offset=0.11)), 72)
+    assert set(result.status.values) == set(one.status.values) == {0, 1}
+    np.testing.assert_array_equal(result.T12, one.T12)
 
 
 def test_at_the_brink_of_full_turns_each_design_is_whole_or_none():
@@ -56,12 +56,12 @@ def test_at_the_brink_of_full_turns_each_design_is_whole_or_none():
     crank, offset = rng.uniform(0.01, 0.1, (2, 40))
     ulps = np.arange(40) % 9 - 4
     rod = crank + offset + ulps * np.spacing(crank + offset)
-    given = [xr.DataArray(values, dims="design") for values in (crank, rod, offset)]
-    engine = ls.SliderCrank(ls.Link(given[0], 1.0, 0.0), ls.Link(given[1], 1.0, 0.0), 0.5, given[2])
-    found, whole = ls.sweep(scene(OTTO, engine), 24), ls.check(scene(OTTO, engine)).assembly == 0
+    parameters = [xr.DataArray(values, dims="design") for values in (crank, rod, offset)]
+    engine = ls.SliderCrank(ls.Link(parameters[0], 1.0, 0.0), ls.Link(parameters[1], 1.0, 0.0), 0.5, parameters[2])
+    result, whole = ls.sweep(scene(OTTO, engine), 24), ls.check(scene(OTTO, engine)).assembly == 0
     assert 0 < int(whole.sum()) < 40
-    ok = found.status == 0
-    np.testing.assert_array_equal(np.isfinite(found.T12), ok)
+    ok = result.status == 0
+    np.testing.assert_array_equal(np.isfinite(result.T12), ok)
     np.testing.assert_array_equal(ok.any("theta2"), whole)
 
 

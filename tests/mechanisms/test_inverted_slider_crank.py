@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, FORCES, LinkData, LoadData, Unassemblable, largest_force
 from long import long_but
 from oracle_inverted_slider_crank import (
     DRIVES,
@@ -30,6 +29,7 @@ from oracle_inverted_slider_crank import (
     to_scene,
     toggle_margin,
 )
+from references import BRANCHES, FORCES, LinkData, LoadData, Unassemblable, largest_force
 
 import linksweep as ls
 from linksweep.engine import run
@@ -43,7 +43,7 @@ EVERYTHING = (*ANGLES, *RATES, *SLIDE, *COMPONENTS, *ARMS, *FORCES, "F43n", "T43
 
 
 class Case(NamedTuple):
-    """A random scene, crank angles away from its toggles [degree], and the judge's results."""
+    """A random scene, crank angles away from its toggles [degree], and the reference results."""
 
     data: InvertedSliderCrankData
     theta2: list[float]
@@ -53,12 +53,12 @@ class Case(NamedTuple):
 @cache
 def cases() -> list[Case]:
     """144 scenes: eight of each kind, branch and drive."""
-    rng, found = np.random.default_rng(11), []
+    rng, result = np.random.default_rng(11), []
     for kind, branch, drive, _ in product(KINDS, BRANCHES, DRIVES, range(8)):
         data = random_data(rng, kind=kind, branch=branch, drive=drive)
         theta2 = [random_theta2(rng, data) for _ in range(4)]
-        found.append(Case(data, theta2, [solve(data, angle) for angle in theta2]))
-    return found
+        result.append(Case(data, theta2, [solve(data, angle) for angle in theta2]))
+    return result
 
 
 def few_cases() -> list[Case]:
@@ -88,7 +88,7 @@ def worst_error(cycle: xr.Dataset, case: Case, name: str) -> float:
     return float(np.nan_to_num(errors, nan=np.inf).max())
 
 
-# ---- against the judge -----
+# ---- against the reference -----
 
 
 def test_every_number_against_60_digits():
@@ -102,9 +102,9 @@ def test_every_number_against_60_digits():
 def test_dense_solution_against_60_digits():
     for case in few_cases():
         scene = to_scene(case.data)
-        wanted = (*(name for name in COMPONENTS if name[0] == "F"), "F43n", "T43", UNKNOWN[case.data.drive])
-        cycle = ls.sweep(scene, case.theta2, outputs=(*wanted, "cond"), solver="dense")
-        assert max(worst_error(cycle, case, name) for name in wanted) < 1e-11
+        expected = (*(name for name in COMPONENTS if name[0] == "F"), "F43n", "T43", UNKNOWN[case.data.drive])
+        cycle = ls.sweep(scene, case.theta2, outputs=(*expected, "cond"), solver="dense")
+        assert max(worst_error(cycle, case, name) for name in expected) < 1e-11
         page = ls.system(scene, case.theta2)
         assert page.matrix.shape == (4, 9, 9)
         for k, result in enumerate(case.results):
@@ -253,13 +253,13 @@ def swept(data: InvertedSliderCrankData, theta2) -> xr.Dataset:
     return ls.sweep(to_scene(data), theta2, outputs=names(data)).drop_vars("theta2")
 
 
-def assert_bits(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_bits(result: xr.Dataset, expected: xr.Dataset) -> None:
     for name in expected.data_vars:
-        np.testing.assert_array_equal(found[name].values, expected[name].values, err_msg=name)
+        np.testing.assert_array_equal(result[name].values, expected[name].values, err_msg=name)
 
 
 def mirrored(data: InvertedSliderCrankData) -> InvertedSliderCrankData:
-    """The same seen in a mirror along x: the offset changes sides, the branch does not."""
+    """Return the machine in a mirror along x: the offset changes sides, the branch does not."""
 
     def load(one):
         (Fx, Fy), (distance, angle) = one.force, one.at
@@ -334,11 +334,11 @@ def test_both_branches_and_the_line_reversed():
         one = {branch: swept(replace(data, offset=offset, branch=branch), 24) for branch in BRANCHES}
         both = swept(replace(data, offset=offset, branch="both"), 24)
         for branch in BRANCHES:
-            found = both.sel(branch=branch)
+            result = both.sel(branch=branch)
             for name in one[branch].data_vars:
                 expected = one[branch][name].values
                 np.testing.assert_array_equal(
-                    np.broadcast_to(found[name].values, expected.shape), expected, err_msg=name
+                    np.broadcast_to(result[name].values, expected.shape), expected, err_msg=name
                 )
     opened, crossed = (swept(replace(data, offset=0.0, branch=branch), 24) for branch in BRANCHES)
     assert np.allclose(np.abs(opened.theta4 - crossed.theta4), 180.0, rtol=0.0, atol=1e-12)

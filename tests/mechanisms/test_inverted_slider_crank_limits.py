@@ -1,12 +1,12 @@
-"""What check finds of an inverted slider-crank, against sweeps and closed forms; its peaks, example, files and door."""
+"""`check` of an inverted slider-crank against sweeps and closed forms; its peaks, example, files and refusals."""
 
 import re
 
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES
 from oracle_inverted_slider_crank import random_data, to_scene
+from references import BRANCHES
 
 import linksweep as ls
 
@@ -19,10 +19,10 @@ def machine(crank: float, ground: float, offset: float = 0.0, **changes) -> ls.S
 @pytest.mark.parametrize(("crank", "ground", "motion", "swing"), [(0.2, 0.4, 0, 60.0), (0.4, 0.2, 1, np.nan)])
 def test_quick_return_of_two_to_one(crank, ground, motion, swing):
     """asin(1/2) = 30 degrees: the crank's turn divides into 240 and 120."""
-    found = ls.check(machine(crank, ground))
-    assert found.rocker_motion.item() == motion and found.assembly.item() == 0
-    assert abs(found.time_ratio.item() - 2.0) < 1e-14
-    np.testing.assert_allclose(found.swing, swing, rtol=1e-14)
+    limits = ls.check(machine(crank, ground))
+    assert limits.rocker_motion.item() == motion and limits.assembly.item() == 0
+    assert abs(limits.time_ratio.item() - 2.0) < 1e-14
+    np.testing.assert_allclose(limits.swing, swing, rtol=1e-14)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.11, -0.11])
@@ -31,13 +31,13 @@ def test_quick_return_of_two_to_one(crank, ground, motion, swing):
 def test_reversals_swing_and_time_ratio(offset, branch, ground_angle):
     """The rocker turns round where check says, by what it says, and the crank takes that long."""
     scene = machine(0.2, 0.4, offset, branch=branch, ground_angle=ground_angle)
-    found = ls.check(scene)
-    greatest, least = (found.reversal_angle.sel(reversal=f"{branch}_{end}").item() for end in ("greatest", "least"))
+    limits = ls.check(scene)
+    greatest, least = (limits.reversal_angle.sel(reversal=f"{branch}_{end}").item() for end in ("greatest", "least"))
     ends = ls.sweep(scene, [greatest, least], outputs=["theta4", "omega4"])
     assert np.all(np.abs(ends.omega4) < 1e-14)
-    assert abs((ends.theta4[0] - ends.theta4[1]).item() % 360.0 - found.swing.item()) < 1e-12
+    assert abs((ends.theta4[0] - ends.theta4[1]).item() % 360.0 - limits.swing.item()) < 1e-12
     rising = (greatest - least) % 360.0
-    assert abs(max(rising, 360.0 - rising) / min(rising, 360.0 - rising) - found.time_ratio.item()) < 1e-12
+    assert abs(max(rising, 360.0 - rising) / min(rising, 360.0 - rising) - limits.time_ratio.item()) < 1e-12
     middle = ls.sweep(scene, [least + 0.5 * rising], outputs=["omega4"])
     assert middle.omega4.item() > 0.0
 
@@ -57,12 +57,14 @@ def test_time_ratio_of_a_rocker_that_turns_fully(offset):
 @pytest.mark.parametrize("offset", [0.5, -0.5])
 def test_arc_that_can_be_assembled(offset, ground_angle):
     scene = machine(0.4, 0.2, offset, ground_angle=ground_angle)
-    found = ls.check(scene)
-    assert found.assembly.item() == 1 and found.rocker_motion.item() == 2 and found.transmission_angle_min.item() == 0
-    start, end = found.arc_start.item(), found.arc_end.item()
+    limits = ls.check(scene)
+    assert (
+        limits.assembly.item() == 1 and limits.rocker_motion.item() == 2 and limits.transmission_angle_min.item() == 0
+    )
+    start, end = limits.arc_start.item(), limits.arc_end.item()
     cos = (0.4**2 + 0.2**2 - 0.5**2) / (2 * 0.4 * 0.2)
     assert abs(end - start - (360.0 - 2 * np.degrees(np.arccos(cos)))) < 1e-12
-    np.testing.assert_allclose(found.toggle_angle, [start % 360.0, end % 360.0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(limits.toggle_angle, [start % 360.0, end % 360.0], rtol=0, atol=1e-12)
     beside = [start - 1e-6, start + 1e-6, end - 1e-6, end + 1e-6]
     assert ls.sweep(scene, beside).status.values.tolist() == [1, 0, 0, 1]
 
@@ -78,9 +80,9 @@ def test_studies_hold_every_kind():
     """One design that never closes spoils no other, in check as in peaks."""
     offset = xr.DataArray([0.0, 0.25, 0.9], dims="design")
     scene = machine(0.4, 0.2, offset)
-    found, peaks = ls.check(scene), ls.peaks(scene)
-    assert found.assembly.values.tolist() == [0, 1, 2]
-    assert np.isnan(found.arc_start.values[2]).all() and np.isfinite(found.arc_start.values[:2]).all()
+    result, peaks = ls.check(scene), ls.peaks(scene)
+    assert result.assembly.values.tolist() == [0, 1, 2]
+    assert np.isnan(result.arc_start.values[2]).all() and np.isfinite(result.arc_start.values[:2]).all()
     assert np.isfinite(peaks.F43_peak.values[0]) and np.isnan(peaks.F43_peak.values[2])
 
 
@@ -91,7 +93,7 @@ def test_peaks_are_those_of_a_fine_sweep():
     assert abs(peaks.T12_max.item() - cycle.T12.max().item()) < 1e-6 * cycle.T12.max().item()
 
 
-# ---- files and the door -----
+# ---- files and refusals -----
 
 
 def test_example_cuts_on_the_slow_stroke():

@@ -1,4 +1,4 @@
-"""Laws that any four-bar obeys, on random scenes: what is known of one answer from another.
+"""Laws that any four-bar obeys, on random scenes: one result predicts another.
 
 Mirror, rotation, units, superposition, time reversal, statics, and the drive that takes over another's torque.
 """
@@ -21,20 +21,20 @@ from four_bars import (
     random_scenes,
     swept,
 )
-from judges import load_force, load_point, mp, random_load
 from long import long_but
 from oracle import LINKS, NUMBER, FourBarData, motion, random_data, to_scene, toggle_margin
+from references import load_force, load_point, mp, random_load
 
 import linksweep as ls
 
 
-def assert_equal(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_equal(result: xr.Dataset, expected: xr.Dataset) -> None:
     for name in expected.data_vars:
-        np.testing.assert_array_equal(found[name].values, expected[name].values, err_msg=name)
+        np.testing.assert_array_equal(result[name].values, expected[name].values, err_msg=name)
 
 
 def kind(name: str) -> str:
-    """What a quantity is compared with: F12x and F43 alike are F."""
+    """Return the scale that a quantity is compared with: F for F12x and F43 alike."""
     return name.rstrip("xy0123456789")
 
 
@@ -44,16 +44,16 @@ def sizes(cycle: xr.Dataset, data: FourBarData) -> dict[str, np.ndarray | float]
     omega = largest([np.full(5, abs(data.omega2)), abs(cycle.omega3), abs(cycle.omega4)])
     alpha = largest([np.full(5, data.omega2**2 + abs(data.alpha2)), abs(cycle.alpha3), abs(cycle.alpha4)])
     force, longest = largest([cycle[pin] for pin in PINS]), longest_link(data)
-    found = {"theta": 180.0, "transmission_angle": 180.0, "omega": omega, "alpha": alpha, "aG": alpha * longest}
-    found |= {"B": longest, "C": longest, "F": force, "T": force * longest}
-    return found | {"power": force * longest * omega}
+    result = {"theta": 180.0, "transmission_angle": 180.0, "omega": omega, "alpha": alpha, "aG": alpha * longest}
+    result |= {"B": longest, "C": longest, "F": force, "T": force * longest}
+    return result | {"power": force * longest * omega}
 
 
-def assert_close(found: xr.Dataset, expected: xr.Dataset, data: FourBarData) -> None:
+def assert_close(result: xr.Dataset, expected: xr.Dataset, data: FourBarData) -> None:
     """Within 1e-11 of the largest of its kind; `data` is the scene of what is expected."""
     size = sizes(expected, data)
     for name in expected.data_vars:
-        error = np.abs(found[name].values - expected[name].values) / size[kind(name)]
+        error = np.abs(result[name].values - expected[name].values) / size[kind(name)]
         assert np.all(error < 1e-11), (name, error)
 
 
@@ -61,7 +61,7 @@ def assert_close(found: xr.Dataset, expected: xr.Dataset, data: FourBarData) -> 
 
 
 def mirrored(data: FourBarData) -> FourBarData:
-    """The same scene seen in a mirror that lies along x."""
+    """Return the scene in a mirror that lies along x."""
     return replace(
         data,
         **links_changed(data, lambda link: replace(link, cg_angle=-link.cg_angle)),
@@ -92,7 +92,7 @@ def test_mirror(branch, drive, seed):
 
 
 def rotated(data: FourBarData, angle: float) -> FourBarData:
-    """The scene turned about A, with its gravity and the loads that are given in ground axes."""
+    """The scene turned about A, with its gravity and the loads in ground axes."""
 
     def turned(vector):
         z = complex(*vector) * np.exp(1j * np.radians(angle))
@@ -120,7 +120,7 @@ def test_rotation(branch, drive, seed):
 
 
 def rescaled(data: FourBarData, length: float, mass: float, time: float) -> FourBarData:
-    """The same machine in units that are smaller by these factors."""
+    """Return the machine in units that are smaller by these factors."""
     force = mass * length / time**2
     return replace(
         data,
@@ -238,7 +238,7 @@ def test_a_machine_at_rest_is_balanced_by_virtual_work(branch, drive, seed):
         assert float(rest["T"][k]) == pytest.approx(float(-work / turn), rel=0.0, abs=1e-11 * size)
 
 
-# ---- one drive's torque given to another -----
+# ---- one drive's torque as a load of another -----
 
 
 def case_of_two_drives(seed: int, drives: tuple[str, str]) -> tuple[FourBarData, np.ndarray]:
@@ -251,7 +251,7 @@ def case_of_two_drives(seed: int, drives: tuple[str, str]) -> tuple[FourBarData,
 
 
 def as_load(link: str, cycle: xr.Dataset) -> ls.Load:
-    """The torque that was found for a drive, as a known torque on its link."""
+    """Return the computed torque of a drive, as a known torque on its link."""
     return ls.Load(link, torque=cycle[f"T1{NUMBER[link]}"])
 
 
@@ -265,7 +265,7 @@ other_drives = pytest.mark.parametrize(("driver", "other"), [(a, b) for a, b in 
 @other_drives
 @pytest.mark.parametrize("seed", long_but(range(3), 0))
 def test_a_known_torque_leaves_nothing_for_another_drive(driver, other, seed):
-    """The torque found for one drive, given as a load, asks no torque of another, at the same pin forces."""
+    """With the torque of one drive as a load another drive needs no torque, at equal pin forces."""
     data, theta2 = case_of_two_drives(seed, (driver, other))
     scene = to_scene(data)
     driven = ls.sweep(scene, theta2)
@@ -280,13 +280,13 @@ def test_a_known_torque_leaves_nothing_for_another_drive(driver, other, seed):
 
 @other_drives
 def test_two_drives_share_the_work(driver, other):
-    """One drives against a known brake on the other, then the other against what was found: the brake comes back."""
+    """One drives against a known brake on the other, then the other against that torque: the brake comes back."""
     data, theta2 = case_of_two_drives(5, (driver, other))
     scene = to_scene(data)
     free = ls.sweep(scene, theta2)[f"T1{NUMBER[driver]}"]
     brake = free.copy(data=float(abs(free).max()) * np.linspace(-1.0, 1.0, theta2.size))
-    found = ls.sweep(replace(scene, loads=(*scene.loads, ls.Load(other, torque=brake))), theta2)
-    back = ls.sweep(replace(scene, drive=other, loads=(*scene.loads, as_load(driver, found))), theta2)
+    cycle = ls.sweep(replace(scene, loads=(*scene.loads, ls.Load(other, torque=brake))), theta2)
+    back = ls.sweep(replace(scene, drive=other, loads=(*scene.loads, as_load(driver, cycle))), theta2)
     error = abs(back[f"T1{NUMBER[other]}"] - brake).max()
     assert theta2.size == 5
-    assert error < 1e-11 * largest_force(found) * longest_link(data)
+    assert error < 1e-11 * largest_force(cycle) * longest_link(data)

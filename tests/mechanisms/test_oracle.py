@@ -1,4 +1,4 @@
-"""The judge is judged: document 1's numbers, statics by hand, and laws that its own equations do not use."""
+"""The reference is checked: document 1's numbers, statics by hand, and laws that its own equations do not use."""
 
 from dataclasses import replace
 from itertools import product
@@ -7,21 +7,6 @@ import mpmath
 import numpy as np
 import pytest
 from documents import PAGE_MATRIX, PAGE_RHS, PAGE_SOLUTION
-from judges import (
-    BRANCHES,
-    FORCES,
-    DeadPoint,
-    LinkData,
-    LoadData,
-    Unassemblable,
-    cross,
-    largest_force,
-    linear_solve,
-    load_force,
-    load_point,
-    mp,
-    turn,
-)
 from laws import TIGHT, close, derivative, dot, history, kinetic_energy
 from oracle import (
     KINDS,
@@ -37,6 +22,21 @@ from oracle import (
     toggle_margin,
     torque_name,
 )
+from references import (
+    BRANCHES,
+    FORCES,
+    DeadPoint,
+    LinkData,
+    LoadData,
+    Unassemblable,
+    cross,
+    largest_force,
+    linear_solve,
+    load_force,
+    load_point,
+    mp,
+    turn,
+)
 
 # ---- document 1, Matrix Dynamic Analysis for Four Bar -----
 
@@ -49,7 +49,7 @@ def bar(length):
 
 DOCUMENT_1 = FourBarData(bar(0.08), bar(0.12), bar(0.11), ground=0.22, omega2=-20.0, alpha2=100.0, gravity=(0.0, -9.81))
 
-EXACT = {  # from the lengths, to the digits given
+EXACT = {  # from the lengths, to these digits
     "theta3": "20.0105",
     "theta4": "117.4316",
     "omega3": "12.8188",
@@ -199,7 +199,7 @@ def test_parallelogram_turns_as_one():
     assert all(abs(result[name] - value) < TIGHT for name, value in expected.items())
 
 
-def test_what_cannot_be_solved_is_refused():
+def test_singular_positions_are_refused():
     with pytest.raises(Unassemblable):
         solve(DOCUMENT_1, 180.0)  # 8 + 22 cm is more than 12 + 11
     with pytest.raises(Unassemblable):

@@ -1,10 +1,9 @@
-"""The judge of the inverted slider-crank is judged: by finite differences, energy, and the machine as a whole."""
+"""The reference of the inverted slider-crank is checked: by finite differences, energy, and the machine as a whole."""
 
 from itertools import product
 
 import numpy as np
 import pytest
-from judges import BRANCHES, largest_force, load_force, load_point, mp
 from laws import dot, history, kinetic_energy
 from oracle_inverted_slider_crank import (
     DRIVES,
@@ -17,6 +16,7 @@ from oracle_inverted_slider_crank import (
     random_rubbing_theta2,
     solve,
 )
+from references import BRANCHES, largest_force, load_force, load_point, mp
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])

@@ -1,12 +1,12 @@
-"""The judge of the slider-crank is judged: closed forms, statics by hand, the documents' own matrices."""
+"""The reference of the slider-crank is checked: closed forms, statics by hand, the documents' own matrices."""
 
 from dataclasses import replace
 from itertools import product
 
 import pytest
-from judges import DeadPoint, LinkData, LoadData, Unassemblable, linear_solve, mp, turn
 from laws import all_close, close, dot
 from oracle_slider_crank import DRIVES, Jammed, SliderCrankData, TwoSolutions, solve
+from references import DeadPoint, LinkData, LoadData, Unassemblable, linear_solve, mp, turn
 
 # ---- closed forms of the in-line slider-crank -----
 
@@ -141,7 +141,7 @@ THREE_FOUR_FIVE = {"crank": LinkData(4.0, 0.0, 0.0), "rod": LinkData(5.0, 0.0, 0
     ids=["rod (3, -4)", "crank (3, 4)"],
 )
 def test_wedges_from_three_quarters_on(load, data, theta2):
-    """Slope 4/3: past mu = 3/4 the friction of what the free link presses is more than it pushes."""
+    """Slope 4/3: past mu = 3/4 friction of the free link's pressure exceeds its push."""
     data, least = replace(data, loads=(load,)), mp.mpf("1e-25")
     below = solve(replace(data, friction=0.75 - least), theta2)
     assert (below["F14"] > 1e20) == (load is PUSH)  # only the pressing load feels it coming
@@ -150,7 +150,7 @@ def test_wedges_from_three_quarters_on(load, data, theta2):
             solve(replace(data, friction=mu), theta2)
 
 
-def test_what_does_not_wedge():
+def test_friction_below_the_limit_does_not_wedge():
     """Beyond the wedging friction: a slider that stands, and a guide that nothing presses."""
     wedge = engine(**THREE_FOUR_FIVE, friction=2.0)
     assert solve(replace(wedge, omega2=0.0, loads=(PUSH,)), 90.0)["T12"] == 20
@@ -173,7 +173,7 @@ def test_no_friction_at_a_dead_centre(theta2, slide_angle):
     assert close(aside["friction_force"], abs(aside["normal_force"]) / 2 * mp.sign(-aside["v_slider"]), 1)
 
 
-def test_what_cannot_be_solved_is_refused():
+def test_singular_positions_are_refused():
     short = engine(rod=LinkData(2.0, 0.0, 0.0))
     solve(short, 41.0)  # 3 sin t = 2 at 41.8 degree
     for theta2 in (42.0, 90.0, 138.0, 270.0):

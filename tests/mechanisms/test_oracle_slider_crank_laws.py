@@ -1,4 +1,4 @@
-"""The judge of the slider-crank obeys the laws of mechanics, on random scenes."""
+"""The reference of the slider-crank obeys the laws of mechanics, on random scenes."""
 
 from dataclasses import replace
 from itertools import product
@@ -6,7 +6,6 @@ from itertools import product
 import numpy as np
 import oracle
 import pytest
-from judges import BRANCHES, FORCES, LinkData, cross, largest_force, load_force, load_point, mp, turn
 from laws import all_close, close, derivative, dot, history, kinetic_energy
 from oracle import FourBarData, torque_name
 from oracle_slider_crank import (
@@ -26,6 +25,7 @@ from oracle_slider_crank import (
     toggle_margin,
     wedging,
 )
+from references import BRANCHES, FORCES, LinkData, cross, largest_force, load_force, load_point, mp, turn
 
 CASES = [
     pytest.param((seed, kind, branch, drive, rubs), id=f"{kind}-{branch}-{drive}-{'friction' if rubs else 'smooth'}")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from four_bars import links_changed, random_case, swept
-from judges import BRANCHES, LoadData
 from oracle import LINKS, NUMBER
+from references import BRANCHES, LoadData
 
 import linksweep as ls
 
@@ -194,13 +194,13 @@ def slider_crank(theta2: np.ndarray, load: float) -> dict[str, np.ndarray]:
 
 
 def test_a_long_rocker_is_a_slider():
-    """What the arc of the rocker leaves falls with its length."""
+    """The difference that the rocker's arc makes falls with its length."""
     theta2 = np.arange(0.0, 360.0, 7.5)
     expected = slider_crank(theta2, -40.0)
     rockers = (1e2, 1e3, 1e4, 1e5)
     off = [almost_slider(rocker, theta2, -40.0) for rocker in rockers]
     for name, value in expected.items():
-        errors = [np.abs(found[name] - value).max() for found in off]
+        errors = [np.abs(result[name] - value).max() for result in off]
         assert errors[-1] < 1e-4 * max(1.0, abs(value).max()), name
         for before, after in pairwise(errors):
             assert 9.0 < before / after < 11.0, (name, errors)

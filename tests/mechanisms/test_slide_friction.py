@@ -7,7 +7,6 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, FORCES, LoadData
 from oracle_inverted_slider_crank import (
     DRIVES,
     KINDS,
@@ -19,6 +18,7 @@ from oracle_inverted_slider_crank import (
     to_scene,
 )
 from oracle_slider_crank import Jammed, TwoSolutions
+from references import BRANCHES, FORCES, LoadData
 from test_inverted_slider_crank import Case, assert_bits, mirrored, pythagoras, worst_error
 
 import linksweep as ls
@@ -60,9 +60,9 @@ def cycle_velocity(case: Case) -> list[float]:
 def test_the_square_system_against_60_digits():
     for case in cases()[::3]:
         scene = to_scene(case.data)
-        wanted = (*COMPONENTS, "F43n", "T43", UNKNOWN[case.data.drive])
-        dense = ls.sweep(scene, case.theta2, outputs=wanted, solver="dense")
-        assert max(worst_error(dense, case, name) for name in wanted) < 1e-11
+        quantities = (*COMPONENTS, "F43n", "T43", UNKNOWN[case.data.drive])
+        dense = ls.sweep(scene, case.theta2, outputs=quantities, solver="dense")
+        assert max(worst_error(dense, case, name) for name in quantities) < 1e-11
         page = ls.system(scene, case.theta2)
         assert page.matrix.shape == (3, 9, 9)
         for k, result in enumerate(case.results):
@@ -114,9 +114,9 @@ def test_a_driven_rocker_pulls_the_crank_through_friction(pull):
 def test_a_cylinder_overcomes_friction_and_no_pin_feels_it():
     smooth = replace(cases()[0].data, drive="cylinder", friction=0.0)
     theta2 = cases()[0].theta2
-    wanted = (*COMPONENTS, "F43n", "T43")
-    rough = ls.sweep(to_scene(replace(smooth, friction=5.0)), theta2, outputs=(*wanted, "friction_force"))
-    plain = ls.sweep(to_scene(smooth), theta2, outputs=wanted)
+    quantities = (*COMPONENTS, "F43n", "T43")
+    rough = ls.sweep(to_scene(replace(smooth, friction=5.0)), theta2, outputs=(*quantities, "friction_force"))
+    plain = ls.sweep(to_scene(smooth), theta2, outputs=quantities)
     assert not rough.status.any()
     assert_bits(rough, plain)
     force = [ls.sweep(to_scene(replace(smooth, friction=mu)), theta2).cylinder_force for mu in (0.0, 5.0)]
@@ -177,9 +177,10 @@ def test_the_least_friction_that_jams(drive, ground):
 def test_friction_that_vanishes():
     """Forces tend to those without friction in proportion to it."""
     for case in cases()[::5]:
-        wanted = names(case.data)[:-2]
+        quantities = names(case.data)[:-2]
         plain, small, half = (
-            ls.sweep(to_scene(replace(case.data, friction=mu)), case.theta2, outputs=wanted) for mu in (0.0, 1e-6, 5e-7)
+            ls.sweep(to_scene(replace(case.data, friction=mu)), case.theta2, outputs=quantities)
+            for mu in (0.0, 1e-6, 5e-7)
         )
         for force in ("F43n", "F32x", "F14y"):
             size = float(np.abs(plain.F32).max())
@@ -190,9 +191,11 @@ def test_friction_that_vanishes():
 def test_mirror():
     turned = {"F43n", "T43", "T12", "T14", *(name for name in COMPONENTS if name.endswith("y"))}
     for case in cases():
-        wanted = names(case.data)
-        here = ls.sweep(to_scene(case.data), case.theta2, outputs=wanted).drop_vars("theta2")
-        there = ls.sweep(to_scene(mirrored(case.data)), [-x for x in case.theta2], outputs=wanted).drop_vars("theta2")
+        quantities = names(case.data)
+        here = ls.sweep(to_scene(case.data), case.theta2, outputs=quantities).drop_vars("theta2")
+        there = ls.sweep(to_scene(mirrored(case.data)), [-x for x in case.theta2], outputs=quantities).drop_vars(
+            "theta2"
+        )
         assert_bits(there, here.map(lambda x: -x if x.name in turned else x))
 
 
@@ -227,15 +230,15 @@ def working(drive="crank", **changes) -> ls.Scene:
 def test_batched_and_compiled_bits(drive, monkeypatch):
     """Each design alone, all together, by numpy and compiled."""
     mu, offset = xr.DataArray([0.05, 0.1, 0.9, 8.0], dims="mu"), xr.DataArray([0.0, 0.04, -0.2, 0.3], dims="e")
-    wanted = (*COMPONENTS, "F43n", "friction_force", "friction_power", UNKNOWN[drive])
+    quantities = (*COMPONENTS, "F43n", "friction_force", "friction_power", UNKNOWN[drive])
     together = []
     for after in (-1, np.inf):
         monkeypatch.setattr(run, "COMPILE_AFTER", after)
-        together.append(ls.sweep(working(drive, friction=mu, offset=offset), 24, outputs=wanted))
+        together.append(ls.sweep(working(drive, friction=mu, offset=offset), 24, outputs=quantities))
     assert_bits(*together)
     for i, k in product(range(4), range(4)):
-        alone = ls.sweep(working(drive, friction=float(mu[i]), offset=float(offset[k])), 24, outputs=wanted)
-        for name in wanted:
+        alone = ls.sweep(working(drive, friction=float(mu[i]), offset=float(offset[k])), 24, outputs=quantities)
+        for name in quantities:
             batched = together[0][name]
             at = {dim: index for dim, index in (("mu", i), ("e", k)) if dim in batched.dims}
             np.testing.assert_array_equal(*np.broadcast_arrays(batched.isel(at), alone[name]), err_msg=name)

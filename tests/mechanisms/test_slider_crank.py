@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, DeadPoint, LinkData, LoadData, Unassemblable, largest_force, mp
 from long import long_but
 from oracle import torque_name
 from oracle_slider_crank import (
@@ -27,6 +26,7 @@ from oracle_slider_crank import (
     to_scene,
     toggle_margin,
 )
+from references import BRANCHES, DeadPoint, LinkData, LoadData, Unassemblable, largest_force, mp
 from stacked import assert_each_is_as_alone, stacked
 
 import linksweep as ls
@@ -43,7 +43,7 @@ GUIDE = ("T14", "normal_force", "friction_force", "friction_power")
 
 
 class Case(NamedTuple):
-    """A random scene, crank angles [degree], and the judge's results, rounded once."""
+    """A random scene, crank angles [degree], and the reference results, rounded once."""
 
     data: SliderCrankData
     theta2: list[float]
@@ -58,22 +58,22 @@ def all_names(data: SliderCrankData) -> tuple[str, ...]:
     return (*KINEMATICS, *PLACES, *ARMS, *FORCES, *REACTIONS, *GUIDE, torque_name(data), "power")
 
 
-def judged(data: SliderCrankData, theta2: float) -> dict:
-    """The judge names only one of action and reaction, and counts what friction takes as positive."""
+def reference_results(data: SliderCrankData, theta2: float) -> dict:
+    """Return the reference results, which name one of action and reaction and count lost power as positive."""
     result = solve(data, theta2)
     result |= {back: -result[name] if name[3:] else result[name] for back, name in REACTIONS.items()}
     sizes = {"largest_force": largest_force(result), "largest_torque": largest_torque(result, data)}
     return result | sizes | {"friction_power": -result["friction_power"]}
 
 
-def random_case(rng: np.random.Generator, angles: int, **given) -> Case:
+def random_case(rng: np.random.Generator, angles: int, **parameters) -> Case:
     """Angles away from toggles (sines above 0.1), dead centres and the edge of wedging, and not jammed."""
-    data = random_data(rng, **given)
+    data = random_data(rng, **parameters)
     return solved(data, [random_theta2(rng, data, jammed=False) for _ in range(angles)])
 
 
 def solved(data: SliderCrankData, theta2: list[float]) -> Case:
-    results = [judged(data, angle) for angle in theta2]
+    results = [reference_results(data, angle) for angle in theta2]
     return Case(data, theta2, {name: np.array([float(one[name]) for one in results]) for name in results[0]})
 
 
@@ -95,35 +95,35 @@ def scales(case: Case) -> dict[str, np.ndarray]:
     alpha = np.maximum(data.omega2**2 + abs(data.alpha2), np.abs(results["alpha3"]))
     longest = np.full_like(omega, max(data.crank.length, data.rod.length, abs(data.offset)))
     force, torque = results["largest_force"], results["largest_torque"]
-    found = {"theta": np.full_like(omega, 180.0), "transmission": np.full_like(omega, 180.0)}
-    found |= {"omega": omega, "alpha": alpha, "aG": alpha * longest, "B": longest, "C": longest, "R": longest}
-    found |= {"x_": longest, "v_": omega * longest, "a_": alpha * longest}
-    return found | {"F": force, "normal": force, "friction_force": force, "T": torque, "": torque * omega}
+    result = {"theta": np.full_like(omega, 180.0), "transmission": np.full_like(omega, 180.0)}
+    result |= {"omega": omega, "alpha": alpha, "aG": alpha * longest, "B": longest, "C": longest, "R": longest}
+    result |= {"x_": longest, "v_": omega * longest, "a_": alpha * longest}
+    return result | {"F": force, "normal": force, "friction_force": force, "T": torque, "": torque * omega}
 
 
 def errors(cycle: xr.Dataset, names: tuple[str, ...], case: Case) -> dict[str, float]:
     """Largest relative error of each quantity over the angles; NaN counts as infinite."""
-    by_kind, found = scales(case), {}
+    by_kind, result = scales(case), {}
     for name in names:
         size = next(size for start, size in by_kind.items() if name.startswith(start))
         error = np.abs(cycle[name].broadcast_like(cycle.theta2).values - case.results[name]) / size
-        found[name] = float(np.nan_to_num(error, nan=np.inf).max())
-    return found
+        result[name] = float(np.nan_to_num(error, nan=np.inf).max())
+    return result
 
 
 def worst(scenes: list[dict[str, float]]) -> dict[str, float]:
     return {name: max(scene.get(name, 0.0) for scene in scenes) for scene in scenes for name in scene}
 
 
-def test_fast_path_agrees_with_the_judge():
+def test_fast_path_agrees_with_the_reference():
     """Promised: 1e-11. Reached: 2e-13 on 3000 positions, less on these."""
-    found = []
+    result = []
     for case in cases():
         names = all_names(case.data)
         cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=names)
         assert not cycle.status.any(), case
-        found.append(errors(cycle, names, case))
-    assert max(worst(found).values()) < 1e-11, worst(found)
+        result.append(errors(cycle, names, case))
+    assert max(worst(result).values()) < 1e-11, worst(result)
 
 
 def test_power_balances_at_every_sample():
@@ -134,8 +134,8 @@ def test_power_balances_at_every_sample():
         assert (cycle.friction_power <= 0.0).all()
 
 
-def test_dense_path_agrees_with_the_judge_and_with_the_fast_path():
-    found = []
+def test_dense_path_agrees_with_the_reference_and_with_the_fast_path():
+    result = []
     for case in cases()[::2]:
         names = unknowns(case.data)
         dense = ls.sweep(to_scene(case.data), case.theta2, outputs=[*names, "cond"], solver="dense")
@@ -144,19 +144,19 @@ def test_dense_path_agrees_with_the_judge_and_with_the_fast_path():
             size = case.results["largest_torque" if name.startswith("T") else "largest_force"]
             assert (abs(dense[name] - fast[name]) / size <= np.minimum(1e-10, EPS * dense.cond)).all(), (name, case)
         assert any((dense[name] != fast[name]).any() for name in names)  # or one stands in for the other
-        found.append(errors(dense, names, case))
-    assert max(worst(found).values()) < 1e-11, worst(found)
+        result.append(errors(dense, names, case))
+    assert max(worst(result).values()) < 1e-11, worst(result)
 
 
 def near_toggles(data: SliderCrankData) -> list[float]:
     """Crank angles from 1e-2 to 1e-10 degree inside each limit of assembly: the crank's height e ± b, in 60 digits."""
     a, b, e = map(mp.mpf, (data.crank.length, data.rod.length, data.offset))
-    found = []
+    result = []
     for height, inwards in ((e + b, -1), (e - b, 1)):
         if abs(height) < a:
             limit = mp.degrees(mp.asin(height / a))
-            found += [float(limit + inwards * mp.mpf(10) ** -k) for k in (2, 4, 6, 8, 10)]
-    return found
+            result += [float(limit + inwards * mp.mpf(10) ** -k) for k in (2, 4, 6, 8, 10)]
+    return result
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -170,8 +170,8 @@ def test_errors_near_a_toggle_grow_as_they_must(seed):
         mu = toggle_margin(data, angle)
         assert 0.0 < mu < 0.2
         case = solved(data, [angle])
-        found = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, case)
-        for name, error in found.items():
+        cycle = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, case)
+        for name, error in cycle.items():
             allowed = 40.0 * EPS / mu if name in ("theta3", "transmission_angle", "x_slider") else 400.0 * EPS / mu**2
             assert error < allowed, (name, error / EPS, mu)
 
@@ -185,14 +185,14 @@ def test_near_a_fold_no_digit_is_lost(offset, square, miss, branch):
     data = SliderCrankData(*links, 1.0, offset=offset, branch=branch, omega2=3.0, gravity=(0.0, -9.81))
     names = (*KINEMATICS, *unknowns(data))
     assert 0.0 < toggle_margin(data, square) < 2e-3
-    found = errors(ls.sweep(to_scene(data), [square], outputs=names), names, solved(data, [square]))
-    assert max(found.values()) < 1e-13, found
+    cycle = errors(ls.sweep(to_scene(data), [square], outputs=names), names, solved(data, [square]))
+    assert max(cycle.values()) < 1e-13, cycle
 
 
 # ---- status -----
 
 
-def judged_status(data: SliderCrankData, theta2: float) -> str:
+def reference_status(data: SliderCrankData, theta2: float) -> str:
     try:
         solve(data, theta2)
     except Unassemblable:
@@ -243,12 +243,12 @@ def test_status_is_right_at_every_sample(drive):
     batch = ls.sweep(stacked(designs, *BATCH), theta2, outputs=["F14x", "status"])
     seen = set()
     for k, data in enumerate(designs):
-        expected = [judged_status(data, angle) for angle in theta2]
+        expected = [reference_status(data, angle) for angle in theta2]
         alone = ls.sweep(to_scene(data), theta2, outputs=["F14x", "status"])
         together = batch.isel(design=k).sel(branch=data.branch)
-        for found in (alone, together):
-            assert meanings(found.status) == expected, data
-            np.testing.assert_array_equal(np.isnan(found.F14x), [word != "ok" for word in expected])
+        for result in (alone, together):
+            assert meanings(result.status) == expected, data
+            np.testing.assert_array_equal(np.isnan(result.F14x), [word != "ok" for word in expected])
         seen.update(expected)
     assert seen == {"ok", "jammed", "jammed_two_solutions", "cannot_assemble"}
 
@@ -339,7 +339,7 @@ def test_friction_at_the_quarter_turn_by_hand():
 @pytest.mark.parametrize("rod", [3.0, 3.5, 2.5])
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_peak_is_that_of_a_sample_that_moves(rod, drive):
-    """Where friction wedges the slider nothing is known; the crank's own length is a rod that folds over it."""
+    """Nothing is known while friction wedges the slider; the crank's own length is a rod that folds over it."""
     scene = plain(rod=rod, offset=0.25, friction=0.9, drive=drive)
     torque = scene.mechanism.drives[drive]
     assert {"ok", "jammed"} <= set(meanings(ls.sweep(scene, 360, outputs=["status"]).status))

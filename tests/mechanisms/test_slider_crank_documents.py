@@ -1,4 +1,4 @@
-"""The slider-crank systems of documents 1 and 3, misprints corrected, laid beside `ls.system`.
+"""The slider-crank systems of documents 1 and 3, misprints corrected, compared with `ls.system`.
 
 Expected entries come from the in-line slider-crank's closed form, differentiated in 60 digits.
 """
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from judges import mp
+from references import mp
 
 import linksweep as ls
 
@@ -90,8 +90,8 @@ def page_of_document_1(at: Motion, P: float, friction: float, sign: float) -> tu
 def solved_with_the_right_sign(at: Motion, P: float, friction: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The page's matrix, right side and solution for the sign of F14y that its own solution has."""
     tried = [(sign, *page_of_document_1(at, P, friction, sign)) for sign in (1.0, -1.0)]
-    found = [(matrix, rhs, np.linalg.solve(matrix, rhs)) for _, matrix, rhs in tried]
-    (right,) = [page for (sign, *_), page in zip(tried, found, strict=True) if page[2][7] * sign > 0]
+    result = [(matrix, rhs, np.linalg.solve(matrix, rhs)) for _, matrix, rhs in tried]
+    (right,) = [page for (sign, *_), page in zip(tried, result, strict=True) if page[2][7] * sign > 0]
     return right
 
 
@@ -123,7 +123,7 @@ def test_both_signs_of_the_guides_force_occur_on_these_pages():
 
 
 def document_3(T12: float) -> ls.Scene:
-    """T12 known, T13 on the rod to be found; crank and rod with their centres of gravity in the middle."""
+    """T12 known, T13 on the rod unknown; crank and rod with their centres of gravity in the middle."""
     crank, rod = ls.Link(AB, 3.0, J2, cg_distance=AB / 2), ls.Link(BC, MASS3, J3, cg_distance=BG3)
     return ls.Scene(
         ls.SliderCrank(crank, rod, MASS4), OMEGA2, ALPHA2, drive="coupler", loads=[ls.Load("crank", torque=T12)]

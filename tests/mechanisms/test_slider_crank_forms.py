@@ -1,14 +1,14 @@
-"""The same slider-crank said in another way: from behind, turned, in other units, in a file, with P in any form."""
+"""A slider-crank has one answer: from behind, turned, in other units, from a file, with P in any form."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, LinkData, LoadData
 from long import long_but
 from oracle import torque_name
 from oracle_slider_crank import DRIVES, SliderCrankData, mirrored, random_data, random_theta2, to_scene
+from references import BRANCHES, LinkData, LoadData
 
 import linksweep as ls
 from linksweep.engine import run
@@ -26,9 +26,9 @@ random_scenes = pytest.mark.parametrize(
 )
 
 
-def random_case(branch: str, drive: str, seed: int, **given) -> tuple[SliderCrankData, np.ndarray]:
+def random_case(branch: str, drive: str, seed: int, **parameters) -> tuple[SliderCrankData, np.ndarray]:
     rng = np.random.default_rng(seed)
-    data = random_data(rng, branch=branch, drive=drive, **({"friction": 0.25} | given))
+    data = random_data(rng, branch=branch, drive=drive, **({"friction": 0.25} | parameters))
     return data, np.array([random_theta2(rng, data, jammed=False) for _ in range(4)])
 
 
@@ -40,9 +40,9 @@ def swept(data: SliderCrankData, theta2: np.ndarray) -> xr.Dataset:
     return cycle.drop_vars(("status", "theta2")).rename({torque: "T"}).broadcast_like(cycle.status)
 
 
-def assert_equal(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_equal(result: xr.Dataset, expected: xr.Dataset) -> None:
     for name in expected:
-        np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+        np.testing.assert_array_equal(result[name], expected[name], err_msg=name)
 
 
 @random_scenes
@@ -72,7 +72,7 @@ def test_time_reversal(branch, drive, seed):
 
 
 def rescaled(data: SliderCrankData, length: float, mass: float, time: float) -> SliderCrankData:
-    """The same machine in units that are smaller by these factors."""
+    """Return the machine in units that are smaller by these factors."""
     force = mass * length / time**2
 
     def link(one: LinkData) -> LinkData:
@@ -123,7 +123,7 @@ def test_rotation(branch, drive, seed):
 
     loads = tuple(replace(one, force=turned(one.force)) if one.frame == "ground" else one for one in data.loads)
     changed = replace(data, slide_angle=data.slide_angle + angle, gravity=turned(data.gravity), loads=loads)
-    expected, found = swept(data, theta2), swept(changed, theta2 + angle)
+    expected, result = swept(data, theta2), swept(changed, theta2 + angle)
     expected["theta3"] = (expected.theta3 + angle + 180.0) % 360.0 - 180.0
     for vector in ("F12", "F32", "F43", "F14", "C", "aG3"):
         z = (expected[f"{vector}x"] + 1j * expected[f"{vector}y"]) * unit
@@ -133,7 +133,7 @@ def test_rotation(branch, drive, seed):
         size = force if name in (*FORCES, "F12", "F43", "normal_force", "friction_force") else abs(expected[name]).max()
         size = max(abs(expected.aG3x).max(), abs(expected.aG3y).max()) if name.startswith("aG") else size
         size = max(abs(expected.Cx).max(), abs(expected.Cy).max()) if name.startswith("C") else size
-        np.testing.assert_allclose(found[name], expected[name], rtol=1e-10, atol=1e-11 * float(size), err_msg=name)
+        np.testing.assert_allclose(result[name], expected[name], rtol=1e-10, atol=1e-11 * float(size), err_msg=name)
 
 
 # ---- the external force P -----
@@ -194,8 +194,8 @@ def test_friction_is_computed_beside_what_it_cannot_change():
     """Ten coefficients share the kinematics and the frictionless forces of one geometry."""
     coefficients = xr.DataArray(np.linspace(0.0, 0.5, 10), dims="mu")
     scene = engine(friction=coefficients)
-    found = planned(scene, *scene.mechanism.unknowns("crank"))
-    assert found.operations("mu", "theta2").total() < 0.4 * found.operations("theta2").total()
+    result = planned(scene, *scene.mechanism.unknowns("crank"))
+    assert result.operations("mu", "theta2").total() < 0.4 * result.operations("theta2").total()
     cycle = ls.sweep(scene, 36)
     assert all(cycle[name].dims == ("theta2",) for name in KINEMATICS)
     for k, mu in enumerate(coefficients.values):

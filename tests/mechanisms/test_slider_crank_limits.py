@@ -1,10 +1,10 @@
-"""Where a slider-crank closes and where friction wedges it, and what it tends to: no friction, an endless rocker."""
+"""Angles at which a slider-crank closes or friction wedges it, and its limits: no friction, an endless rocker."""
 
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, log_uniform, mp
 from oracle_slider_crank import KINDS, random_lengths
+from references import BRANCHES, log_uniform, mp
 
 import linksweep as ls
 
@@ -52,21 +52,21 @@ def where_the_rod_stands_square(lengths: np.ndarray, slide_angle: float) -> list
     In 60 digits; NaN where the crank does not reach so high.
     """
     a, b, e = map(mp.mpf, lengths.tolist())
-    found = []
+    result = []
     for height in (e + b, e - b):
         here = float(mp.degrees(mp.asin(height / a))) if abs(height) < a else np.nan
-        found.append([slide_angle + here, slide_angle + 180.0 - here])
-    (upper, upper_beyond), (lower, lower_beyond) = found
+        result.append([slide_angle + here, slide_angle + 180.0 - here])
+    (upper, upper_beyond), (lower, lower_beyond) = result
     return [upper, upper_beyond, lower_beyond, lower]
 
 
 def test_toggles_and_arcs_against_60_digits():
     designs, slide_angle, _ = random_designs(2, each=20)
-    found = ls.check(batch(designs, slide_angle=slide_angle))
-    assert found.side.values.tolist() == SIDES
+    limits = ls.check(batch(designs, slide_angle=slide_angle))
+    assert limits.side.values.tolist() == SIDES
     seen = set()
     for k, lengths in enumerate(designs):
-        expected, one = np.array(where_the_rod_stands_square(lengths, slide_angle[k])), found.isel(design=k)
+        expected, one = np.array(where_the_rod_stands_square(lengths, slide_angle[k])), limits.isel(design=k)
         np.testing.assert_array_equal(np.isnan(one.toggle_angle), np.isnan(expected))
         known = expected[np.isfinite(expected)]
         toggles = one.toggle_angle.values[np.isfinite(expected)]
@@ -83,9 +83,9 @@ def test_toggles_and_arcs_against_60_digits():
 def test_closes_on_its_arcs_and_nowhere_else():
     """The sweep's status, just inside and just outside the ends of each arc and in its middle."""
     designs, slide_angle, _ = random_designs(3, each=8)
-    found = ls.check(batch(designs, slide_angle=slide_angle))
+    limits = ls.check(batch(designs, slide_angle=slide_angle))
     for k, lengths in enumerate(designs):
-        one, scene = found.isel(design=k), bare(lengths, slide_angle=float(slide_angle[k]))
+        one, scene = limits.isel(design=k), bare(lengths, slide_angle=float(slide_angle[k]))
         for start, end in zip(one.arc_start.values, one.arc_end.values, strict=True):
             if np.isfinite(start):
                 assert 0.0 <= start < 360.0 and start < end <= start + 360.0
@@ -99,20 +99,20 @@ def test_closes_on_its_arcs_and_nowhere_else():
 @pytest.mark.parametrize(("slide_angle", "upper", "lower"), [(0.0, 210.0, 330.0), (60.0, 270.0, 30.0)])
 def test_a_rod_shorter_than_crank_and_offset_by_hand(slide_angle, upper, lower):
     """Crank 2, rod 2, guide 1 m up: the crank pin may hang 1 m below A, at 30 degree, and no lower."""
-    found = ls.check(bare((2.0, 2.0, 1.0), slide_angle=slide_angle))
-    assert words(found.assembly) == ["partly"]
-    np.testing.assert_allclose(found.toggle_angle, [np.nan, np.nan, upper, lower], rtol=1e-14)
-    np.testing.assert_allclose(found.arc_start, [lower, np.nan], rtol=1e-14)
-    np.testing.assert_allclose(found.arc_end, [lower + 240.0, np.nan], rtol=1e-14)
-    assert found.transmission_angle_min == found.friction_to_jam == 0.0
+    limits = ls.check(bare((2.0, 2.0, 1.0), slide_angle=slide_angle))
+    assert words(limits.assembly) == ["partly"]
+    np.testing.assert_allclose(limits.toggle_angle, [np.nan, np.nan, upper, lower], rtol=1e-14)
+    np.testing.assert_allclose(limits.arc_start, [lower, np.nan], rtol=1e-14)
+    np.testing.assert_allclose(limits.arc_end, [lower + 240.0, np.nan], rtol=1e-14)
+    assert limits.transmission_angle_min == limits.friction_to_jam == 0.0
 
 
 def test_one_that_never_closes_spoils_no_other():
     designs = np.array([[1.0, 3.0, 0.5], [1.0, 2.0, 3.5], [1.0, 2.0, -3.5]])
-    found = ls.check(batch(designs, friction=np.full(3, 0.5)))
-    assert words(found.assembly) == ["everywhere", "never", "never"]
+    limits = ls.check(batch(designs, friction=np.full(3, 0.5)))
+    assert words(limits.assembly) == ["everywhere", "never", "never"]
     for name in ("arc_start", "arc_end", "toggle_angle", "jam_angle", "transmission_angle_min", "friction_to_jam"):
-        assert np.isnan(found[name].values[1:]).all(), name
+        assert np.isnan(limits[name].values[1:]).all(), name
     status = ls.sweep(batch(designs), 90, outputs=["status"]).status
     assert [set(words(one)) for one in status] == [{"ok"}, {"cannot_assemble"}, {"cannot_assemble"}]
     with pytest.raises(ValueError, match=r"offset = -3\.5 m is 0\.5 m beyond the reach"):
@@ -139,10 +139,10 @@ def edges_of_wedging(scene: ls.Scene) -> list[float]:
 @pytest.mark.parametrize("branch", BRANCHES)
 def test_jam_angles_are_where_the_status_turns(branch):
     designs, slide_angle, friction = random_designs(4, each=12)
-    found = ls.check(batch(designs, slide_angle=slide_angle, friction=friction))
+    limits = ls.check(batch(designs, slide_angle=slide_angle, friction=friction))
     counts = set()
     for k, lengths in enumerate(designs):
-        one = found.jam_angle.isel(design=k).values
+        one = limits.jam_angle.isel(design=k).values
         scene = bare(lengths, slide_angle=float(slide_angle[k]), friction=float(friction[k]), branch=branch)
         edges, angles = edges_of_wedging(scene), one[np.isfinite(one)]
         assert len(angles) == len(edges)
@@ -154,28 +154,28 @@ def test_jam_angles_are_where_the_status_turns(branch):
 def test_jam_angles_against_60_digits():
     """μ·|tan ψ| = 1: the crank's height over the guide is then b/√(1 + μ²)."""
     designs, slide_angle, friction = random_designs(5, each=12)
-    found = ls.check(batch(designs, slide_angle=slide_angle, friction=friction)).jam_angle.values
+    limits = ls.check(batch(designs, slide_angle=slide_angle, friction=friction)).jam_angle.values
     for k, (a, b, e) in enumerate(designs.tolist()):
         short = np.array([a, float(b / mp.sqrt(1 + mp.mpf(friction[k]) ** 2)), e])
         expected = np.array(where_the_rod_stands_square(short, slide_angle[k]))
         expected[:] = expected if friction[k] else np.nan
-        np.testing.assert_array_equal(np.isnan(found[k]), np.isnan(expected))
+        np.testing.assert_array_equal(np.isnan(limits[k]), np.isnan(expected))
         finite = np.isfinite(expected)
         flat = abs(np.cos(np.radians(expected - slide_angle[k])))  # 0 where the crank just reaches so high
-        assert (apart(found[k], expected) * flat < 1e-10)[finite].all()
+        assert (apart(limits[k], expected) * flat < 1e-10)[finite].all()
 
 
 def test_the_friction_that_jams():
     """A little less jams at no angle, a little more at the crank's worst, square to the guide."""
     designs, slide_angle, _ = random_designs(6, each=10)
-    found = ls.check(batch(designs, slide_angle=slide_angle))
+    limits = ls.check(batch(designs, slide_angle=slide_angle))
     for k, lengths in enumerate(designs):
-        least = float(found.friction_to_jam[k])
-        assert (least == 0.0) == (found.assembly[k] != 0)
+        least = float(limits.friction_to_jam[k])
+        assert (least == 0.0) == (limits.assembly[k] != 0)
         if least:
             square, scene = slide_angle[k] + np.array([90.0, 270.0]), bare(lengths, slide_angle=float(slide_angle[k]))
             flattest = ls.sweep(scene, square, outputs=["transmission_angle"]).transmission_angle.min().item()
-            assert found.transmission_angle_min[k].item() == pytest.approx(flattest, rel=1e-10)
+            assert limits.transmission_angle_min[k].item() == pytest.approx(flattest, rel=1e-10)
             assert least == pytest.approx(np.tan(np.radians(flattest)), rel=1e-10)
             angles = np.concatenate([square, np.linspace(0, 360, 97)])
             for share, jams in ((1 - 1e-9, False), (1 + 1e-9, True)):
@@ -187,10 +187,10 @@ def test_the_friction_that_jams():
 
 def test_findings_have_only_the_dims_of_their_numbers():
     friction = xr.DataArray([0.0, 0.8, 5.0], {"mu": [0.0, 0.8, 5.0]}, "mu")
-    found = ls.check(bare((1.0, 3.0, 0.2), friction=friction))
-    assert found.assembly.dims == () and found.toggle_angle.dims == ("side",) and found.arc_start.dims == ("arc",)
-    assert found.jam_angle.dims == ("mu", "side")
-    assert np.isnan(found.jam_angle[:2]).all() and np.isfinite(found.jam_angle.sel(mu=5.0)).all()
+    limits = ls.check(bare((1.0, 3.0, 0.2), friction=friction))
+    assert limits.assembly.dims == () and limits.toggle_angle.dims == ("side",) and limits.arc_start.dims == ("arc",)
+    assert limits.jam_angle.dims == ("mu", "side")
+    assert np.isnan(limits.jam_angle[:2]).all() and np.isfinite(limits.jam_angle.sel(mu=5.0)).all()
 
 
 # ---- what it tends to -----
@@ -243,8 +243,8 @@ def test_a_four_bar_with_an_endless_rocker_is_a_slider_crank(branch):
         ground = {"ground": abs(D), "ground_angle": float(np.degrees(np.angle(D))), "branch": branch}
         bars = ls.FourBar(crank, rod, rocker, **ground)
         four_bar = ls.Scene(bars, 40.0, -90.0, (0.4, -9.81), loads("coupler", "rocker", at=R))
-        found = ls.sweep(four_bar, MOVING, outputs=names)
-        differences.append({name: abs(found[name] - limit[name]).max().item() for name in names})
+        cycle = ls.sweep(four_bar, MOVING, outputs=names)
+        differences.append({name: abs(cycle[name] - limit[name]).max().item() for name in names})
     near, nearer, nearest = differences
     sizes = {name: abs(limit[name]).max().item() for name in names} | {"F14x": abs(limit.F14y).max().item()}
     assert max(nearest[name] / sizes[name] for name in names) < 1e-4

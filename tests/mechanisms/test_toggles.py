@@ -12,8 +12,8 @@ import numpy as np
 import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
-from judges import LinkData, largest_force, mp
 from oracle import FourBarData, random_data, solve, to_scene
+from references import LinkData, largest_force, mp
 
 import linksweep as ls
 from linksweep.base.degrees import cos_sin_low_words
@@ -39,7 +39,7 @@ def force_error(data, angles: list[float], solve=solve, to_scene=to_scene, names
 
 
 def near(cosine, middle: float, inwards: int, away: list[float] = AWAY) -> Iterator[float]:
-    """Angles [degree] inside both toggles at which the crank's cosine from the middle is that given, if it has any."""
+    """Return angles [degree] inside both toggles at which the crank's cosine from the middle has this value, if any."""
     if abs(cosine) < 1:
         toggle = mp.acos(cosine)
         for side in (1, -1):
@@ -127,7 +127,7 @@ def test_cosines_and_sines_with_their_rests_against_60_digits():
             assert abs(rest) <= 0.51 * np.spacing(abs(high)), angle
 
 
-def test_what_a_cosine_lacks_of_one_is_known_to_the_last_digit():
+def test_one_minus_a_cosine_is_known_to_the_last_digit():
     for angle in 10.0 ** np.linspace(-12.0, 1.5, 60):
         cos, _, rest, _ = cos_sin_low_words(float(angle))
         lacks = 1 - mp.cospi(mp.mpf(float(angle)) / 180)
@@ -197,7 +197,7 @@ def test_a_difference_that_cancels_keeps_its_digits():
 
 @pytest.mark.parametrize("length", [1e-160, 1e-200, 1e-300, 1e-310])
 @pytest.mark.parametrize("role", ["crank", "ground"])
-def test_lengths_whose_squares_vanish_are_told_as_toggles(role, length):
+def test_lengths_whose_squares_underflow_are_toggles(role, length):
     scene = ls.Scene(replace(ls.example("press").mechanism, **too_short(role, length)), omega2=30.0)
     cycle = ls.sweep(scene, 4)
     assert cycle.status.attrs["flag_meanings"].split()[2] == "toggle"
@@ -216,7 +216,7 @@ def test_a_rod_beyond_all_sizes(length):
     assert (cycle.status != 0).all() and int(ls.peaks(ls.Scene(engine, 30.0)).status) != 0
 
 
-def test_what_follows_from_sound_numbers_must_be_one():
+def test_a_derived_number_that_overflows_is_refused():
     bar = ls.Bar(1e120, 0.02, 0.02, 7750.0)
     with pytest.raises(ValueError, match=r"^rod: its moment of inertia is more than a number can hold"):
         ls.SliderCrank(ls.Link(0.05, 0.2, 1e-4), bar, slider_mass=0.5)
@@ -228,5 +228,5 @@ def test_what_follows_from_sound_numbers_must_be_one():
 def test_a_machine_that_closes_at_one_angle_only():
     """Coupler and rocker reach the crank's end where it points to D, and there only: a toggle, without a warning."""
     links = (ls.Link(length, 1.0, 0.01) for length in (0.25, 0.125, 0.125))
-    found = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=30.0))
-    assert np.isnan(found.F32_peak) and int(found.status) == 1
+    peaks = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=30.0))
+    assert np.isnan(peaks.F32_peak) and int(peaks.status) == 1

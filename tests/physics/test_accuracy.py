@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, LinkData, LoadData, largest_force, mp
 from long import long_but
 from oracle import (
     KINDS,
@@ -28,6 +27,7 @@ from oracle import (
     toggle_margin,
     torque_name,
 )
+from references import BRANCHES, LinkData, LoadData, largest_force, mp
 from stacked import assert_each_is_as_alone, stacked
 
 import linksweep as ls
@@ -44,7 +44,7 @@ REACTIONS = {f"F{name[2]}{name[1]}{name[3:]}": name for name in FORCES}
 
 
 class Case(NamedTuple):
-    """A random scene, crank angles away from its toggles [degree], and the judge's results, rounded once."""
+    """A random scene, crank angles away from its toggles [degree], and the reference results, rounded once."""
 
     data: FourBarData
     theta2: list[float]
@@ -60,7 +60,7 @@ def all_names(data: FourBarData) -> tuple[str, ...]:
 
 
 def solved(data: FourBarData, theta2: list[float]) -> Case:
-    """The judge's results; it names only one of action and reaction."""
+    """Return the reference results, which name only one of action and reaction."""
     results = [solve(data, angle) for angle in theta2]
     both = [
         result
@@ -71,8 +71,8 @@ def solved(data: FourBarData, theta2: list[float]) -> Case:
     return Case(data, theta2, {name: np.array([float(one[name]) for one in both]) for name in both[0]})
 
 
-def random_case(rng: np.random.Generator, angles: int, **given) -> Case:
-    data = random_data(rng, **given)
+def random_case(rng: np.random.Generator, angles: int, **parameters) -> Case:
+    data = random_data(rng, **parameters)
     return solved(data, [random_theta2(rng, data) for _ in range(angles)])
 
 
@@ -94,40 +94,40 @@ def scales(data: FourBarData, results: dict[str, np.ndarray]) -> dict[str, np.nd
     alpha = largest(data.omega2**2 + abs(data.alpha2), results["alpha3"], results["alpha4"])
     longest = max(data.ground, *(getattr(data, link).length for link in LINKS))
     angle = np.full_like(omega, 180.0)
-    found = {"theta": angle, "transmission": angle, "omega": omega, "alpha": alpha, "aG": alpha * longest}
-    found |= {"B": np.full_like(omega, longest), "C": np.full_like(omega, longest), "R": np.full_like(omega, longest)}
-    found |= {"F": results["largest_force"], "T": results["largest_torque"]}
-    return found | {"power": results["largest_torque"] * omega}
+    result = {"theta": angle, "transmission": angle, "omega": omega, "alpha": alpha, "aG": alpha * longest}
+    result |= {"B": np.full_like(omega, longest), "C": np.full_like(omega, longest), "R": np.full_like(omega, longest)}
+    result |= {"F": results["largest_force"], "T": results["largest_torque"]}
+    return result | {"power": results["largest_torque"] * omega}
 
 
 def errors(cycle: xr.Dataset, names: tuple[str, ...], case: Case) -> dict[str, float]:
     """Largest relative error of each quantity over the angles; NaN counts as infinite."""
     by_kind = scales(case.data, case.results)
-    found = {}
+    result = {}
     for name in names:
         kind = next(size for start, size in by_kind.items() if name.startswith(start))
         error = np.abs(cycle[name].broadcast_like(cycle.theta2).values - case.results[name]) / kind
-        found[name] = float(np.nan_to_num(error, nan=np.inf).max())
-    return found
+        result[name] = float(np.nan_to_num(error, nan=np.inf).max())
+    return result
 
 
 def worst(scenes: list[dict[str, float]]) -> dict[str, float]:
     """Largest over the scenes."""
-    found: dict[str, float] = {}
+    result: dict[str, float] = {}
     for name, error in (item for scene in scenes for item in scene.items()):
-        found[name] = max(found.get(name, 0.0), error)
-    return found
+        result[name] = max(result.get(name, 0.0), error)
+    return result
 
 
-def test_fast_path_agrees_with_the_judge():
+def test_fast_path_agrees_with_the_reference():
     """Promised: 1e-11, away from toggles (sin μ > 0.1). Reached: 2e-12 on 19 000 positions, less on these."""
-    found = []
+    result = []
     for case in cases():
         names = all_names(case.data)
         cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=names)
         assert not cycle.status.any(), case
-        found.append(errors(cycle, names, case))
-    assert max(worst(found).values()) < 1e-11, worst(found)
+        result.append(errors(cycle, names, case))
+    assert max(worst(result).values()) < 1e-11, worst(result)
 
 
 def test_power_balances_at_every_sample():
@@ -137,9 +137,9 @@ def test_power_balances_at_every_sample():
         assert abs(cycle.power_residual).max() < 1e-13, case
 
 
-def test_dense_path_agrees_with_the_judge_and_with_the_fast_path():
+def test_dense_path_agrees_with_the_reference_and_with_the_fast_path():
     """The 9×9 by partial pivoting may err by eps·cond, where the fast path may not."""
-    found = []
+    result = []
     for case in cases()[1::3]:
         names = unknowns(case.data)
         dense = ls.sweep(to_scene(case.data), case.theta2, outputs=[*names, "cond"], solver="dense")
@@ -148,8 +148,8 @@ def test_dense_path_agrees_with_the_judge_and_with_the_fast_path():
         for name in names:
             size = case.results["largest_torque" if name.startswith("T") else "largest_force"]
             assert (abs(dense[name] - fast[name]) / size <= allowed).all(), (name, case)
-        found.append(errors(dense, names, case))
-    assert max(worst(found).values()) < 1e-11, worst(found)
+        result.append(errors(dense, names, case))
+    assert max(worst(result).values()) < 1e-11, worst(result)
 
 
 def test_fast_and_dense_paths_are_two():
@@ -165,13 +165,13 @@ def test_fast_and_dense_paths_are_two():
 def near_toggles(data: FourBarData) -> list[float]:
     """Crank angles from 1e-2 to 1e-10 degree inside each limit of assembly, by the law of cosines."""
     a, b, c, d = map(mp.mpf, (data.crank.length, data.coupler.length, data.rocker.length, data.ground))
-    found = []
+    result = []
     for diagonal, inwards in ((b + c, -1), (abs(b - c), 1)):
         cosine = (a**2 + d**2 - diagonal**2) / (2 * a * d)
         if abs(cosine) < 1:
             limit = mp.degrees(mp.acos(cosine))
-            found += [float(limit + inwards * mp.mpf(10) ** -k) for k in (2, 4, 6, 8, 10)]
-    return found
+            result += [float(limit + inwards * mp.mpf(10) ** -k) for k in (2, 4, 6, 8, 10)]
+    return result
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -187,8 +187,8 @@ def test_errors_near_a_toggle_grow_as_they_must(seed):
     for angle in near_toggles(data):
         mu = toggle_margin(data, angle)
         assert 0.0 < mu < 0.2
-        found = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, solved(data, [angle]))
-        for name, error in found.items():
+        cycle = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, solved(data, [angle]))
+        for name, error in cycle.items():
             allowed = 20.0 * EPS / mu if name.startswith("theta") else 400.0 * EPS / mu**2
             assert error < allowed, (name, error / EPS, mu)
 
@@ -202,15 +202,15 @@ def test_near_a_change_point_no_digit_is_lost(ground, sign, flat, miss, branch):
     data = FourBarData(*links, ground=ground + sign * miss, branch=branch, omega2=3.0, gravity=(0.0, -9.81))
     names = (*KINEMATICS, *unknowns(data))
     assert toggle_margin(data, flat[0]) < 2e-3
-    found = errors(ls.sweep(to_scene(data), flat, outputs=names), names, solved(data, flat))
-    assert max(found.values()) < 1e-13, found
+    cycle = errors(ls.sweep(to_scene(data), flat, outputs=names), names, solved(data, flat))
+    assert max(cycle.values()) < 1e-13, cycle
 
 
 def norm_1(matrix):
     return max(mp.fsum(abs(matrix[i, j]) for i in range(matrix.rows)) for j in range(matrix.cols))
 
 
-def brought_to_size(row):
+def scaled_to_one(row):
     """Divided by the power of two next above its largest number."""
     largest = max(abs(x) for x in row)
     return [mp.ldexp(x, -mp.frexp(largest)[1]) for x in row]
@@ -224,11 +224,11 @@ def in_arms(row):
 
 def test_condition_number_is_that_of_the_balanced_matrix():
     for case in cases()[2::7]:
-        found = ls.sweep(to_scene(case.data), case.theta2[:1], outputs="cond").cond.item()
-        rows = [brought_to_size(in_arms(row)) for row in system(case.data, motion(case.data, case.theta2[0]))[0]]
-        matrix = mp.matrix([brought_to_size(column) for column in zip(*rows, strict=True)]).T
+        cycle = ls.sweep(to_scene(case.data), case.theta2[:1], outputs="cond").cond.item()
+        rows = [scaled_to_one(in_arms(row)) for row in system(case.data, motion(case.data, case.theta2[0]))[0]]
+        matrix = mp.matrix([scaled_to_one(column) for column in zip(*rows, strict=True)]).T
         cond = float(norm_1(matrix) * norm_1(matrix**-1))
-        assert found == pytest.approx(cond, rel=100 * EPS * cond)
+        assert cycle == pytest.approx(cond, rel=100 * EPS * cond)
 
 
 # ---- a batch of designs in one scene -----

@@ -78,8 +78,8 @@ def numbers(**fractions) -> dict:
 
 
 def link(role: str, length, mass, inertia, distance, cg: Vector) -> dict:
-    found = numbers(**{f"{role}_length": length, f"{role}_mass": mass, f"{role}_inertia": inertia})
-    return found | {f"{role}_cg_distance": Exact(distance), f"{role}_cg_angle": cg}
+    result = numbers(**{f"{role}_length": length, f"{role}_mass": mass, f"{role}_inertia": inertia})
+    return result | {f"{role}_cg_distance": Exact(distance), f"{role}_cg_angle": cg}
 
 
 COMMON = numbers(omega2=Fraction(-7, 3), alpha2=Fraction(11, 5)) | {
@@ -144,7 +144,7 @@ def inverted_slider_cranks():
 
 
 class Rows:
-    """A mechanism's rows, followed back from the names asked for to the numbers given."""
+    """Evaluate a mechanism's rows, followed back from the requested names to the inputs."""
 
     def __init__(self, table, known: dict):
         self.table, self.known = table, known
@@ -161,17 +161,17 @@ class Rows:
 
 
 def wired(x: dict, mechanism) -> dict:
-    """The same numbers by the names that the physics functions wire by."""
-    found = {name: value for name, value in x.items() if isinstance(value, Exact)}
+    """Return the numbers by the argument names of the physics functions."""
+    result = {name: value for name, value in x.items() if isinstance(value, Exact)}
     for role in ("crank", "coupler", "rod", "rocker"):
         if f"{role}_length" in x:
             cg, distance = x[f"{role}_cg_angle"], x[f"{role}_cg_distance"]
-            found |= {f"{role}_cg_x": cg.x * distance, f"{role}_cg_y": cg.y * distance}
-    found |= {"cos2": x["theta2"].x, "sin2": x["theta2"].y, "gravity_x": x["gravity"].x, "gravity_y": x["gravity"].y}
-    found |= {"ground_length": x["ground"]} if "ground" in x else {}
-    given = {name: Exact(number) for name, number in mechanism.parameters().items() if name not in found}
+            result |= {f"{role}_cg_x": cg.x * distance, f"{role}_cg_y": cg.y * distance}
+    result |= {"cos2": x["theta2"].x, "sin2": x["theta2"].y, "gravity_x": x["gravity"].x, "gravity_y": x["gravity"].y}
+    result |= {"ground_length": x["ground"]} if "ground" in x else {}
+    parameters = {name: Exact(number) for name, number in mechanism.parameters().items() if name not in result}
     rests = dict.fromkeys(("cos2_lo", "sin2_lo"), Exact(0))
-    return given | rests | found | {"branch_sign": Exact(x["side"])}
+    return parameters | rests | result | {"branch_sign": Exact(x["side"])}
 
 
 LINK = ls.Link(1.0, 1.0, 1.0)
@@ -197,11 +197,11 @@ def test_no_digit_differs_from_the_textbook(machine, drive):
     count = 0
     for x in pythagorean():
         expected = textbook(x | {"drive": drive}, Exact.sqrt)
-        found = Rows(mechanism.table(drive, ()), wired(x, mechanism))
-        assert found["status"] == 0
+        result = Rows(mechanism.table(drive, ()), wired(x, mechanism))
+        assert result["status"] == 0
         for name in (*FORCES, *(name for name in expected if name.startswith(("omega", "alpha")))):
-            assert found[name] == expected[name], (name, count)
-        assert found[mechanism.drives[drive]] == expected["drive"]
-        assert found["power_residual"] == 0
+            assert result[name] == expected[name], (name, count)
+        assert result[mechanism.drives[drive]] == expected["drive"]
+        assert result["power_residual"] == 0
         count += 1
     assert count >= 3

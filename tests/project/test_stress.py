@@ -10,8 +10,8 @@ import oracle
 import oracle_inverted_slider_crank as inverted
 import oracle_slider_crank as slider
 import pytest
-from judges import LinkData, LoadData, mp
 from long import long_but
+from references import LinkData, LoadData, mp
 
 from benchmarks.accuracy import digits as accuracy
 from benchmarks.speed.kernel import way

@@ -7,7 +7,7 @@ import matplotlib.image
 import numpy as np
 import oracle
 import pytest
-from judges import LinkData
+from references import LinkData
 
 from benchmarks import __main__ as front_door
 from benchmarks import plots

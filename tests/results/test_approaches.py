@@ -1,4 +1,4 @@
-"""Springs and dampers whose ends pass close by turn over within a fraction of a degree: no peak of theirs is missed."""
+"""No peak of a spring or damper is missed whose ends pass close by and turn it over within a fraction of a degree."""
 
 import numpy as np
 import pytest
@@ -31,26 +31,26 @@ def brute(scene: ls.Scene, of: str) -> float:
 
 def test_a_damper_whose_ends_pass_close_by():
     scene = braked()
-    found = ls.peaks(scene, of=["F12", "F12_bound"])
-    assert found.F12_peak >= brute(scene, "F12")
-    assert found.F12_peak == pytest.approx(222.181832, rel=1e-8)
-    assert found.F12_peak_at == pytest.approx(63.867317, abs=1e-5)
+    peaks = ls.peaks(scene, of=["F12", "F12_bound"])
+    assert peaks.F12_peak >= brute(scene, "F12")
+    assert peaks.F12_peak == pytest.approx(222.181832, rel=1e-8)
+    assert peaks.F12_peak_at == pytest.approx(63.867317, abs=1e-5)
 
 
 @pytest.mark.parametrize("distance", [1e-2, 1e-3, 1e-5, 1e-8, 0.0])
 @pytest.mark.parametrize("omega2", [22.0, lambda theta2: 22.0 + 0.0 * theta2])
 def test_however_close_they_pass(distance, omega2):
     scene = braked(distance)
-    found = ls.peaks(ls.Scene(MACHINE, omega2, gravity=(6.5, 8.6), loads=scene.loads), of=["F12"])
-    assert found.F12_peak >= brute(scene, "F12") * (1.0 - 1e-10)
+    peaks = ls.peaks(ls.Scene(MACHINE, omega2, gravity=(6.5, 8.6), loads=scene.loads), of=["F12"])
+    assert peaks.F12_peak >= brute(scene, "F12") * (1.0 - 1e-10)
 
 
 def test_a_spring_at_rest_turns_over_too():
     """Its direction turns with the position alone, also of a crank that stands."""
     ends = braked().loads[0].from_, braked().loads[0].to
     scene = ls.Scene(MACHINE, omega2=0.0, loads=[ls.Spring(*ends, rate=300.0, free_length=0.2)])
-    found = ls.peaks(scene, of=["T12"])
-    assert found.T12_max >= brute(scene, "T12") * (1.0 - 1e-10)
+    peaks = ls.peaks(scene, of=["T12"])
+    assert peaks.T12_max >= brute(scene, "T12") * (1.0 - 1e-10)
 
 
 @pytest.mark.parametrize("ground", [0.55, 0.25])
@@ -60,11 +60,11 @@ def test_the_pin_of_a_crank_at_rest_bears_the_whole_spring_in_every_direction_th
     machine = ls.FourBar(*(ls.Link(x, 1.0, 0.01, 0.1) for x in (0.3, 0.3, 0.35)), ground=ground)
     ends = braked(1e-5, radius=0.2).loads[0]
     scene = ls.Scene(machine, omega2=0.0, loads=[ls.Spring(ends.from_, ends.to, rate=300.0, free_length=2.0)])
-    found = ls.peaks(scene, of=["F12x", "F12y"])
-    assert found.status == 1
+    peaks = ls.peaks(scene, of=["F12x", "F12y"])
+    assert peaks.status == 1
     along_x, along_y = 300.0 * (2.0 - 1e-5 / np.cos(np.radians([64.0, 26.0])))
     sagitta = 300.0 * 1e-9  # of the circle that the end moves on, over as much as it takes to turn
-    np.testing.assert_allclose([found.F12x_min, found.F12y_min], [-along_x, -along_y], rtol=0.0, atol=4.0 * sagitta)
+    np.testing.assert_allclose([peaks.F12x_min, peaks.F12y_min], [-along_x, -along_y], rtol=0.0, atol=4.0 * sagitta)
 
 
 def test_the_drive_works_against_a_spring_on_both_arcs_of_a_crank_that_turns_partly():

@@ -1,4 +1,4 @@
-"""Bad input that shows between parameters or in a request: dimensions, geometry, angles, names; and what is let in."""
+"""Bad input that shows between parameters or in a request: dimensions, geometry, angles, names; and accepted input."""
 
 import itertools
 from dataclasses import replace
@@ -59,8 +59,8 @@ def two(length, mass, **changes) -> ls.Scene:
     ],
 )
 def test_arrays_that_do_not_fit_together(change, messages):
-    for said, message in itertools.zip_longest(refusal(change), messages, fillvalue=""):
-        assert said.startswith(message)
+    for text, message in itertools.zip_longest(refusal(change), messages, fillvalue=""):
+        assert text.startswith(message)
         assert message
 
 
@@ -80,7 +80,7 @@ def lengths(a: float, b: float, c: float, d: float) -> ls.FourBar:
 
 
 @pytest.mark.parametrize(
-    ("four", "said"),
+    ("four", "message"),
     [
         ((0.08, 0.22, 0.15, 0.5), "ground = 0.5 m is 0.05 m longer than crank + coupler + rocker"),
         ((1.5, 0.22, 0.15, 0.5), "crank.length = 1.5 m is 0.63 m longer than coupler + rocker + ground"),
@@ -88,9 +88,9 @@ def lengths(a: float, b: float, c: float, d: float) -> ls.FourBar:
         ((1e-6, 2e-6, 6.5e-6, 3e-6), "rocker.length = 6.5e-06 m is 5e-07 m longer than crank + coupler + ground"),
     ],
 )
-def test_geometry_that_never_closes_says_by_how_much(four, said):
+def test_geometry_that_never_closes_says_by_how_much(four, message):
     remedy = ": the mechanism cannot be assembled at any angle; shorten it or lengthen the others"
-    assert refusal(lengths, *four) == [said + remedy]
+    assert refusal(lengths, *four) == [message + remedy]
 
 
 def test_geometry_that_closes_somewhere_is_no_error():
@@ -105,9 +105,9 @@ def test_one_impossible_design_spoils_only_itself():
     batch = coupler(length=coupler_length)
     alone = coupler(length=array(*sound))
     for job in (lambda s: ls.sweep(s, 24), lambda s: ls.peaks(s, theta2=24), ls.check, lambda s: ls.system(s, [3.0])):
-        found, expected = job(batch), job(alone)
+        result, expected = job(batch), job(alone)
         for name, value in expected.data_vars.items():
-            mine = found[name]
+            mine = result[name]
             if "design" in mine.dims:
                 np.testing.assert_array_equal(mine.isel(design=[0, 2, 4]).values, value.values, err_msg=str(name))
                 bad = mine.isel(design=[1, 3, 5]).values
@@ -152,8 +152,8 @@ BAD_COUNTS = [
 def test_crank_angles_of_a_request(theta2, message):
     jobs = [ls.sweep, ls.peaks] + [ls.system] * any(theta2 is angles for angles, _ in BAD_ANGLES)
     for job in jobs:
-        (said,) = refusal(job, SCENE, theta2=theta2)
-        assert said.startswith(message)
+        (text,) = refusal(job, SCENE, theta2=theta2)
+        assert text.startswith(message)
 
 
 @pytest.mark.parametrize(
@@ -213,8 +213,8 @@ def test_crank_angles_that_are_some(theta2, angles):
     ],
 )
 def test_names_and_options_of_a_request(request_, message):
-    (said,) = refusal(request_)
-    assert said.startswith(message)
+    (text,) = refusal(request_)
+    assert text.startswith(message)
 
 
 def test_all_names_that_are_wrong_are_said_at_once():
@@ -225,12 +225,12 @@ def test_all_names_that_are_wrong_are_said_at_once():
     assert len(refusal(ls.peaks, SCENE, ["T21", "F32", "thteta4"])) == 2
 
 
-# -------------------------------------------------------------------------------- what the door lets in
+# -------------------------------------------------------------------------------- input that is accepted
 
 
 @pytest.mark.parametrize("size", [1e-60, 1e-20, 1.0, 1e20, 1e60])
 @pytest.mark.parametrize("mass", [0.0, 5e-324, 1.0, 1e300])
-def test_whatever_is_let_in_gives_numbers_and_neither_errors_nor_warnings(size, mass):
+def test_accepted_input_gives_numbers_and_neither_errors_nor_warnings(size, mass):
     """No raise from a kernel: pytest turns warnings into errors here."""
     links = [ls.Link(x * size, mass, mass, cg_distance=x * size, cg_angle=1e17) for x in (0.08, 0.22, 0.18)]
     mechanism = ls.FourBar(*links, ground=0.2 * size, branch="both", ground_angle=-1e9)

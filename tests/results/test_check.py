@@ -5,10 +5,10 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 import xarray as xr
-from judges import LinkData as Bar
-from judges import Unassemblable, log_uniform, mp, turn
 from oracle import KINDS, close_loop, random_lengths
 from oracle import FourBarData as Data
+from references import LinkData as Bar
+from references import Unassemblable, log_uniform, mp, turn
 
 import linksweep as ls
 from linksweep.mechanisms.limits.four_bar_limits import ASSEMBLY, GRASHOF, TOGGLES
@@ -44,7 +44,7 @@ def designs_of_all_kinds(seed: int, each: int) -> tuple[np.ndarray, list[str]]:
 
 
 def turns_fully(turning: float, next_to_it: float, opposite: float, other_neighbour: float) -> bool:
-    """Whether one link turns all the way round against its neighbour, the other two being held together by a pin.
+    """Return whether one link turns all the way round against its neighbour, the other two held together by a pin.
 
     The chain is turned by hand: at every half degree the distance between the free ends must be one that the two
     remaining links span.
@@ -70,9 +70,9 @@ def class_by_turning(crank: float, coupler: float, rocker: float, ground: float)
 
 def test_grashof_class_is_what_turns_when_turned():
     designs, kinds = designs_of_all_kinds(1, each=12)
-    found = words(ls.check(batch(designs)).grashof)
-    assert found == [class_by_turning(*lengths) for lengths in designs] == kinds
-    assert set(found) == {*GRASHOF} - {"change_point"}
+    limits = words(ls.check(batch(designs)).grashof)
+    assert limits == [class_by_turning(*lengths) for lengths in designs] == kinds
+    assert set(limits) == {*GRASHOF} - {"change_point"}
 
 
 @pytest.mark.parametrize(
@@ -97,13 +97,13 @@ def test_a_change_point_is_one_whatever_the_rounding(lengths):
 
 def test_a_parallelogram_folds_at_both_dead_points_and_closes_everywhere():
     scene = four_bar((0.1, 0.3, 0.1, 0.3), ground_angle=25.0)
-    found = ls.check(scene)
-    assert words(found.assembly) == ["everywhere"]
-    assert found.toggle_angle.values.tolist() == [25.0, 205.0, 205.0, 25.0]
-    assert found.arc_start.values[0] == 0.0
-    assert found.arc_end.values[0] == 360.0
-    assert np.isnan([found.arc_start.values[1], found.arc_end.values[1]]).all()
-    assert found.transmission_angle_min == 0.0
+    limits = ls.check(scene)
+    assert words(limits.assembly) == ["everywhere"]
+    assert limits.toggle_angle.values.tolist() == [25.0, 205.0, 205.0, 25.0]
+    assert limits.arc_start.values[0] == 0.0
+    assert limits.arc_end.values[0] == 360.0
+    assert np.isnan([limits.arc_start.values[1], limits.arc_end.values[1]]).all()
+    assert limits.transmission_angle_min == 0.0
     status = words(ls.sweep(scene, theta2=[25.0, 26.0, 205.0, 206.0], outputs=["status"]).status)
     assert status == ["toggle", "ok", "toggle", "ok"]
 
@@ -114,12 +114,12 @@ def test_a_parallelogram_folds_at_both_dead_points_and_closes_everywhere():
 def limits_in_60_digits(lengths: np.ndarray, ground_angle: float) -> dict[str, list[float]]:
     """Crank angles [degree] from x at which coupler and rocker lie in one line, by the cosine rule."""
     a, b, c, d = map(mp.mpf, lengths.tolist())
-    found = {}
+    result = {}
     for name, diagonal in (("folded", abs(b - c)), ("stretched", b + c)):
         cos = (a**2 + d**2 - diagonal**2) / (2 * a * d)
         if abs(cos) <= 1:
-            found[name] = [float(mp.mpf(ground_angle) + sign * mp.degrees(mp.acos(cos))) for sign in (1, -1)]
-    return found
+            result[name] = [float(mp.mpf(ground_angle) + sign * mp.degrees(mp.acos(cos))) for sign in (1, -1)]
+    return result
 
 
 def apart(x, y):
@@ -131,12 +131,12 @@ def test_limits_and_toggles_against_60_digits():
     designs, _ = designs_of_all_kinds(2, each=8)
     rng = np.random.default_rng(2)
     ground_angle = np.where(rng.integers(2, size=len(designs)), rng.uniform(-720.0, 720.0, len(designs)), 0.0)
-    found = ls.check(batch(designs, ground_angle=xr.DataArray(ground_angle, dims="design")))
-    assert found.toggle.values.tolist() == ["folded", "stretched", "stretched_mirrored", "folded_mirrored"]
+    limits = ls.check(batch(designs, ground_angle=xr.DataArray(ground_angle, dims="design")))
+    assert limits.toggle.values.tolist() == ["folded", "stretched", "stretched_mirrored", "folded_mirrored"]
     seen = set()
     for k, lengths in enumerate(designs):
         expected = limits_in_60_digits(lengths, ground_angle[k])
-        one = found.isel(design=k)
+        one = limits.isel(design=k)
         for name in ("folded", "stretched"):
             angles = one.toggle_angle.sel(toggle=[name, f"{name}_mirrored"]).values
             assert np.isnan(angles).all() == (name not in expected)
@@ -157,7 +157,7 @@ def test_limits_and_toggles_against_60_digits():
 
 
 def closes(lengths: Iterable[float], theta2: float, ground_angle: float) -> bool:
-    """Whether the oracle's two circles cross."""
+    """Return whether the oracle's two circles cross."""
     *moving, ground = map(float, lengths)
     try:
         close_loop(Data(*(Bar(x, 0.0, 0.0) for x in moving), ground=ground, ground_angle=ground_angle), theta2)
@@ -170,10 +170,10 @@ def test_the_loop_closes_on_the_arcs_and_nowhere_else():
     designs, _ = designs_of_all_kinds(3, each=4)
     ground_angle = np.linspace(-200.0, 400.0, len(designs))
     scene = batch(designs, ground_angle=xr.DataArray(ground_angle, dims="design"))
-    found = ls.check(scene)
+    limits = ls.check(scene)
     step = 1e-9  # degree to either side of an end
     for k, lengths in enumerate(designs):
-        one = found.isel(design=k)
+        one = limits.isel(design=k)
         arcs = [
             (float(start), float(end))
             for start, end in zip(one.arc_start, one.arc_end, strict=True)
@@ -192,18 +192,18 @@ def test_the_status_of_a_sweep_is_ok_on_the_arcs():
     designs, _ = designs_of_all_kinds(4, each=6)
     impossible = np.array([[1.0, 1.0, 1.0, 3.5], [1.0, 4.0, 1.0, 1.0]])
     scene = batch(np.concatenate([designs, impossible]), ground_angle=-37.0)
-    found = ls.check(scene)
+    limits = ls.check(scene)
     angles = np.arange(0.0, 360.0, 0.7)
     status = ls.sweep(scene, theta2=angles, outputs=["status"]).status
-    reach = np.mod(xr.DataArray(angles, dims="theta2") - found.arc_start, 360.0)
-    inside = (reach < found.arc_end - found.arc_start).any("arc").transpose("design", "theta2")
+    reach = np.mod(xr.DataArray(angles, dims="theta2") - limits.arc_start, 360.0)
+    inside = (reach < limits.arc_end - limits.arc_start).any("arc").transpose("design", "theta2")
     np.testing.assert_array_equal(inside, status == 0)
-    assert words(found.assembly)[-2:] == ["never", "never"]
-    assert found.isel(design=[-2, -1])[["arc_start", "arc_end", "toggle_angle"]].to_array().isnull().all()
-    assert found.transmission_angle_min[-2:].isnull().all()
+    assert words(limits.assembly)[-2:] == ["never", "never"]
+    assert limits.isel(design=[-2, -1])[["arc_start", "arc_end", "toggle_angle"]].to_array().isnull().all()
+    assert limits.transmission_angle_min[-2:].isnull().all()
     assert words(ls.peaks(scene, theta2=90).status) == [
         {"everywhere": "ok", "partly": "partial_revolution", "never": "cannot_assemble"}[word]
-        for word in words(found.assembly)
+        for word in words(limits.assembly)
     ]
 
 
@@ -212,9 +212,9 @@ def test_the_status_of_a_sweep_is_ok_on_the_arcs():
 
 def test_least_transmission_angle_against_a_dense_search():
     designs, _ = designs_of_all_kinds(5, each=8)
-    found = ls.check(batch(designs)).transmission_angle_min.values
+    limits = ls.check(batch(designs)).transmission_angle_min.values
     theta2 = np.linspace(0.0, 360.0, 40_001)
-    for (a, b, c, d), least in zip(designs, found, strict=True):
+    for (a, b, c, d), least in zip(designs, limits, strict=True):
         f = np.abs(d - a * np.exp(1j * np.radians(theta2)))
         closed = (f < b + c) & (f > abs(b - c))
         angle = np.degrees(np.arccos((b**2 + c**2 - f[closed] ** 2) / (2 * b * c)))
@@ -240,33 +240,33 @@ def test_a_batch_has_the_dims_and_labels_of_its_lengths_only():
     turned = xr.DataArray([0.0, 90.0], {"angle": [0, 90]}, "angle")
     links = {"coupler": ls.Link(0.22, xr.DataArray([1.0, 2.0], dims="mass"), 0.0), "rocker": ls.Link(0.18, 0.5, 0.0)}
     mechanism = ls.FourBar(ls.Link(crank, 0.1, 0.0), **links, ground=0.2, ground_angle=turned, branch="both")
-    found = ls.check(ls.Scene(mechanism, omega2=lambda theta2: 2.0 + np.cos(np.radians(theta2))))
-    assert dict(found.sizes) == {"crank": 3, "angle": 2, "arc": 2, "toggle": 4}
-    assert found.arc_start.dims == ("crank", "angle", "arc")
-    assert found.grashof.dims == found.assembly.dims == found.transmission_angle_min.dims == ("crank",)
-    assert found.crank.values.tolist() == ["s", "m", "l"]
+    limits = ls.check(ls.Scene(mechanism, omega2=lambda theta2: 2.0 + np.cos(np.radians(theta2))))
+    assert dict(limits.sizes) == {"crank": 3, "angle": 2, "arc": 2, "toggle": 4}
+    assert limits.arc_start.dims == ("crank", "angle", "arc")
+    assert limits.grashof.dims == limits.assembly.dims == limits.transmission_angle_min.dims == ("crank",)
+    assert limits.crank.values.tolist() == ["s", "m", "l"]
     alone = ls.check(four_bar((0.08, 0.22, 0.18, 0.2), ground_angle=90.0))
-    one = found.sel(crank="m", angle=90)
+    one = limits.sel(crank="m", angle=90)
     for name in alone.data_vars:
         assert one[name].variable.equals(alone[name].variable)
 
 
 def test_a_single_design_has_no_dims_but_its_tables():
-    found = ls.check(ls.example("press"))
-    assert found.grashof.dims == found.assembly.dims == found.transmission_angle_min.dims == ()
-    assert found.arc_start.dims == found.arc_end.dims == ("arc",)
-    assert found.toggle_angle.dims == ("toggle",)
-    assert found.toggle.values.tolist() == list(TOGGLES)
-    assert words(found.grashof) + words(found.assembly) == ["crank_rocker", "everywhere"]
-    assert {found[name].attrs.get("units") for name in found.data_vars} == {None, "degree"}
-    assert all(found[name].attrs["long_name"] for name in found.data_vars)
-    assert found.assembly.attrs["flag_meanings"].split() == list(ASSEMBLY)
+    limits = ls.check(ls.example("press"))
+    assert limits.grashof.dims == limits.assembly.dims == limits.transmission_angle_min.dims == ()
+    assert limits.arc_start.dims == limits.arc_end.dims == ("arc",)
+    assert limits.toggle_angle.dims == ("toggle",)
+    assert limits.toggle.values.tolist() == list(TOGGLES)
+    assert words(limits.grashof) + words(limits.assembly) == ["crank_rocker", "everywhere"]
+    assert {limits[name].attrs.get("units") for name in limits.data_vars} == {None, "degree"}
+    assert all(limits[name].attrs["long_name"] for name in limits.data_vars)
+    assert limits.assembly.attrs["flag_meanings"].split() == list(ASSEMBLY)
 
 
 def test_document_1_is_a_triple_rocker_between_its_stretched_limits():
-    found = ls.check(four_bar((0.08, 0.12, 0.11, 0.22)))
-    assert words(found.grashof) + words(found.assembly) == ["triple_rocker", "partly"]
-    limit = float(found.toggle_angle.sel(toggle="stretched"))
+    limits = ls.check(four_bar((0.08, 0.12, 0.11, 0.22)))
+    assert words(limits.grashof) + words(limits.assembly) == ["triple_rocker", "partly"]
+    limit = float(limits.toggle_angle.sel(toggle="stretched"))
     position = abs(mp.mpf("0.22") - mp.mpf("0.08") * turn(limit))
     assert abs(position - mp.mpf("0.23")) < 1e-15
-    assert found.arc_end.values[0] - 360.0 == pytest.approx(limit, abs=1e-12)
+    assert limits.arc_end.values[0] - 360.0 == pytest.approx(limit, abs=1e-12)

@@ -26,8 +26,8 @@ def by_hand(machine, theta2):
     for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
         engine = machine.engine
         turned = replace(engine, mechanism=replace(engine.mechanism, slide_angle=engine.mechanism.slide_angle + bank))
-        found = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=NAMES)
-        each = {name: found[name].values for name in NAMES}
+        cycle = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=NAMES)
+        each = {name: cycle[name].values for name in NAMES}
         each |= {"Msx": -z * each["Fsy"], "Msy": z * each["Fsx"]}
         total = {name: total[name] + each[name] for name in total}
     total["Fs"] = np.hypot(total["Fsx"], total["Fsy"])
@@ -37,19 +37,19 @@ def by_hand(machine, theta2):
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_peaks_are_those_of_the_sum_of_single_cylinders(machine):
     """The turned guide of a bank moves the cycle of the gas with it, so that its crank is ahead by φ as it stands."""
-    found, step = ls.peaks(machine), 0.05
+    result, step = ls.peaks(machine), 0.05
     dense = by_hand(machine, np.arange(0.0, 720.0, step) + 0.013)
     for name in ("T12", "Ms", "Msx", "Msy"):
         size = max(np.abs(dense[name]).max(), 1e-4 * dense["Fs"].max())  # else rounding of what cancels
         for end, sign in (("max", 1.0), ("min", -1.0)):
-            highest, peak = (sign * dense[name]).max(), sign * float(found[f"{name}_{end}"])
+            highest, peak = (sign * dense[name]).max(), sign * float(result[f"{name}_{end}"])
             assert -1e-11 * size <= peak - highest <= 2e-3 * size, (name, end)  # beside a jump, a step is first order
-            at = float(found[f"{name}_{end}_at"]) + np.array([-1e-6, 0.0, 1e-6])
-            assert sign * float(found[f"{name}_{end}"]) == pytest.approx(
+            at = float(result[f"{name}_{end}_at"]) + np.array([-1e-6, 0.0, 1e-6])
+            assert sign * float(result[f"{name}_{end}"]) == pytest.approx(
                 (sign * by_hand(machine, at)[name]).max(), rel=1e-6, abs=1e-11 * size
             )
-    assert float(found.Fs_peak) == pytest.approx(dense["Fs"].max(), rel=1e-5)
-    assert int(found.status) == 0
+    assert float(result.Fs_peak) == pytest.approx(dense["Fs"].max(), rel=1e-5)
+    assert int(result.status) == 0
 
 
 def test_an_inline_four_shakes_most_half_way():
@@ -57,10 +57,10 @@ def test_an_inline_four_shakes_most_half_way():
     ratio = CRANK.length / ROD.length
     mass = ENGINE.mechanism.slider_mass + ROD.mass * ROD.cg_distance / ROD.length
     expected = 4.0 * mass * CRANK.length * ENGINE.omega2**2 * ratio / np.sqrt(1.0 - ratio**2)
-    found = ls.peaks(FOUR, of=["Fs", "Fs_bound"])
-    assert float(found.Fs_peak) == pytest.approx(expected, rel=1e-12)
-    assert float(found.Fs_peak_at) % 180.0 == pytest.approx(0.0, abs=1e-5) or float(found.Fs_peak_at) % 180.0 > 179.9999
-    assert float(found.Fs_bound) < 1e-9 * expected
+    peaks = ls.peaks(FOUR, of=["Fs", "Fs_bound"])
+    assert float(peaks.Fs_peak) == pytest.approx(expected, rel=1e-12)
+    assert float(peaks.Fs_peak_at) % 180.0 == pytest.approx(0.0, abs=1e-5) or float(peaks.Fs_peak_at) % 180.0 > 179.9999
+    assert float(peaks.Fs_bound) < 1e-9 * expected
 
 
 def test_one_cylinder_has_the_peaks_of_its_scene():
@@ -88,8 +88,8 @@ def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
     drive, torque, inertia = 0.0, 0.0, 0.0
     for ahead, bank in zip(machine.crank_angles, machine.bank_angles, strict=True):
         turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
-        found = ls.sweep(turned, np.mod(theta + ahead, 720.0), outputs=["T12", "reduced_inertia"])
-        torque, inertia = torque + found.T12.values, inertia + found.reduced_inertia.values
+        cycle = ls.sweep(turned, np.mod(theta + ahead, 720.0), outputs=["T12", "reduced_inertia"])
+        torque, inertia = torque + cycle.T12.values, inertia + cycle.reduced_inertia.values
         drive += float(ls.duty(turned).effort_mean)
     total = float(wheel.flywheel_inertia) + inertia
 
@@ -104,22 +104,22 @@ def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
 
 
 def test_each_cylinder_has_the_pin_forces_of_one():
-    found, one = ls.peaks(FOUR, of=["F32", "F12_mean", "T12"]), ls.peaks(ENGINE, of=["F32", "F12_mean"])
-    assert found.F32_peak.dims == ("cylinder",)
-    assert list(found.cylinder.values) == [1, 2, 3, 4]
-    np.testing.assert_allclose(found.F32_peak, float(one.F32_peak), rtol=1e-12)
-    np.testing.assert_allclose(found.F12_mean, float(one.F12_mean), rtol=1e-9)
-    np.testing.assert_allclose(found.F32_peak_at, [(float(one.F32_peak_at) - ahead) % 720.0 for ahead in FIRING])
-    assert found.T12_max.dims == ()
+    result, one = ls.peaks(FOUR, of=["F32", "F12_mean", "T12"]), ls.peaks(ENGINE, of=["F32", "F12_mean"])
+    assert result.F32_peak.dims == ("cylinder",)
+    assert list(result.cylinder.values) == [1, 2, 3, 4]
+    np.testing.assert_allclose(result.F32_peak, float(one.F32_peak), rtol=1e-12)
+    np.testing.assert_allclose(result.F12_mean, float(one.F12_mean), rtol=1e-9)
+    np.testing.assert_allclose(result.F32_peak_at, [(float(one.F32_peak_at) - ahead) % 720.0 for ahead in FIRING])
+    assert result.T12_max.dims == ()
 
 
 def test_cylinders_that_jump_together_do_so_to_the_digit():
     """One fires as another turns round below: what is between the two jumps is rounding, and no load."""
-    found = ls.peaks(FOUR, of=["F_main2", "F_main2_bound"])
+    peaks = ls.peaks(FOUR, of=["F_main2", "F_main2_bound"])
     beside = FOUR.sweep(270.0 + np.array([-1e-6, 1e-6]), outputs=["F_main2"]).F_main2
-    assert float(found.F_main2_peak) == pytest.approx(float(beside.max()), rel=1e-6)
-    assert float(found.F_main2_peak_at) == pytest.approx(270.0, abs=1e-5)
-    assert float(found.F_main2_bound) < 1e-9 * float(found.F_main2_peak)
+    assert float(peaks.F_main2_peak) == pytest.approx(float(beside.max()), rel=1e-6)
+    assert float(peaks.F_main2_peak_at) == pytest.approx(270.0, abs=1e-5)
+    assert float(peaks.F_main2_bound) < 1e-9 * float(peaks.F_main2_peak)
 
 
 @pytest.mark.parametrize("mains", [(), (-0.25, -0.06, 0.02, 0.15)])
@@ -128,9 +128,9 @@ def test_main_bearings_hold_the_throws_in_balance(mains):
     machine = ls.MultiCylinder(ENGINE, FIRING, [0, 10, -20, 30], PLACES, mains)
     names = [f"F_main{k}{axis}" for k in range(1, len(machine.mains) + 1) for axis in "xy"]
     theta2 = np.arange(0.0, 720.0, 7.3)
-    found = machine.sweep(theta2, outputs=names)
+    cycle = machine.sweep(theta2, outputs=names)
     for axis in "xy":
-        carried = np.array([found[name] for name in names if name.endswith(axis)])
+        carried = np.array([cycle[name] for name in names if name.endswith(axis)])
         force, moment = 0.0, 0.0
         for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
             turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
@@ -142,23 +142,23 @@ def test_main_bearings_hold_the_throws_in_balance(mains):
 
 def test_designs_go_along():
     speeds = xr.DataArray([100.0, 200.0], {"speed": [1, 2]}, "speed")
-    found = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=speeds)), of=["Fs", "T12", "F32"])
-    assert (found.Fs_peak.dims, found.F32_peak.dims) == (("speed",), ("cylinder", "speed"))
-    assert float(found.Fs_peak[1]) == pytest.approx(4.0 * float(found.Fs_peak[0]), rel=1e-9)
+    peaks = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=speeds)), of=["Fs", "T12", "F32"])
+    assert (peaks.Fs_peak.dims, peaks.F32_peak.dims) == (("speed",), ("cylinder", "speed"))
+    assert float(peaks.Fs_peak[1]) == pytest.approx(4.0 * float(peaks.Fs_peak[0]), rel=1e-9)
     for k, speed in enumerate(speeds.values):
         alone = ls.peaks(replace(FOUR, engine=replace(ENGINE, omega2=float(speed))), of=["T12"])
-        assert float(found.T12_max[k]) == float(alone.T12_max)
+        assert float(peaks.T12_max[k]) == float(alone.T12_max)
 
 
-def test_what_does_not_turn_round_has_no_sums():
+def test_designs_that_move_over_part_of_a_turn_have_no_sums():
     pump = ls.SliderCrank(ls.Bar(0.2, 0.02, 0.02, 7750), ls.Bar(0.1, 0.02, 0.02, 7750), slider_mass=1.0)
-    found = ls.peaks(ls.MultiCylinder(ls.Scene(pump, omega2=10.0), [0, 180]), of=["T12", "T12_mean"])
-    assert int(found.status) == 1
-    assert np.isnan(found.T12_max) and np.isnan(found.T12_mean)
+    peaks = ls.peaks(ls.MultiCylinder(ls.Scene(pump, omega2=10.0), [0, 180]), of=["T12", "T12_mean"])
+    assert int(peaks.status) == 1
+    assert np.isnan(peaks.T12_max) and np.isnan(peaks.T12_mean)
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.peaks(FOUR, of=["T21"]), "of: nothing is named 'T21'; did you mean \"T12\"?"),
         (lambda: ls.peaks(FOUR, of=["F32x"]), "of: nothing is named 'F32x'; did you mean \"F32\"?"),
@@ -175,22 +175,22 @@ def test_what_does_not_turn_round_has_no_sums():
         (lambda: replace(FOUR, main_positions=0.2), "main_positions = 0.2: must be a list of numbers"),
     ],
 )
-def test_refusals(call, said):
-    assert said in refusal(call)[0]
+def test_refusals(call, message):
+    assert message in refusal(call)[0]
 
 
 def test_main_bearings_live_as_their_loads_let_them():
     """P³ is the mean of F³ over the shaft's turning, here of dense samples of the throws beside each main."""
     capacity, step = 30e3, 0.05
-    given = {f"main{k}": ls.Bearing(diameter=0.05, length=0.02, capacity=capacity) for k in range(1, 6)}
-    found = ls.bearings(FOUR, given)
+    parameters = {f"main{k}": ls.Bearing(diameter=0.05, length=0.02, capacity=capacity) for k in range(1, 6)}
+    bearings = ls.bearings(FOUR, parameters)
     theta2 = np.arange(0.0, 720.0, step) + 0.5 * step
     throws = [ls.sweep(ENGINE, np.mod(theta2 + ahead, 720.0), outputs=["F12x", "F12y"]) for ahead in FIRING]
     loads = [(each.F12x.values, each.F12y.values) for each in throws]
     for k, beside in enumerate([[0], [0, 1], [1, 2], [2, 3], [3]]):
         x, y = (sum(0.5 * loads[throw][axis] for throw in beside) for axis in (0, 1))
         load = np.hypot(x, y)
-        one = found.sel(main=f"main{k + 1}")
+        one = bearings.sel(main=f"main{k + 1}")
         equivalent = np.mean(load**3) ** (1.0 / 3.0)
         assert float(one.equivalent_load) == pytest.approx(equivalent, rel=1e-5)
         hours = (capacity / equivalent) ** 3 * 1e6 / (ENGINE.omega2 / (2.0 * np.pi) * 3600.0)
@@ -199,17 +199,17 @@ def test_main_bearings_live_as_their_loads_let_them():
         assert 0.0 <= float(one.F_peak) / load.max() - 1.0 < 2e-3
         assert float(one.pressure.max()) == pytest.approx(float(one.F.max()) / (0.05 * 0.02), rel=1e-12)
         np.testing.assert_allclose(np.hypot(one.Fx, one.Fy), one.F.broadcast_like(one.Fx), rtol=1e-12)
-    np.testing.assert_allclose(found.main_position, [-0.2, -0.1, 0.0, 0.1, 0.2], atol=1e-15)
-    assert int(abs(found.life_status).max()) == 0
+    np.testing.assert_allclose(bearings.main_position, [-0.2, -0.1, 0.0, 0.1, 0.2], atol=1e-15)
+    assert int(abs(bearings.life_status).max()) == 0
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.bearings(FOUR, {"A": ls.Bearing()}), "pins: nothing is named 'A'; there are main1, main2"),
         (lambda: ls.bearings(FOUR, theta2=[0.0, 90.0]), "theta2 = [0.0, 90.0]: must be a whole number"),
         (lambda: ls.bearings(ls.MultiCylinder(ENGINE, [0])), "main_positions: nothing says where"),
     ],
 )
-def test_refusals_of_main_bearings(call, said):
-    assert said in refusal(call)[0]
+def test_refusals_of_main_bearings(call, message):
+    assert message in refusal(call)[0]

@@ -1,4 +1,4 @@
-"""The dense 9×9: rows and columns brought to one size, backward errors of a few last digits, any scale of units."""
+"""The dense 9×9: rows and columns scaled to one size, backward errors of a few last digits, any scale of units."""
 
 from dataclasses import replace
 from itertools import product
@@ -6,8 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from judges import BRANCHES, LinkData, LoadData
 from oracle import KINDS, LINKS, FourBarData, random_data, random_theta2, to_scene
+from references import BRANCHES, LinkData, LoadData
 
 import linksweep as ls
 from linksweep.results.system import equilibrated
@@ -99,12 +99,12 @@ def test_far_beyond_all_units_numbers_are_right_or_the_status_says_not(scale, so
     data, plain_data = light(scale), light(1.0)
     plain = ls.sweep(to_scene(plain_data), theta2, outputs=UNKNOWNS)
     with np.errstate(all="ignore"):
-        found = ls.sweep(to_scene(data), theta2, outputs=UNKNOWNS, solver=solver)
-    ok = found.status.values == 0
+        cycle = ls.sweep(to_scene(data), theta2, outputs=UNKNOWNS, solver=solver)
+    ok = cycle.status.values == 0
     assert ok.all() if 1e-130 < scale < 1e130 else not ok.any()
     for name in UNKNOWNS[:-1]:
-        np.testing.assert_allclose(found[name].values[ok] / scale, plain[name].values[ok], rtol=1e-11, err_msg=name)
-        assert np.isnan(found[name].values[~ok]).all()
+        np.testing.assert_allclose(cycle[name].values[ok] / scale, plain[name].values[ok], rtol=1e-11, err_msg=name)
+        assert np.isnan(cycle[name].values[~ok]).all()
 
 
 def test_a_batch_of_scales_is_solved_side_by_side():

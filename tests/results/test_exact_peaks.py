@@ -33,54 +33,54 @@ def polished(scene: ls.Scene, name: str, sign: float) -> tuple[float, float]:
     def below(angle: float) -> float:
         return -sign * ls.sweep(scene, [angle], of=[name])[name].item()
 
-    found = minimize_scalar(below, bounds=(at - 0.1, at + 0.1), method="bounded", options={"xatol": 1e-9})
-    return -sign * found.fun, found.x % 360.0
+    optimum = minimize_scalar(below, bounds=(at - 0.1, at + 0.1), method="bounded", options={"xatol": 1e-9})
+    return -sign * optimum.fun, optimum.x % 360.0
 
 
 @pytest.mark.parametrize("branch", ["open", "crossed"])
 def test_against_dense_samples_polished_by_scipy(branch):
     scene = replace(PRESS, mechanism=replace(PRESS.mechanism, branch=branch))
-    found = ls.peaks(scene, of=[*PINS, "T12", "alpha4", "transmission_angle"])
-    wanted = [(pin, "peak", 1.0) for pin in PINS]
-    wanted += [(name, end, sign) for name in ("T12", "alpha4") for end, sign in (("max", 1.0), ("min", -1.0))]
-    for name, end, sign in wanted:
+    peaks = ls.peaks(scene, of=[*PINS, "T12", "alpha4", "transmission_angle"])
+    expected = [(pin, "peak", 1.0) for pin in PINS]
+    expected += [(name, end, sign) for name in ("T12", "alpha4") for end, sign in (("max", 1.0), ("min", -1.0))]
+    for name, end, sign in expected:
         value, at = polished(scene, name, sign)
-        assert float(found[f"{name}_{end}"]) == pytest.approx(value, rel=1e-10), name
+        assert float(peaks[f"{name}_{end}"]) == pytest.approx(value, rel=1e-10), name
         # a minimiser of values alone knows an angle to no more than the root of their rounding
-        assert float(found[f"{name}_{end}_at"]) == pytest.approx(at, abs=3e-5), name
+        assert float(peaks[f"{name}_{end}_at"]) == pytest.approx(at, abs=3e-5), name
 
 
 def test_a_torque_known_in_closed_form():
     """cos with an offset: 5 − 3 at 40 degrees, 5 + 3 at 220; its mean 5, its mean square 25 + 9/2."""
-    found = ls.peaks(
+    peaks = ls.peaks(
         torque_on_crank(lambda t: -5.0 + 3.0 * np.cos(np.radians(t - 40.0))), of=["T12", "T12_mean", "T12_rms"]
     )
-    assert float(found.T12_max) == pytest.approx(8.0, rel=1e-14)
-    assert float(found.T12_min) == pytest.approx(2.0, rel=1e-14)
-    assert float(found.T12_max_at) == pytest.approx(220.0, abs=1e-5)
-    assert float(found.T12_min_at) == pytest.approx(40.0, abs=1e-5)
-    assert float(found.T12_mean) == pytest.approx(5.0, rel=1e-12)
-    assert float(found.T12_rms) == pytest.approx(math.sqrt(29.5), rel=1e-12)
+    assert float(peaks.T12_max) == pytest.approx(8.0, rel=1e-14)
+    assert float(peaks.T12_min) == pytest.approx(2.0, rel=1e-14)
+    assert float(peaks.T12_max_at) == pytest.approx(220.0, abs=1e-5)
+    assert float(peaks.T12_min_at) == pytest.approx(40.0, abs=1e-5)
+    assert float(peaks.T12_mean) == pytest.approx(5.0, rel=1e-12)
+    assert float(peaks.T12_rms) == pytest.approx(math.sqrt(29.5), rel=1e-12)
 
 
 @pytest.mark.parametrize("at", [0.0, 1e-7, 359.9999999, 123.4])
 def test_kinks_wherever_they_are(at):
     """|sin| of half the angle from there, upside down: 1 at the kink."""
     torque = torque_on_crank(lambda t: np.abs(np.sin(np.radians(t - at) / 2.0)) - 1.0)
-    found = ls.peaks(torque, of=["T12"])
-    assert float(found.T12_max) == pytest.approx(1.0, rel=1e-10)
-    assert abs((float(found.T12_max_at) - at + 180.0) % 360.0 - 180.0) < 1e-5
-    assert abs(float(found.T12_min)) < 1e-12
+    peaks = ls.peaks(torque, of=["T12"])
+    assert float(peaks.T12_max) == pytest.approx(1.0, rel=1e-10)
+    assert abs((float(peaks.T12_max_at) - at + 180.0) % 360.0 - 180.0) < 1e-5
+    assert abs(float(peaks.T12_min)) < 1e-12
 
 
 def test_steps_count_on_both_sides():
     """It rises to 3 at 100 degrees and drops to 1 there."""
-    found = ls.peaks(
+    peaks = ls.peaks(
         torque_on_crank(lambda t: -np.where(np.mod(t, 360.0) < 100.0, 2.0 + np.mod(t, 360.0) / 100.0, 1.0))
     )
-    assert float(found.T12_max) == pytest.approx(3.0, rel=1e-10)
-    assert float(found.T12_max_at) == pytest.approx(100.0, abs=1e-5)
-    assert float(found.T12_min) == 1.0
+    assert float(peaks.T12_max) == pytest.approx(3.0, rel=1e-10)
+    assert float(peaks.T12_max_at) == pytest.approx(100.0, abs=1e-5)
+    assert float(peaks.T12_min) == 1.0
 
 
 def test_equal_peaks_flat_and_zero_ones():
@@ -94,16 +94,16 @@ def test_equal_peaks_flat_and_zero_ones():
 
 
 def test_the_place_of_a_peak_that_ties_with_its_mirror_image():
-    """Of a weightless rod's force along itself, |m·a − P|/cos ψ with a = ω²·x'', x = a·cos θ + √(b² − a²·sin² θ)."""
+    """A weightless rod's force along itself is |m·a − P|/cos ψ with a = ω²·x'', x = a·cos θ + √(b² − a²·sin² θ)."""
     speeds = xr.DataArray(np.linspace(20.0, 60.0, 25), dims="speed")
     engine = ls.SliderCrank(ls.Link(0.05, **WEIGHTLESS), ls.Link(0.15, **WEIGHTLESS), slider_mass=0.5)
-    found = ls.peaks(ls.Scene(engine, speeds, loads=[ls.Load("slider", force=-50.0)]), of=["F12", "F32", "F43"])
+    peaks = ls.peaks(ls.Scene(engine, speeds, loads=[ls.Load("slider", force=-50.0)]), of=["F12", "F32", "F43"])
     for pin in ("F12", "F32", "F43"):
-        angle = np.radians(found[f"{pin}_peak_at"])
+        angle = np.radians(peaks[f"{pin}_peak_at"])
         q = np.sqrt(0.15**2 - (0.05 * np.sin(angle)) ** 2)
         slope = -(0.05**2) * np.cos(2.0 * angle) / q - 0.05**4 * np.sin(2.0 * angle) ** 2 / (4.0 * q**3)
         force = abs(0.5 * speeds**2 * (slope - 0.05 * np.cos(angle)) + 50.0) * 0.15 / q
-        np.testing.assert_allclose(force, found[f"{pin}_peak"], rtol=1e-9)
+        np.testing.assert_allclose(force, peaks[f"{pin}_peak"], rtol=1e-9)
 
 
 def test_a_peak_where_the_turn_begins_is_at_0():
@@ -115,10 +115,10 @@ def test_a_peak_where_the_turn_begins_is_at_0():
 
 
 def test_a_four_stroke_torque():
-    found = ls.peaks(torque_on_crank(lambda t: -np.cos(np.radians((t - 715.0) / 2.0))), of=["T12", "T12_rms"])
-    assert (float(found.T12_max), float(found.T12_min)) == pytest.approx((1.0, -1.0), rel=1e-13)
-    assert float(found.T12_max_at) == pytest.approx(715.0, abs=1e-5)
-    assert float(found.T12_rms) == pytest.approx(math.sqrt(0.5), rel=1e-12)
+    peaks = ls.peaks(torque_on_crank(lambda t: -np.cos(np.radians((t - 715.0) / 2.0))), of=["T12", "T12_rms"])
+    assert (float(peaks.T12_max), float(peaks.T12_min)) == pytest.approx((1.0, -1.0), rel=1e-13)
+    assert float(peaks.T12_max_at) == pytest.approx(715.0, abs=1e-5)
+    assert float(peaks.T12_rms) == pytest.approx(math.sqrt(0.5), rel=1e-12)
 
 
 # ----------------------------------------------------------------------------------- turns that end, dead centres
@@ -126,15 +126,15 @@ def test_a_four_stroke_torque():
 
 def test_limits_at_the_ends_of_a_revolution_that_toggles():
     """At a toggle coupler and rocker lie in one line: the transmission angle is 0 there; forces grow without bound."""
-    found = ls.peaks(ls.Scene(ROCKING, omega2=1.0), of=["transmission_angle", "Cx", "F32", "T12", "By"])
+    peaks = ls.peaks(ls.Scene(ROCKING, omega2=1.0), of=["transmission_angle", "Cx", "F32", "T12", "By"])
     start, end = (float(ls.check(ls.Scene(ROCKING, omega2=1.0))[f"arc_{side}"][0]) for side in ("start", "end"))
-    assert abs(float(found.transmission_angle_min)) < 1e-7
-    assert float(found.F32_peak) == float(found.T12_peak) == math.inf
-    assert found.status.attrs["flag_meanings"].split()[int(found.status)] == "unbounded"
-    assert min(abs(float(found.F32_peak_at) - x % 360.0) for x in (start, end)) < 1e-9
+    assert abs(float(peaks.transmission_angle_min)) < 1e-7
+    assert float(peaks.F32_peak) == float(peaks.T12_peak) == math.inf
+    assert peaks.status.attrs["flag_meanings"].split()[int(peaks.status)] == "unbounded"
+    assert min(abs(float(peaks.F32_peak_at) - x % 360.0) for x in (start, end)) < 1e-9
     inside = np.linspace(start, end, 200_001)[1:-1]
     dense = ls.sweep(ls.Scene(ROCKING, omega2=1.0), inside, of=["Cx"]).Cx
-    assert 0.0 <= float(found.Cx_max - dense.max()) < 1e-3 and 0.0 <= float(dense.min() - found.Cx_min) < 1e-3
+    assert 0.0 <= float(peaks.Cx_max - dense.max()) < 1e-3 and 0.0 <= float(dense.min() - peaks.Cx_min) < 1e-3
 
 
 def test_a_function_of_theta2_on_arcs_that_reach_beyond_a_turn():
@@ -153,29 +153,29 @@ def test_a_function_of_theta2_on_arcs_that_reach_beyond_a_turn():
             assert value.item() == both[name][k].item(), name
 
 
-def test_what_nothing_loads_is_zero_up_to_the_toggle():
+def test_forces_without_loads_are_zero_up_to_the_toggle():
     links = (ls.Link(x, **WEIGHTLESS) for x in (0.3, 0.25, 0.28))
-    found = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=1.0))
-    assert float(found.F32_peak) == 0.0 and float(found.T12_peak) == 0.0
-    assert found.status.attrs["flag_meanings"].split()[int(found.status)] == "partial_revolution"
+    peaks = ls.peaks(ls.Scene(ls.FourBar(*links, ground=0.5), omega2=1.0))
+    assert float(peaks.F32_peak) == 0.0 and float(peaks.T12_peak) == 0.0
+    assert peaks.status.attrs["flag_meanings"].split()[int(peaks.status)] == "partial_revolution"
 
 
 @pytest.mark.parametrize("drive", ["rocker", "coupler"])
 def test_a_drive_that_comes_to_a_dead_centre_has_no_bound(drive):
-    found = ls.peaks(replace(PRESS, drive=drive, loads=[ls.Load("crank", torque=5.0)]), of=["F32"])
-    assert float(found.F32_peak) == math.inf
-    assert found.status.attrs["flag_meanings"].split()[int(found.status)] == "unbounded"
+    peaks = ls.peaks(replace(PRESS, drive=drive, loads=[ls.Load("crank", torque=5.0)]), of=["F32"])
+    assert float(peaks.F32_peak) == math.inf
+    assert peaks.status.attrs["flag_meanings"].split()[int(peaks.status)] == "unbounded"
 
 
-# ------------------------------------------------------------------------------------------- what else is told
+# ------------------------------------------------------------------------------------------- bounds, samples, refusals
 
 
 def test_a_bound_holds_and_samples_are_counted():
-    found = ls.peaks(PRESS, of=["F32", "F32_bound", "F32_samples", "T12", "T12_bound"])
+    peaks = ls.peaks(PRESS, of=["F32", "F32_bound", "F32_samples", "T12", "T12_bound"])
     value, _ = polished(PRESS, "F32", 1.0)
-    assert value <= float(found.F32_peak + found.F32_bound) * (1.0 + 1e-14)
-    assert 0.0 < float(found.F32_bound) < 1e-10 * float(found.F32_peak)
-    assert 64 <= float(found.F32_samples) < 1000
+    assert value <= float(peaks.F32_peak + peaks.F32_bound) * (1.0 + 1e-14)
+    assert 0.0 < float(peaks.F32_bound) < 1e-10 * float(peaks.F32_peak)
+    assert 64 <= float(peaks.F32_samples) < 1000
 
 
 def test_arrays_over_the_angle_need_their_angles():
@@ -227,16 +227,16 @@ def test_compiled_and_interpreted_searches_give_the_same_bits(of, monkeypatch):
 
 
 def test_a_kink_of_friction_between_the_samples():
-    """Where the guide's force changes sides friction has a kink: here with a peak of T12 on a flank that no sample
-    has seen. Found by the dense samples of benchmarks.accuracy.missed."""
+    """Friction has a kink at which the guide's force changes sides: here with a peak of T12 on a flank between two
+    samples. The case comes from the dense samples of benchmarks.accuracy.missed."""
     crank = ls.Link(0.6640901746994451, 0.8008109553758354, 0.05516407478476453, 0.13358380678108658)
     rod = ls.Link(0.666635061979761, 0.872353611090656, 0.04935072445523994, 0.6945211583699386, 154.54925043811323)
     mechanism = ls.SliderCrank(crank, rod, 0.2510731396155406, friction=0.04794507659519102, branch="crossed")
     push = ls.Load("slider", (-28.529061164503787, 9.517050429807604))
     scene = ls.Scene(mechanism, -3.091364670463861, -49.097578860405264, (0.0, -9.81), [push])
-    found = ls.peaks(scene)
+    peaks = ls.peaks(scene)
     at = np.linspace(262.0, 263.0, 100_001)
     cycle = ls.sweep(scene, at, of=["T12", "normal_force"])
     assert np.ptp(np.sign(cycle.normal_force.values)) == 2.0
-    assert float(found.T12_max) >= float(cycle.T12.max())
-    assert float(found.T12_max_at) == pytest.approx(float(cycle.T12.idxmax()), abs=2e-5)
+    assert float(peaks.T12_max) >= float(cycle.T12.max())
+    assert float(peaks.T12_max_at) == pytest.approx(float(cycle.T12.idxmax()), abs=2e-5)

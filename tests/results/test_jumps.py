@@ -35,19 +35,19 @@ def test_a_one_sided_limit_is_the_peak(name):
     scene = branch(name)
     beside = [angle + aside for angle in scene.mechanism.jumps() for aside in (-1e-5, 1e-5)]
     near = ls.sweep(scene, beside, outputs=["friction_force"]).friction_force
-    found = ls.peaks(scene, of=["friction_force"])
+    peaks = ls.peaks(scene, of=["friction_force"])
     everywhere = ls.sweep(scene, 3600, outputs=["friction_force"]).friction_force
-    assert float(found.friction_force_max) == pytest.approx(max(float(near.max()), float(everywhere.max())), rel=1e-3)
-    assert float(found.friction_force_min) == pytest.approx(min(float(near.min()), float(everywhere.min())), rel=1e-3)
+    assert float(peaks.friction_force_max) == pytest.approx(max(float(near.max()), float(everywhere.max())), rel=1e-3)
+    assert float(peaks.friction_force_min) == pytest.approx(min(float(near.min()), float(everywhere.min())), rel=1e-3)
 
 
 def test_nothing_is_read_into_a_jump():
     """A peak is never more than the densest sampling shows."""
     for name in ("open", "crossed"):
         dense = ls.sweep(branch(name), 20_000, outputs=["friction_force", "T12"])
-        found = ls.peaks(branch(name), of=["friction_force", "T12"])
-        assert float(found.friction_force_max) <= float(dense.friction_force.max()) * (1.0 + 1e-3)
-        assert float(found.T12_max) <= float(dense.T12.max()) * (1.0 + 1e-3)
+        peaks = ls.peaks(branch(name), of=["friction_force", "T12"])
+        assert float(peaks.friction_force_max) <= float(dense.friction_force.max()) * (1.0 + 1e-3)
+        assert float(peaks.T12_max) <= float(dense.T12.max()) * (1.0 + 1e-3)
 
 
 def test_each_design_has_its_own_jumps():
@@ -72,9 +72,9 @@ def test_each_design_has_its_own_jumps():
 def test_a_design_that_jams_says_so():
     """Towards where friction wedges the slider, forces grow without bound: in between no sample has them all."""
     short = replace(ENGINE, rod=replace(ROD, length=0.06), friction=xr.DataArray([0.0, 0.9], dims="mu"))
-    found = ls.peaks(replace(SCENE, mechanism=short))
-    assert found.status.values.tolist() == [0, 3]
-    assert np.isinf(found.F14_peak.values).tolist() == [False, True]
+    peaks = ls.peaks(replace(SCENE, mechanism=short))
+    assert peaks.status.values.tolist() == [0, 3]
+    assert np.isinf(peaks.F14_peak.values).tolist() == [False, True]
     assert ls.peaks(replace(SCENE, mechanism=short), theta2=720).status.values.tolist() == [0, 1]
 
 

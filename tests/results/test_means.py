@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from judges import mp
+from references import mp
 
 import linksweep as ls
 
@@ -33,7 +33,7 @@ class Engine:
         return 2 if self.gas else 1
 
     def dead_centres(self) -> list:
-        """Of the whole cycle, from the one at which it fires."""
+        """Return angles of the whole cycle, counted from the one at which it fires."""
         top, bottom = mp.asin(mp.mpf(self.offset) / (A + B)), mp.pi + mp.asin(mp.mpf(self.offset) / (B - A))
         return [angle + 2 * mp.pi * k for k in range(self.turns) for angle in (top, bottom)]
 
@@ -62,7 +62,7 @@ class Engine:
         return R, first * push + self.friction * abs(R * sin * first)
 
     def mean(self, what) -> float:
-        """Of a function of R and torque, stroke by stroke; cut where R changes its sign."""
+        """Return the mean of a function of R and torque, stroke by stroke; cut where R changes its sign."""
         starts = self.dead_centres()
         total = mp.mpf(0)
         for stroke, (start, end) in enumerate(pairwise([*starts, starts[0] + 2 * mp.pi * self.turns])):
@@ -72,7 +72,7 @@ class Engine:
         return float(total / (2 * mp.pi * self.turns))
 
     def level(self) -> list:
-        """Where the rod lies along the guide, and the guide's answer changes its side."""
+        """Return the angles at which the rod lies along the guide, and the guide's force changes its side."""
         angle = mp.asin(mp.mpf(self.offset) / A)
         return [first + 2 * mp.pi * k for k in range(-1, self.turns + 1) for first in (angle, mp.pi - angle)]
 
@@ -95,14 +95,14 @@ class Engine:
     [Engine(0.0, 0.3, False), Engine(0.02, 0.3, False), Engine(0.02, 0.0, True), Engine(0.0, 0.2, True)],
 )
 def test_means_with_friction_and_gas(engine):
-    found = ls.peaks(engine.scene(), of=["F32_mean", "F32_rms", "T12_mean", "T12_rms"])
+    peaks = ls.peaks(engine.scene(), of=["F32_mean", "F32_rms", "T12_mean", "T12_rms"])
     with mp.workdps(20):
-        assert float(found.F32_mean) == pytest.approx(engine.mean(lambda R, T: abs(R)), rel=1e-10)
-        assert float(found.F32_rms) == pytest.approx(math.sqrt(engine.mean(lambda R, T: R * R)), rel=1e-10)
+        assert float(peaks.F32_mean) == pytest.approx(engine.mean(lambda R, T: abs(R)), rel=1e-10)
+        assert float(peaks.F32_rms) == pytest.approx(math.sqrt(engine.mean(lambda R, T: R * R)), rel=1e-10)
         torque = math.sqrt(engine.mean(lambda R, T: T * T))
-        assert float(found.T12_rms) == pytest.approx(torque, rel=1e-10)
-        assert float(found.T12_mean) == pytest.approx(engine.mean(lambda R, T: T), rel=1e-10, abs=1e-10 * torque)
-    assert int(found.status) == 0
+        assert float(peaks.T12_rms) == pytest.approx(torque, rel=1e-10)
+        assert float(peaks.T12_mean) == pytest.approx(engine.mean(lambda R, T: T), rel=1e-10, abs=1e-10 * torque)
+    assert int(peaks.status) == 0
 
 
 # -------------------------------------------------------------------------------------------- part of a turn
@@ -132,7 +132,7 @@ def arcs(kind: str) -> list[tuple]:
 
 
 def triangle(kind: str, angle) -> tuple:
-    """Of the triangle B, C, D: the sine of the angle at C, and the rocker's angle from x."""
+    """Return the sine of the angle at C of the triangle B, C, D, and the rocker's angle from x."""
     a, b, c, d = map(mp.mpf, SWINGING[kind])
     across, up = a * mp.cos(angle) - d, a * mp.sin(angle)  # from D to B
     f = mp.sqrt(across**2 + up**2)
@@ -142,7 +142,7 @@ def triangle(kind: str, angle) -> tuple:
 
 
 def swing(kind: str, start, end):
-    """How far the rocker turns along an arc, step by step."""
+    """Return the angle that the rocker turns along an arc, step by step."""
     angles = [triangle(kind, angle)[1] for angle in mp.linspace(start, end, 50)]
     steps = [after - before for before, after in pairwise(angles)]
     return sum(step - 2 * mp.pi * mp.nint(step / (2 * mp.pi)) for step in steps)
@@ -150,33 +150,33 @@ def swing(kind: str, start, end):
 
 @pytest.mark.parametrize("kind", SWINGING)
 def test_means_over_part_of_a_turn(kind):
-    found = ls.peaks(swinging(kind), of=["F43_mean", "T12_mean", "omega4_mean"])
+    peaks = ls.peaks(swinging(kind), of=["F43_mean", "T12_mean", "omega4_mean"])
     with mp.workdps(30):
         length = sum(end - start for start, end in arcs(kind))
         parts = [mp.quad(lambda angle: 1 / triangle(kind, angle)[0], [s, (s + e) / 2, e]) for s, e in arcs(kind)]
         force = float(abs(TORQUE) / SWINGING[kind][2] * sum(parts) / length)
         ratio = float(sum(swing(kind, s, e) for s, e in arcs(kind)) / length)
-    assert float(found.F43_mean) == pytest.approx(force, rel=1e-10)
-    assert float(found.omega4_mean) == pytest.approx(10.0 * ratio, rel=1e-10, abs=1e-10)
-    assert float(found.T12_mean) == pytest.approx(-TORQUE * ratio, rel=1e-10, abs=1e-10)
+    assert float(peaks.F43_mean) == pytest.approx(force, rel=1e-10)
+    assert float(peaks.omega4_mean) == pytest.approx(10.0 * ratio, rel=1e-10, abs=1e-10)
+    assert float(peaks.T12_mean) == pytest.approx(-TORQUE * ratio, rel=1e-10, abs=1e-10)
 
 
 @pytest.mark.parametrize("kind", SWINGING)
-def test_what_has_no_mean_is_infinite_and_said_to_be(kind):
-    found = ls.peaks(swinging(kind), of=["T12_rms"])  # its square goes with one over the distance from a toggle
-    assert (float(found.T12_rms), int(found.status)) == (math.inf, 3)
+def test_a_mean_that_diverges_is_infinite_and_has_that_status(kind):
+    peaks = ls.peaks(swinging(kind), of=["T12_rms"])  # its square goes with one over the distance from a toggle
+    assert (float(peaks.T12_rms), int(peaks.status)) == (math.inf, 3)
     assert np.isfinite(ls.peaks(swinging(kind), of=["theta4_rms"]).theta4_rms)
 
 
 def test_beside_the_dead_centres_of_a_driven_rod():
     rod = ls.Link(B, 1.0, 2e-3, cg_distance=0.05)
     engine = ls.SliderCrank(ls.Link(A, 1.0, 1e-4), rod, slider_mass=0.5, friction=0.1)
-    found = ls.peaks(ls.Scene(engine, SPEED, drive="coupler"), of=["F32_rms", "F32_mean", "omega3_rms"])
-    assert (float(found.F32_rms), float(found.F32_mean), int(found.status)) == (math.inf, math.inf, 3)
+    peaks = ls.peaks(ls.Scene(engine, SPEED, drive="coupler"), of=["F32_rms", "F32_mean", "omega3_rms"])
+    assert (float(peaks.F32_rms), float(peaks.F32_mean), int(peaks.status)) == (math.inf, math.inf, 3)
     with mp.workdps(20):  # sin φ = a/b·sin θ
         rate = lambda angle: (A * mp.cos(angle)) ** 2 / (B**2 - (A * mp.sin(angle)) ** 2)  # noqa: E731
         expected = SPEED * math.sqrt(mp.quad(rate, [0, mp.pi / 2, mp.pi]) / mp.pi)
-    assert float(found.omega3_rms) == pytest.approx(expected, rel=1e-10)
+    assert float(peaks.omega3_rms) == pytest.approx(expected, rel=1e-10)
 
 
 def test_a_quantity_of_nothing_but_rounding_has_a_mean():

@@ -13,26 +13,26 @@ from benchmarks.accuracy import missed
 
 @pytest.mark.parametrize("name", long_but(missed.FAMILIES, "slider-crank with friction"))
 def test_no_sample_exceeds_a_peak(name):
-    found = missed.search(missed.FAMILIES[name], 500, seed=1)
-    assert found.count == 0, found.worst
-    assert found.shortfall <= missed.ALLOWED
+    result = missed.search(missed.FAMILIES[name], 500, seed=1)
+    assert result.count == 0, result.worst
+    assert result.shortfall <= missed.ALLOWED
 
 
 def test_half_of_the_machines_come_near_to_a_toggle():
     """Otherwise it proves little."""
     scene = missed.FAMILIES["four-bar"].scene(np.random.default_rng(0), 400)
-    found = ls.check(scene)
-    assert (found.assembly == 0).all()
-    assert 100 < int((found.transmission_angle_min < 15.0).sum()) < 400
+    limits = ls.check(scene)
+    assert (limits.assembly == 0).all()
+    assert 100 < int((limits.transmission_angle_min < 15.0).sum()) < 400
     assert {"crank_rocker", "double_crank"} <= {
-        found.grashof.attrs["flag_meanings"].split()[k] for k in found.grashof.values
+        limits.grashof.attrs["flag_meanings"].split()[k] for k in limits.grashof.values
     }
 
 
 def test_a_peak_that_falls_short_is_counted():
     scene = missed.FAMILIES["slider-crank"].scene(np.random.default_rng(0), 3)
-    found, dense = ls.peaks(scene), ls.peaks(scene, theta2=missed.angles(90.0))
-    found["T12_min"][1] += 1e-2 * found.T12_peak[1]
-    found["F32_peak"][2] *= 0.9
-    short = missed.shortfall(found, dense)
+    result, dense = ls.peaks(scene), ls.peaks(scene, theta2=missed.angles(90.0))
+    result["T12_min"][1] += 1e-2 * result.T12_peak[1]
+    result["F32_peak"][2] *= 0.9
+    short = missed.shortfall(result, dense)
     np.testing.assert_allclose(short, [0.0, 1e-2, 1.0 / 0.9 - 1.0], atol=1e-4)

@@ -1,4 +1,4 @@
-"""Means are over time, which a crank that changes its speed spends unevenly: against integrals in closed form.
+"""Means are over time, also where the crank changes its speed: against integrals in closed form.
 
 The crank turns at ω = ω0·(1 + e·cos θ): a turn takes 2π/(ω0·√(1 − e²)). Links without mass leave of a four-bar's forces
 T/(c·sin μ) in rod and rocker, for a torque T on the rocker; a torque on the crank is all that its drive feels.
@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from judges import mp
+from references import mp
 
 import linksweep as ls
 
@@ -48,24 +48,24 @@ def pressing(**words):
 @pytest.mark.parametrize("theta2", [None, 720])
 def test_a_conservative_machine_takes_no_power(theta2):
     """Weight, a constant force and a torque on a link that comes back give back what they take."""
-    found = ls.peaks(replace(PRESS, omega2=uneven), ["power_mean", "power"], theta2=theta2)
-    assert abs(float(found.power_mean)) < 1e-9 * float(found.power_peak)
-    assert found.power_mean.long_name.startswith("mean over time of: ")
+    peaks = ls.peaks(replace(PRESS, omega2=uneven), ["power_mean", "power"], theta2=theta2)
+    assert abs(float(peaks.power_mean)) < 1e-9 * float(peaks.power_peak)
+    assert peaks.power_mean.long_name.startswith("mean over time of: ")
 
 
 @pytest.mark.parametrize("theta2", [None, 360])
 def test_mean_and_rms_of_a_force(theta2):
-    found = ls.peaks(pressing(), ["F32_mean", "F32_rms"], theta2=theta2)
-    assert float(found.F32_mean) == pytest.approx(float(over_time(pressed)), rel=1e-11)
+    peaks = ls.peaks(pressing(), ["F32_mean", "F32_rms"], theta2=theta2)
+    assert float(peaks.F32_mean) == pytest.approx(float(over_time(pressed)), rel=1e-11)
     squared = over_time(lambda angle: pressed(angle) ** 2)
-    assert float(found.F32_rms) == pytest.approx(float(mp.sqrt(squared)), rel=1e-11)
-    assert found.F32_rms.long_name.startswith("root mean square over time of: ")
+    assert float(peaks.F32_rms) == pytest.approx(float(mp.sqrt(squared)), rel=1e-11)
+    assert peaks.F32_rms.long_name.startswith("root mean square over time of: ")
 
 
 def test_an_acceleration_has_no_mean_over_time():
     """After a turn the speed is as before."""
-    found = ls.peaks(replace(PRESS, omega2=uneven), ["alpha3_mean", "alpha3"])
-    assert abs(float(found.alpha3_mean)) < 1e-9 * float(found.alpha3_peak)
+    peaks = ls.peaks(replace(PRESS, omega2=uneven), ["alpha3_mean", "alpha3"])
+    assert abs(float(peaks.alpha3_mean)) < 1e-9 * float(peaks.alpha3_peak)
 
 
 @pytest.mark.parametrize("theta2", [None, 36])
@@ -74,14 +74,14 @@ def test_each_design_has_its_own_pace(theta2):
     angles = np.arange(0.0, 360.0, 10.0)
     sizes = xr.DataArray([0.0, 0.5, -0.5], dims="size")
     speeds = MEAN * (1.0 + sizes * xr.DataArray(np.cos(np.radians(angles)), {"theta2": angles}, "theta2"))
-    found = ls.peaks(replace(PRESS, omega2=speeds), ["theta4_mean", "F32_rms"], theta2=theta2)
-    assert found.theta4_mean.dims == ("size",)
+    peaks = ls.peaks(replace(PRESS, omega2=speeds), ["theta4_mean", "F32_rms"], theta2=theta2)
+    assert peaks.theta4_mean.dims == ("size",)
     for k in range(3):
         alone = ls.peaks(replace(PRESS, omega2=speeds.isel(size=k)), ["theta4_mean", "F32_rms"], theta2=theta2)
-        assert float(found.theta4_mean[k]) == float(alone.theta4_mean)
-        assert float(found.F32_rms[k]) == float(alone.F32_rms)
+        assert float(peaks.theta4_mean[k]) == float(alone.theta4_mean)
+        assert float(peaks.F32_rms[k]) == float(alone.F32_rms)
     steady = ls.peaks(PRESS, ["theta4_mean"], theta2=theta2)
-    assert float(found.theta4_mean[0]) == pytest.approx(float(steady.theta4_mean), rel=1e-12)
+    assert float(peaks.theta4_mean[0]) == pytest.approx(float(steady.theta4_mean), rel=1e-12)
 
 
 def test_a_car_that_slows_down_at_the_top_spends_its_time_there():
@@ -90,17 +90,17 @@ def test_a_car_that_slows_down_at_the_top_spends_its_time_there():
     scene = ls.Scene(ls.LoopTrack(radius, 700.0), speed=speed, gravity=(0.0, -g), profile="energy")
     lap = 4.0 * radius / speed * mp.ellipk(4.0 * g * radius / speed**2)
     for theta in (None, 360):
-        found = ls.peaks(scene, ["speed_mean"], theta=theta)
-        assert float(found.speed_mean) == pytest.approx(float(2 * mp.pi * radius / lap), rel=1e-12)
+        peaks = ls.peaks(scene, ["speed_mean"], theta=theta)
+        assert float(peaks.speed_mean) == pytest.approx(float(2 * mp.pi * radius / lap), rel=1e-12)
 
 
 def test_duty_of_a_crank_that_changes_its_speed():
     """12 N m on the crank: in a turn 24π J, at a power of that over the turn's time."""
     scene = ls.Scene(LIGHT, omega2=uneven, loads=[ls.Load("crank", torque=-12.0)])
-    found = ls.duty(scene)
-    assert float(found.work) == pytest.approx(24.0 * np.pi, rel=1e-12)
-    assert float(found.power_mean) == pytest.approx(24.0 * np.pi / TURN, rel=1e-12)
-    assert float(found.work_of_loads) == pytest.approx(-24.0 * np.pi, rel=1e-12)
+    duty = ls.duty(scene)
+    assert float(duty.work) == pytest.approx(24.0 * np.pi, rel=1e-12)
+    assert float(duty.power_mean) == pytest.approx(24.0 * np.pi / TURN, rel=1e-12)
+    assert float(duty.work_of_loads) == pytest.approx(-24.0 * np.pi, rel=1e-12)
     press = ls.duty(replace(PRESS, omega2=uneven))
     assert abs(float(press.work)) < 1e-9 * float(press.work_fed)
 
@@ -108,27 +108,27 @@ def test_duty_of_a_crank_that_changes_its_speed():
 def test_the_heat_of_a_motor():
     """Its torque is T/i and i·J·α, α = −e·ω0²·(1 + e·cos θ)·sin θ."""
     scene = ls.Scene(LIGHT, omega2=uneven, loads=[ls.Load("crank", torque=-12.0)])
-    found = ls.motor_load(scene, ls.Motor((0.0, 900.0), (9.0, 9.0), inertia=2e-3), ratio=8.0)
+    result = ls.motor_load(scene, ls.Motor((0.0, 900.0), (9.0, 9.0), inertia=2e-3), ratio=8.0)
 
     def torque(angle):
         alpha = -UNEVEN * MEAN**2 * (1 + UNEVEN * mp.cos(angle)) * mp.sin(angle)
         return mp.mpf(12) / 8 + mp.mpf(2e-3) * 8 * alpha
 
     expected = mp.sqrt(over_time(lambda angle: torque(angle) ** 2))
-    assert float(found.motor_torque_rms) == pytest.approx(float(expected), rel=1e-9)
+    assert float(result.motor_torque_rms) == pytest.approx(float(expected), rel=1e-9)
 
 
 def test_sizes_before_and_after_are_over_time():
-    found = ls.compare(pressing(), pressing(), of=["F32_rms", "T12_ripple"], theta2=360)
+    result = ls.compare(pressing(), pressing(), of=["F32_rms", "T12_ripple"], theta2=360)
     squared = over_time(lambda angle: pressed(angle) ** 2)
-    np.testing.assert_allclose(found.F32_rms, float(mp.sqrt(squared)), rtol=1e-11)
+    np.testing.assert_allclose(result.F32_rms, float(mp.sqrt(squared)), rtol=1e-11)
     peaks = ls.peaks(pressing(), ["T12_mean", "T12_rms"])
     ripple = np.sqrt(float(peaks.T12_rms) ** 2 - float(peaks.T12_mean) ** 2)
-    np.testing.assert_allclose(found.T12_ripple, ripple, rtol=1e-9)
+    np.testing.assert_allclose(result.T12_ripple, ripple, rtol=1e-9)
 
 
 def test_counterweights_are_best_over_time():
-    """No other masses near the best ones have less: sizes as `compare` reckons them."""
+    """No other masses near the best ones have less: sizes as `compare` computes them."""
     scene = replace(PRESS, omega2=uneven)
     weights = ls.best_counterweights(scene, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
 

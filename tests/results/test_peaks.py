@@ -88,9 +88,9 @@ def test_mean_and_mean_square_pass_over_what_is_missing(n):
 def smooth_designs(seed: int, count: int) -> list[ls.Scene]:
     """Crank-rockers and double cranks that transmit well, with loads."""
     rng = np.random.default_rng(seed)
-    found: list[ls.Scene] = []
-    while len(found) < count:
-        *moving, ground = random_lengths(rng, ("crank_rocker", "double_crank")[len(found) % 2])
+    result: list[ls.Scene] = []
+    while len(result) < count:
+        *moving, ground = random_lengths(rng, ("crank_rocker", "double_crank")[len(result) % 2])
         links = [
             ls.Link(x, rng.uniform(0.5, 2.0), 0.1 * x * x, rng.uniform(0.0, x), rng.uniform(-180, 180)) for x in moving
         ]
@@ -98,51 +98,51 @@ def smooth_designs(seed: int, count: int) -> list[ls.Scene]:
         mechanism = ls.FourBar(*links, ground=ground, branch=str(rng.choice(["open", "crossed"])))
         scene = ls.Scene(mechanism, omega2=rng.uniform(3.0, 9.0), gravity=(0.0, -9.81), loads=[load])
         if ls.check(scene).transmission_angle_min > 25.0:
-            found.append(scene)
-    return found
+            result.append(scene)
+    return result
 
 
 @pytest.mark.parametrize("scene", [ls.example("press"), *smooth_designs(1, 8)])
 def test_peaks_are_those_of_a_dense_sweep(scene):
     dense = ls.sweep(scene, 14_400, of=[*FORCES, "T12"])
-    found = ls.peaks(scene)
+    peaks = ls.peaks(scene)
     for name in FORCES:
         row = dense[name].values
-        assert float(found[f"{name}_peak"]) == pytest.approx(row.max(), rel=1e-6)
-        assert abs(dense[name].sel(theta2=found[f"{name}_peak_at"], method="nearest") / row.max() - 1) < 1e-5
+        assert float(peaks[f"{name}_peak"]) == pytest.approx(row.max(), rel=1e-6)
+        assert abs(dense[name].sel(theta2=peaks[f"{name}_peak_at"], method="nearest") / row.max() - 1) < 1e-5
     torque = dense.T12.values
     scale = np.abs(torque).max()
-    assert float(found.T12_max) == pytest.approx(torque.max(), abs=1e-6 * scale)
-    assert float(found.T12_min) == pytest.approx(torque.min(), abs=1e-6 * scale)
-    assert float(found.T12_peak) == pytest.approx(scale, rel=1e-6)
-    assert found.T12_peak == max(abs(found.T12_max), abs(found.T12_min))
+    assert float(peaks.T12_max) == pytest.approx(torque.max(), abs=1e-6 * scale)
+    assert float(peaks.T12_min) == pytest.approx(torque.min(), abs=1e-6 * scale)
+    assert float(peaks.T12_peak) == pytest.approx(scale, rel=1e-6)
+    assert peaks.T12_peak == max(abs(peaks.T12_max), abs(peaks.T12_min))
     for which in ("max", "min"):
-        there = ls.sweep(scene, [float(found[f"T12_{which}_at"])], of=["T12"]).T12.item()
-        assert there == pytest.approx(float(found[f"T12_{which}"]), abs=1e-6 * scale)
+        there = ls.sweep(scene, [float(peaks[f"T12_{which}_at"])], of=["T12"]).T12.item()
+        assert there == pytest.approx(float(peaks[f"T12_{which}"]), abs=1e-6 * scale)
 
 
 def test_of_given_angles_it_is_the_largest_sample():
     scene = ls.example("press")
-    for given in (97, np.linspace(200.0, 350.0, 301), [330.0, 310.0, 320.0, 310.0]):
-        cycle = ls.sweep(scene, given, of=["F32", "T12"])
-        found = ls.peaks(scene, of=["F32", "T12"], theta2=given)
+    for parameters in (97, np.linspace(200.0, 350.0, 301), [330.0, 310.0, 320.0, 310.0]):
+        cycle = ls.sweep(scene, parameters, of=["F32", "T12"])
+        peaks = ls.peaks(scene, of=["F32", "T12"], theta2=parameters)
         for peak, row in (("F32_peak", cycle.F32), ("T12_max", cycle.T12), ("T12_min", -cycle.T12)):
             value, at = reference(row.values, row.theta2.values)
-            assert abs(float(found[peak])) == pytest.approx(abs(value), rel=1e-15)
-            assert float(found[f"{peak}_at"]) == at
+            assert abs(float(peaks[peak])) == pytest.approx(abs(value), rel=1e-15)
+            assert float(peaks[f"{peak}_at"]) == at
 
 
 def test_means_against_work_and_against_the_sweep():
     scene = ls.example("press")
-    found = ls.peaks(scene, of=["T12_mean", "T12_rms", "F32_mean", "F32_rms", "theta4_mean"])
+    peaks = ls.peaks(scene, of=["T12_mean", "T12_rms", "F32_mean", "F32_rms", "theta4_mean"])
     cycle = ls.sweep(scene, 720, of=["T12", "F32", "theta4"])
     for name in ("T12", "F32", "theta4"):
         row = cycle[name].values
-        assert float(found[f"{name}_mean"]) == pytest.approx(math.fsum(row) / 720, rel=1e-12, abs=1e-12)
-        if f"{name}_rms" in found:
-            assert float(found[f"{name}_rms"]) == pytest.approx(math.hypot(*row) / math.sqrt(720), rel=1e-12)
+        assert float(peaks[f"{name}_mean"]) == pytest.approx(math.fsum(row) / 720, rel=1e-12, abs=1e-12)
+        if f"{name}_rms" in peaks:
+            assert float(peaks[f"{name}_rms"]) == pytest.approx(math.hypot(*row) / math.sqrt(720), rel=1e-12)
     # weight, constant forces and a constant torque on a link that comes back do no work in a revolution
-    assert abs(float(found.T12_mean)) < 1e-12 * float(found.T12_rms)
+    assert abs(float(peaks.T12_mean)) < 1e-12 * float(peaks.T12_rms)
     turning = ls.Scene(scene.mechanism, omega2=3.0, loads=[ls.Load("crank", torque=-2.5)])
     assert float(ls.peaks(turning, of="T12_mean").T12_mean) == pytest.approx(2.5, rel=1e-12)
 
@@ -151,35 +151,35 @@ def test_means_against_work_and_against_the_sweep():
 
 
 def test_names_units_and_words():
-    found = ls.peaks(ls.example("press"))
+    peaks = ls.peaks(ls.example("press"))
     pins = [f"{name}_{what}" for name in FORCES for what in ("peak", "peak_at")]
     torque = ["T12_max", "T12_max_at", "T12_min", "T12_min_at", "T12_peak"]
-    assert list(found.data_vars) == [*pins, *torque, "status"]
+    assert list(peaks.data_vars) == [*pins, *torque, "status"]
     for name in [*pins, *torque]:
         unit = "degree" if name.endswith("_at") else "N m" if name.startswith("T12") else "N"
-        assert found[name].attrs["units"] == unit
-    assert found.F32_peak.attrs["long_name"] == (
+        assert peaks[name].attrs["units"] == unit
+    assert peaks.F32_peak.attrs["long_name"] == (
         "largest magnitude of the force of link 3 (coupler) on link 2 (crank) at pin B"
     )
-    assert found.T12_min_at.attrs["long_name"].startswith("crank angle of the least torque of the drive on link 2")
-    assert found.status.dtype == np.int8
-    assert found.status.attrs["flag_meanings"].split() == ["ok", "partial_revolution", "cannot_assemble", "unbounded"]
-    assert found.attrs["command"] == "linksweep.peaks(scene)"
+    assert peaks.T12_min_at.attrs["long_name"].startswith("crank angle of the least torque of the drive on link 2")
+    assert peaks.status.dtype == np.int8
+    assert peaks.status.attrs["flag_meanings"].split() == ["ok", "partial_revolution", "cannot_assemble", "unbounded"]
+    assert peaks.attrs["command"] == "linksweep.peaks(scene)"
     assert ls.peaks(ls.example("press"), theta2=72).attrs["command"] == "linksweep.peaks(scene, theta2=72)"
-    assert not found.sizes
+    assert not peaks.sizes
 
 
 @pytest.mark.parametrize(("drive", "torque"), [("crank", "T12"), ("coupler", "T13"), ("rocker", "T14")])
 def test_the_torque_is_that_of_the_drive(drive, torque):
     mechanism = ls.FourBar(ls.Bar(0.2, **BAR), ls.Bar(0.21, **BAR), ls.Bar(0.22, **BAR), ground=0.08)
-    found = ls.peaks(ls.Scene(mechanism, omega2=5.0, drive=drive))
-    assert f"{torque}_max" in found
-    assert sum(name.endswith("_max") for name in found.data_vars) == 1
+    peaks = ls.peaks(ls.Scene(mechanism, omega2=5.0, drive=drive))
+    assert f"{torque}_max" in peaks
+    assert sum(name.endswith("_max") for name in peaks.data_vars) == 1
 
 
-def test_what_is_asked_for_is_what_comes():
-    found = ls.peaks(ls.example("press"), of=["T12_mean", "F21", "theta4", "F32_rms", "T12_mean"])
-    assert list(found.data_vars) == [
+def test_only_requested_quantities_are_returned():
+    peaks = ls.peaks(ls.example("press"), of=["T12_mean", "F21", "theta4", "F32_rms", "T12_mean"])
+    assert list(peaks.data_vars) == [
         "T12_mean",
         "F21_peak",
         "F21_peak_at",
@@ -204,23 +204,23 @@ def batch() -> ls.Scene:
 
 
 def test_a_peak_has_only_the_dims_that_it_depends_on():
-    found = ls.peaks(batch(), of=["theta4", "omega4", "aG3x", "F43", "T12", "By"], theta2=60)
-    assert found.theta4_max.dims == found.theta4_max_at.dims == found.status.dims == ("length",)
-    assert found.By_max.dims == ()
-    assert set(found.omega4_max.dims) == {"length", "speed"}
-    assert set(found.aG3x_peak.dims) == {"length", "speed"}
-    assert set(found.F43_peak.dims) == set(found.T12_min_at.dims) == {"length", "mass", "speed", "case"}
-    assert found.length.values.tolist() == [20, 22, 24]
-    assert found.case.values.tolist() == list("abcd")
-    assert found["coupler.mass"].values.tolist() == [0.5, 0.7]
-    np.testing.assert_allclose(found.omega4_max.sel(speed=1), 3 * found.omega4_max.sel(speed=0), rtol=1e-12)
+    peaks = ls.peaks(batch(), of=["theta4", "omega4", "aG3x", "F43", "T12", "By"], theta2=60)
+    assert peaks.theta4_max.dims == peaks.theta4_max_at.dims == peaks.status.dims == ("length",)
+    assert peaks.By_max.dims == ()
+    assert set(peaks.omega4_max.dims) == {"length", "speed"}
+    assert set(peaks.aG3x_peak.dims) == {"length", "speed"}
+    assert set(peaks.F43_peak.dims) == set(peaks.T12_min_at.dims) == {"length", "mass", "speed", "case"}
+    assert peaks.length.values.tolist() == [20, 22, 24]
+    assert peaks.case.values.tolist() == list("abcd")
+    assert peaks["coupler.mass"].values.tolist() == [0.5, 0.7]
+    np.testing.assert_allclose(peaks.omega4_max.sel(speed=1), 3 * peaks.omega4_max.sel(speed=0), rtol=1e-12)
 
 
 def test_a_design_of_a_batch_has_the_peaks_that_it_has_alone():
-    found = ls.peaks(batch(), theta2=90)
+    peaks = ls.peaks(batch(), theta2=90)
     for length, mass, speed, case in ((0, 0, 0, 0), (1, 1, 1, 3), (2, 0, 1, 2)):
         alone = ls.peaks(design(length, mass, speed, case), theta2=90)
-        one = found.isel({"length": length, "mass": mass, "speed": speed, "case": case}, missing_dims="ignore")
+        one = peaks.isel({"length": length, "mass": mass, "speed": speed, "case": case}, missing_dims="ignore")
         for name in alone.data_vars:
             assert one[name].item() == alone[name].item(), name
 
@@ -242,15 +242,15 @@ def mixed() -> ls.Scene:
 
 
 def test_status_and_values_of_designs_that_do_not_close():
-    found = ls.peaks(mixed(), of=["F32", "T12", "T12_mean", "F32_rms"], theta2=360)
-    words = [found.status.attrs["flag_meanings"].split()[k] for k in found.status.values]
+    peaks = ls.peaks(mixed(), of=["F32", "T12", "T12_mean", "F32_rms"], theta2=360)
+    words = [peaks.status.attrs["flag_meanings"].split()[k] for k in peaks.status.values]
     assert words == ["ok", "partial_revolution", "partial_revolution", "cannot_assemble", "ok"]
     cycle = ls.sweep(mixed(), 360, of=["F32", "T12"])
-    assert found.isel(design=3).drop_vars("status").to_array().isnull().all()
-    assert not found.isel(design=[0, 1, 2, 4]).to_array().isnull().any()
+    assert peaks.isel(design=3).drop_vars("status").to_array().isnull().all()
+    assert not peaks.isel(design=[0, 1, 2, 4]).to_array().isnull().any()
     for branch in ("open", "crossed"):
         for k in (0, 1, 2, 4):
-            one, rows = found.sel(branch=branch).isel(design=k), cycle.sel(branch=branch).isel(design=k)
+            one, rows = peaks.sel(branch=branch).isel(design=k), cycle.sel(branch=branch).isel(design=k)
             value, angle = reference(rows.F32.values, grid(360))
             assert float(one.F32_peak) == pytest.approx(value, rel=1e-15)
             assert float(one.F32_peak_at) == pytest.approx(angle, abs=1e-6)
@@ -268,11 +268,11 @@ def test_status_and_values_of_designs_that_do_not_close():
 @pytest.mark.parametrize("scene", long_but([batch, mixed], mixed))
 def test_compiled_and_interpreted_peaks_are_equal_to_the_bit(scene, monkeypatch):
     of = ["F32", "F14", "T12", "T12_mean", "F43_rms", "aG3y_rms"]
-    found = []
+    result = []
     for compile_after in (np.inf, -1):
         monkeypatch.setattr(run, "COMPILE_AFTER", compile_after)
-        found += [ls.peaks(scene(), of=of, theta2=angles) for angles in (150, np.linspace(10.0, 300.0, 77))]
-    for interpreted, compiled in zip(found[:2], found[2:], strict=True):
+        result += [ls.peaks(scene(), of=of, theta2=angles) for angles in (150, np.linspace(10.0, 300.0, 77))]
+    for interpreted, compiled in zip(result[:2], result[2:], strict=True):
         assert list(interpreted.data_vars) == list(compiled.data_vars)
         for name in interpreted.data_vars:
             assert interpreted[name].dims == compiled[name].dims

@@ -1,4 +1,4 @@
-"""Where forces grow without bound: dead centres of every drive in any frame, jams, change points; and where not."""
+"""Forces grow without bound at dead centres of every drive in any frame, jams and change points, and nowhere else."""
 
 import math
 
@@ -44,12 +44,12 @@ def test_forces_at_dead_centres_are_unbounded_in_any_frame(case, torque):
     for frame in FRAMES:
         mechanism, drive, _ = machines(frame)[case]
         scene = ls.Scene(mechanism, 30.0, loads=[ls.Load("crank", torque=torque)], drive=drive)
-        found = ls.peaks(scene, of=[*PINS, "F32_mean", "F32_rms"])
-        assert int(found.status) == UNBOUNDED
-        values = [float(found[name]) for name in (*(f"{pin}_peak" for pin in PINS), "F32_mean", "F32_rms")]
+        peaks = ls.peaks(scene, of=[*PINS, "F32_mean", "F32_rms"])
+        assert int(peaks.status) == UNBOUNDED
+        values = [float(peaks[name]) for name in (*(f"{pin}_peak" for pin in PINS), "F32_mean", "F32_rms")]
         assert values == [math.inf] * 6, f"{frame} degree"
         at = ls.check(scene).dead_centre_angle.values
-        assert min(abs(at - float(found.F32_peak_at))) < 1e-9
+        assert min(abs(at - float(peaks.F32_peak_at))) < 1e-9
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -85,10 +85,10 @@ def test_large_but_finite(drive, margin):
     ground = 0.3 + 0.32 - 0.35 - margin
     torque = LoadData("crank", torque=2.0)
     data = FourBarData(*links, ground, omega2=3.0, drive=drive, ground_angle=17.3, loads=(torque,))
-    found = ls.peaks(to_scene(data), of=["F32", "F32_bound"])
-    assert int(found.status) == 0
-    assert float(found.F32_peak) == pytest.approx(float(solve(data, float(found.F32_peak_at))["F32"]), rel=1e-12)
-    assert 0.1 / margin < float(found.F32_peak) < 1e1 / margin
+    peaks = ls.peaks(to_scene(data), of=["F32", "F32_bound"])
+    assert int(peaks.status) == 0
+    assert float(peaks.F32_peak) == pytest.approx(float(solve(data, float(peaks.F32_peak_at))["F32"]), rel=1e-12)
+    assert 0.1 / margin < float(peaks.F32_peak) < 1e1 / margin
 
 
 @pytest.mark.parametrize("lengths", [(0.3, 0.1 + 0.2, 0.7, 0.7), (0.1, 0.2, 0.3, 0.4)])
@@ -96,8 +96,8 @@ def test_change_points_within_the_rounding_of_lengths(lengths):
     """0.1 + 0.2 is 0.3 but for its last digit: a kite."""
     *links, ground = lengths
     press = ls.FourBar(*(ls.Link(length, 1.0, 0.01, 0.3 * length, 20.0) for length in links), ground=ground)
-    found = ls.peaks(ls.Scene(press, 10.0, gravity=(0.0, -9.81)), of=["F32"])
-    assert (float(found.F32_peak), int(found.status)) == (math.inf, UNBOUNDED)
+    peaks = ls.peaks(ls.Scene(press, 10.0, gravity=(0.0, -9.81)), of=["F32"])
+    assert (float(peaks.F32_peak), int(peaks.status)) == (math.inf, UNBOUNDED)
 
 
 @pytest.mark.parametrize("slide_angle", FRAMES)
@@ -105,17 +105,17 @@ def test_where_friction_wedges(slide_angle):
     """The guide's force grows as 1/(1 − μ·tan ψ) where friction and normal force drive each other up."""
     engine = ls.SliderCrank(CRANK, ls.Link(0.06, 0.6, 2e-3, 0.03), 0.5, friction=0.8, slide_angle=slide_angle)
     scene = ls.Scene(engine, 10.0, loads=[ls.Load("slider", force=(40.0, 0.0), frame="link")])
-    found, beside = ls.peaks(scene, of=["F14"]), np.array([1e-4, 1e-6])
+    result, beside = ls.peaks(scene, of=["F14"]), np.array([1e-4, 1e-6])
     sides = [at + side * beside for at in ls.check(scene).jam_angle.values for side in (-1.0, 1.0)]
     growth = [np.divide(*ls.sweep(scene, side, of=["F14"]).F14.values[::-1]) for side in sides]
     assert np.nanmax(growth) == pytest.approx(100.0, rel=0.01)
-    assert (float(found.F14_peak), int(found.status)) == (math.inf, UNBOUNDED)
-    assert min(abs(ls.check(scene).jam_angle.values - float(found.F14_peak_at))) < 1e-9
+    assert (float(result.F14_peak), int(result.status)) == (math.inf, UNBOUNDED)
+    assert min(abs(ls.check(scene).jam_angle.values - float(result.F14_peak_at))) < 1e-9
 
 
-def test_what_the_output_cannot_pass_on():
+def test_torque_ratio_is_unbounded_where_the_output_stands_still():
     """The torque ratio is the inverse of the rocker's rate, which changes sign where it turns round."""
     mechanism = machines(17.3)["omega4 of the press"][0]
-    found = ls.peaks(ls.Scene(mechanism, 1.0), of=["torque_ratio", "mechanical_advantage"])
-    assert float(found.torque_ratio_max) == math.inf and float(found.torque_ratio_min) == -math.inf
-    assert float(found.mechanical_advantage_peak) == math.inf
+    peaks = ls.peaks(ls.Scene(mechanism, 1.0), of=["torque_ratio", "mechanical_advantage"])
+    assert float(peaks.torque_ratio_max) == math.inf and float(peaks.torque_ratio_min) == -math.inf
+    assert float(peaks.mechanical_advantage_peak) == math.inf

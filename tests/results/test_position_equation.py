@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from judges import mp
+from references import mp
 from refusals import refusal
 
 import linksweep as ls
@@ -45,9 +45,9 @@ def test_it_is_the_sheets(ground_angle):
         A, B, C, D, E, F = (expected[name] for name in "ABCDEF")
         for branch, sign in (("open", -1), ("crossed", 1)):
             theta4, theta3 = root(A, B, C, sign), root(D, E, F, sign)
-            found = at.sel(branch=branch)
-            assert found.theta4.item() == pytest.approx(theta4 + ground_angle, abs=1e-12)
-            assert found.theta3.item() == pytest.approx(theta3 + ground_angle, abs=1e-12)
+            result = at.sel(branch=branch)
+            assert result.theta4.item() == pytest.approx(theta4 + ground_angle, abs=1e-12)
+            assert result.theta3.item() == pytest.approx(theta3 + ground_angle, abs=1e-12)
 
 
 def test_constants_know_no_angle_and_each_says_its_formula():
@@ -63,7 +63,7 @@ def test_constants_know_no_angle_and_each_says_its_formula():
 
 
 def test_designs_go_along():
-    """Of K1 … K5 each has the dims of its own lengths."""
+    """Each of K1 … K5 has the dims of its own lengths."""
     crank = xr.DataArray([0.05, 0.08], dims="crank")
     page = ls.position_equation(scene(**LENGTHS | {"a": crank}), ANGLES)
     assert page.K2.dims == () and page.K1.dims == ("crank",) and page.A.dims == ("crank", "theta2")

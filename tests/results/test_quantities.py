@@ -1,4 +1,4 @@
-"""The list of quantities: all of it can be had, over the dims and in the units that it tells."""
+"""Every listed quantity can be computed, over the dims and in the units that the list states."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Every variable scales with length, mass and time as its unit says, and says what it is."""
+"""Every variable scales with length, mass and time as its unit says, and states its meaning."""
 
 import re
 
@@ -13,7 +13,7 @@ LENGTH, MASS, TIME = 4.0, 8.0, 0.5
 
 
 def four_bar(length=1.0, mass=1.0, time=1.0):
-    """The same machine in other units: each number multiplied by what its dimension says."""
+    """Return the machine in other units: each number multiplied by the factors of its dimension."""
     bars = ls.FourBar(
         link(0.08, 0.5, 1e-3, 0.03, 20.0, length, mass),
         link(0.22, 0.7, 3e-3, 0.1, -10.0, length, mass),

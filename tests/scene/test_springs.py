@@ -4,13 +4,13 @@ import re
 from dataclasses import replace
 from functools import cache
 
-import judges
 import numpy as np
 import oracle
 import oracle_slider_crank
 import pytest
+import references
 import xarray as xr
-from judges import largest_force, log_uniform, mp, polar, turn
+from references import largest_force, log_uniform, mp, polar, turn
 
 import linksweep as ls
 from linksweep.engine import run
@@ -121,7 +121,7 @@ def as_loads(judge, move, action):
         else:
             pull = mp.mpf(action.coefficient) * ((vq - vp) * unit.conjugate()).real * unit
         ends = ((action.from_, pull), (action.to, -pull))
-        return [judges.LoadData(end[0], (F.real, F.imag), at=end[1:]) for end, F in ends if end[0] != "ground"]
+        return [references.LoadData(end[0], (F.real, F.imag), at=end[1:]) for end, F in ends if end[0] != "ground"]
     line, omega = {"ground": mp.mpc(1)} | move.line, {"ground": mp.mpf(0)} | move.omega
     if isinstance(action, ls.TorsionSpring):
         wound = mp.arg(line[action.to] / line[action.from_] / turn(action.free_angle))
@@ -129,7 +129,7 @@ def as_loads(judge, move, action):
     else:
         torque = mp.mpf(action.coefficient) * (omega[action.to] - omega[action.from_])
     ends = ((action.from_, torque), (action.to, -torque))
-    return [judges.LoadData(link, torque=M) for link, M in ends if link != "ground"]
+    return [references.LoadData(link, torque=M) for link, M in ends if link != "ground"]
 
 
 def random_actions(rng, judge, data):
@@ -179,7 +179,7 @@ def with_actions(judge, data, actions):
 
 
 def unknowns(judge, data):
-    return (*(force + axis for force in judges.FORCES for axis in "xy"), judge.torque_name(data))
+    return (*(force + axis for force in references.FORCES for axis in "xy"), judge.torque_name(data))
 
 
 def judged(judge, data, actions, theta2):

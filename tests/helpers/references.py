@@ -1,7 +1,7 @@
-"""What the independent judges of all mechanisms share: 60 digits, loads, Newton and Euler for a link, random scenes.
+"""Parts of the independent reference solutions of all mechanisms: 60 digits, loads, Newton and Euler, random scenes.
 
-Nothing here or in the judges knows the product. Every number is read as the binary double it is. Vectors are complex
-numbers, x + jy, from pin A.
+Nothing here or in the references imports the product, but for making its scenes. Every number is read as the binary
+double it is. Vectors are complex numbers, x + jy, from pin A.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -53,7 +53,7 @@ class LoadData:
 
 @dataclass(frozen=True)
 class Motion:
-    """Where everything is and how it moves: pins by letter, the rest by link."""
+    """Places, velocities and accelerations of a machine: pins by letter, the rest by link."""
 
     pin: dict[str, Any]
     line: dict[str, Any]  # unit vector from a link's first pin to its second
@@ -66,22 +66,22 @@ class Motion:
 
 
 def turn(degrees):
-    """Unit vector at an angle [degree]; exact at multiples of 90."""
+    """Return the unit vector at an angle [degree]; exact at multiples of 90."""
     return mp.expjpi(mp.mpf(degrees) / 180)
 
 
 def polar(at):
-    """Vector of (distance, angle [degree])."""
+    """Return the vector of (distance, angle [degree])."""
     return mp.mpf(at[0]) * turn(at[1])
 
 
 def cross(r, s):
-    """z component of r x s."""
+    """Return the z component of r x s."""
     return r.real * s.imag - r.imag * s.real
 
 
 def linear_solve(matrix: Sequence[Sequence], rhs: Sequence) -> list:
-    """Gaussian elimination with partial pivoting."""
+    """Solve a linear system by Gaussian elimination with partial pivoting."""
     n = len(rhs)
     rows = [[*map(mp.mpf, row), mp.mpf(b)] for row, b in zip(matrix, rhs, strict=True)]
     for k in range(n):
@@ -99,13 +99,13 @@ def linear_solve(matrix: Sequence[Sequence], rhs: Sequence) -> list:
 
 
 def two_rates(u, v, rhs) -> list:
-    """Real x, y of j x u - j y v = rhs."""
+    """Return the real x, y that solve j x u - j y v = rhs."""
     left, right = 1j * u, -1j * v
     return linear_solve([[left.real, right.real], [left.imag, right.imag]], [rhs.real, rhs.imag])
 
 
 def moving(links: dict[str, LinkData], pin, line, omega, alpha, first, velocity, acceleration) -> Motion:
-    """Links that turn so, with the places, velocities and accelerations of their first pins."""
+    """Return the motion of links from their rates and the places, velocities and accelerations of their first pins."""
     r = {name: polar((link.cg_distance, link.cg_angle)) * line[name] for name, link in links.items()}
     G = {name: first[name] + r[name] for name in links}
     vG = {name: velocity[name] + 1j * omega[name] * r[name] for name in links}
@@ -114,20 +114,20 @@ def moving(links: dict[str, LinkData], pin, line, omega, alpha, first, velocity,
 
 
 def load_force(move: Motion, load: LoadData):
-    """The force of a load in ground axes."""
+    """Return the force of a load in ground axes."""
     return mp.mpc(*load.force) * (move.line[load.link] if load.frame == "link" else 1)
 
 
 def load_point(move: Motion, load: LoadData):
-    """Where a load acts, from A."""
+    """Return the point at which a load acts, from A."""
     origin = (move.G if load.origin == "cg" else move.first)[load.link]
     return origin + polar(load.at) * move.line[load.link]
 
 
 def link_rows(data, move: Motion, name: str, link: LinkData, acting: Sequence, *others) -> tuple[list, list]:
-    """One link's three rows of the system and their right-hand sides: forces x, y and moments about its G.
+    """Return one link's three rows of the system and their right-hand sides: forces x, y and moments about its G.
 
-    `others` stand in its moments before the unknowns that come after the forces.
+    `others` are the coefficients, in its row of moments, of the unknowns that come after the forces.
     """
     G, forces = move.G[name], 2 * len(FORCES)
     rows = [[mp.mpf(0)] * (forces + len(others)) for _ in range(3)]
@@ -146,39 +146,39 @@ def link_rows(data, move: Motion, name: str, link: LinkData, acting: Sequence, *
 
 
 def joined(blocks: Iterable[tuple[list, list]]) -> tuple[list, list]:
-    """Rows and right-hand sides of all links, one under the other."""
+    """Return the rows and right-hand sides of all links, one under the other."""
     rows, sides = zip(*blocks, strict=True)
     return [row for block in rows for row in block], [side for block in sides for side in block]
 
 
 def centres(move: Motion, numbers: dict[str, int]) -> dict:
-    """{'G2': …, 'vG2': …, 'aG2': …}: where the centres of gravity are and how they move."""
+    """Return {'G2': …, 'vG2': …, 'aG2': …}: place, velocity and acceleration of the centres of gravity."""
     return {f"{of}{k}": getattr(move, of)[name] for name, k in numbers.items() for of in ("G", "vG", "aG")}
 
 
 def arms(move: Motion, acting: dict[str, Sequence], numbers: dict[str, int]) -> dict:
-    """{'R12': …}: from the centre of gravity of each link k to where link i acts on it, Rik."""
-    found = {}
+    """Return {'R12': …}: Rik, from the centre of gravity of each link k to the pin at which link i acts on it."""
+    result = {}
     for name, forces in acting.items():
         for force, pin, _ in forces:
             (other,) = {*force[1:]} - {str(numbers[name])}
-            found[f"R{other}{numbers[name]}"] = move.pin[pin] - move.G[name]
-    return found
+            result[f"R{other}{numbers[name]}"] = move.pin[pin] - move.G[name]
+    return result
 
 
 def components(vectors: dict) -> dict:
-    """{'B': x + jy} as {'Bx': x, 'By': y}."""
+    """Return {'B': x + jy} as {'Bx': x, 'By': y}."""
     parts = {"x": "real", "y": "imag"}
     return {f"{key}{axis}": getattr(z, part) for key, z in vectors.items() for axis, part in parts.items()}
 
 
 def largest_force(result: dict):
-    """Largest of the four pin forces [N]: the scale of force errors."""
+    """Return the largest of the four pin forces [N]: the scale of force errors."""
     return max(result[name] for name in FORCES)
 
 
-def happening(data) -> dict:
-    """What happens to a machine, in the words of `linksweep.Scene`."""
+def scene_parameters(data) -> dict:
+    """Return speed, gravity, drive and loads by the parameters of `linksweep.Scene`."""
     import linksweep as ls
 
     loads = [
@@ -192,40 +192,40 @@ def happening(data) -> dict:
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number between low and high, every decade as likely as the next."""
+    """Return a number between low and high, every decade as likely as the next."""
     return float(10 ** rng.uniform(np.log10(low), np.log10(high)))
 
 
 def random_link(rng: np.random.Generator, length: float) -> LinkData:
-    """Mass over two decades, inertia on the scale of m L^2, centre of gravity anywhere within 1.5 lengths."""
+    """Return a link: mass over two decades, inertia on the scale of m L^2, centre of gravity within 1.5 lengths."""
     mass = log_uniform(rng, 0.1, 10.0)
     inertia = mass * length**2 * float(rng.uniform(0.02, 0.5))
     return LinkData(length, mass, inertia, float(rng.uniform(0, 1.5)) * length, float(rng.uniform(-180, 180)))
 
 
 def random_gravity(rng: np.random.Generator, acceleration: float) -> tuple[float, float]:
-    """None, the Earth's, or one comparable with the inertial accelerations, in any direction."""
+    """Return no gravity, the Earth's, or one on the scale of the inertial accelerations, in any direction."""
     size = (0.0, 9.81, acceleration * log_uniform(rng, 0.1, 10.0))[rng.integers(3)]
     angle = rng.uniform(0, 2 * np.pi)
     return float(size * np.cos(angle)), float(size * np.sin(angle))
 
 
 def random_load(rng: np.random.Generator, links: Sequence[str], force: float, length: float) -> LoadData:
-    """A force, a torque or both, of the given scales, anywhere on any of the links in either frame."""
-    what = rng.integers(3)
+    """Return a force, a torque or both, of these scales, anywhere on any of the links in either frame."""
+    kind = rng.integers(3)
     fx, fy, torque = (float(rng.uniform(-2, 2)) * scale for scale in (force, force, force * length))
     return LoadData(
         str(rng.choice(links)),
-        force=(fx, fy) if what != 0 else (0.0, 0.0),
+        force=(fx, fy) if kind != 0 else (0.0, 0.0),
         at=(float(rng.uniform(0, 1.5)) * length, float(rng.uniform(-180, 180))),
         frame=str(rng.choice(["ground", "link"])),
-        torque=torque if what != 1 else 0.0,
+        torque=torque if kind != 1 else 0.0,
         origin=str(rng.choice(["pin", "cg"])),
     )
 
 
 def crank_angle(rng: np.random.Generator, good: Callable[[float], bool]) -> float:
-    """A random crank angle [degree] that is good."""
+    """Return a random crank angle [degree] that is good."""
     for _ in range(1000):
         if good(theta2 := float(rng.uniform(-180, 540))):
             return theta2
