@@ -272,9 +272,11 @@ def _compression_problems(path: str, cycle: Cycle) -> list[str]:
 
 def _below(peak: Number, compressed: Number) -> str:
     """Return the problem of a peak pressure that compression alone exceeds; an empty text for none."""
-    peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
-    if is_lazy(peak) or is_lazy(compressed) or not (short := (peak < compressed).values).any():
+    too_low = peak < compressed
+    if is_lazy(too_low) or not np.any(too_low):
         return ""
+    peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
+    short = (peak < compressed).values
     k = int(np.argmax(short))
     least = f"{compressed.values.reshape(-1)[k]:.6g} Pa"
     return f"{peak.values.reshape(-1)[k]:.15g} Pa: must be at least {least}, what compression alone gives"
