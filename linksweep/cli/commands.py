@@ -54,9 +54,7 @@ def add_commands(commands: Any) -> None:
     pins.add_argument("--frame", choices=FRAMES, default="ground", help="axes of the load diagrams (ground)")
     _plots(pins)
 
-    why = _command(
-        commands, "breakdown", _breakdown, "why a pin is loaded: the share of each source in its largest force"
-    )
+    why = _command(commands, "breakdown", _breakdown, "sources of a pin's load: the part of each in its largest force")
     why.add_argument("of", help="a pin force or the drive's torque, such as F32")
     _plots(why)
 
@@ -70,7 +68,12 @@ def add_commands(commands: Any) -> None:
     shaking.add_argument("-n", type=int, default=12, help="the highest order (12)")
     _plots(shaking)
 
-    drive = _command(commands, "flywheel", _flywheel, "what the drive gives in a cycle, and the flywheel that evens it")
+    drive = _command(
+        commands,
+        "flywheel",
+        _flywheel,
+        "power and work of the drive, and the flywheel that evens its speed",
+    )
     drive.add_argument("--fluctuation", type=float, default=0.02, help="coefficient of speed fluctuation (0.02)")
     _plots(drive)
 

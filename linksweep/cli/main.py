@@ -68,7 +68,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _print_anything() -> None:
-    """Print a question mark for what the terminal's encoding lacks, such as ° in ASCII."""
+    """Print a question mark for characters that the terminal's encoding lacks, such as ° in ASCII."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
@@ -102,7 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     samples = "the largest of so many samples, not the exact peaks"
     worst.add_argument("--theta2", type=int, metavar="N", help=samples)
-    worst.add_argument("--of", type=_names, help="names of the quantities wanted, separated by commas")
+    worst.add_argument("--of", type=_names, help="names of the quantities, separated by commas")
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
 
@@ -117,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_quantities(commands: Any) -> None:
-    listed = commands.add_parser("quantities", help="all that sweep and peaks can be asked for: names, units, meanings")
+    listed = commands.add_parser("quantities", help="all quantities of sweep and peaks: names, units, meanings")
     listed.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     listed.add_argument("words", nargs="*", help="only those with these words in name, unit or meaning, such as force")
     listed.set_defaults(run=_quantities)
@@ -158,7 +158,7 @@ def _sweep(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
     cycle = sweep(scene, options.angles, of=options.of)
     figure = None
-    if options.plot:  # it shows all pin forces, whatever is asked for in the file
+    if options.plot:  # with all pin forces, whichever quantities the file has
         figure = _figure(cycle if options.of is None else sweep(scene, options.angles))
     save(cycle, options.output)
     print(f"written: {options.output}")

@@ -50,7 +50,7 @@ def _unit(values: xr.DataArray) -> str:
 
 
 def _remarks(ds: xr.Dataset, machine: Mechanism) -> list[str]:
-    """Return what the status of peaks means, where it is not ok throughout."""
+    """Return the meaning of the status of peaks in sentences, where it is not ok throughout."""
     status = np.asarray(ds.status.values).reshape(-1)
     partly, never, unbounded = (int((status == k).sum()) for k in (1, 2, 3))
     who, which = "It does", ""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from linksweep.plot.kit.film import Film
 
-SAMPLES = 720  # of the curves, where a scene is given
+SAMPLES = 720  # of the curves, for a scene
 SIZE, DPI = (6.0, 6.4), 90  # inches, and pixels to an inch
 ENDS = ("cannot_assemble", "toggle", "no_cycle", "left_track", "stalled")  # statuses beyond which nothing moves
 KNOWN = 24  # frames that the limits of the axes are made for
@@ -43,7 +43,7 @@ OFF_SCALE = 1.2  # of the longest arrow on the scale: arrows of forces beyond it
 NAMED = 0.08  # of the longest arrow: shorter ones have no name
 TINY = 1e-9  # of the largest force: less than that is rounding
 NOTHING = "there are not two angles with a result, side by side: see the status of ls.sweep, and ls.check"
-ROUND = (5.0, 2.0, 1.0)  # what a scale's number begins with
+ROUND = (5.0, 2.0, 1.0)  # first digits of a scale's number
 
 
 class Frame(NamedTuple):
@@ -91,7 +91,7 @@ def animate(
     refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
     require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
     if isinstance(scene, MultiCylinder):
-        from linksweep.plot.cylinder_film import film_of_cylinders  # here: it takes what is below
+        from linksweep.plot.cylinder_film import film_of_cylinders  # here: it imports this file
 
         refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
         with small_type():
@@ -214,8 +214,7 @@ def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) ->
 
 def _rows(cycle: xr.Dataset, force: str) -> np.ndarray:
     """Return the components (x, y) at every angle, also of a force that does not depend on it."""
-    count = cycle.sizes[signals.INDEX]
-    return np.array([np.broadcast_to(part.values, count) for part in signals.components(cycle, force)])
+    return np.array([signals.spread(part, cycle.sizes[signals.INDEX]) for part in signals.components(cycle, force)])
 
 
 def arrows_of(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
@@ -317,7 +316,7 @@ def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
     track_plot.press(ax, angle, radius * (1.0 + track_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
 
 
-# ----------------------------------------------------------------------------------------------------- what all share
+# ------------------------------------------------------------------------------------------- panels, readings, dots
 
 
 def panels() -> tuple[Figure, Axes, Axes]:

@@ -111,7 +111,7 @@ def heat_map(
     mesh = ax.pcolormesh(across.edges, up.edges, colored, cmap="viridis", norm=norm(limits), rasterized=True)
     color_bar(ax, mesh, column(ds[of], values[ok]), limits)
     handles = [_best(ax, ds[of], across, up, np.where(ok, values, np.nan), maximize)]
-    if contours is True:  # the colour bar says what they are
+    if contours is True:  # the colour bar has their unit
         _contours(ax, ds[of], across, up, ok)
     elif contours:
         handles.append(_contours(ax, ds[contours], across, up, ok))

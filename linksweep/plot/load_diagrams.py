@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 TICK = 30.0  # degrees of the crank between marks on the locus
 LABELLED = 90.0  # degrees between marks with a number
-BEYOND = 1.1  # of the largest load shown: loads larger than that are off the scale
+BEYOND = 1.1  # of the largest load on the scale: larger loads are off it
 
 
 def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes | None = None) -> Axes:

@@ -34,7 +34,7 @@ class Shape(NamedTuple):
     curve: np.ndarray  # (2, angles) of the coupler point, closed
     point: np.ndarray
     block: np.ndarray  # (2, angles): the places of the block's pin, the last one the present
-    along: np.ndarray  # (2, angles): what the block's sides run along
+    along: np.ndarray  # (2, angles): the direction of the block's sides
 
 
 def mechanism(

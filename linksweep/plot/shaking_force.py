@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 ENDING = "_amplitude"
 TICK = 30.0  # degrees of the crank between dots
-BEYOND = 1.1  # of the largest force shown: forces larger than that are off the scale
+BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
 LABELLED = 90.0  # degrees between dots with a number
 
 

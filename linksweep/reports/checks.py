@@ -14,8 +14,8 @@ from linksweep.reports.results_of_page import STEPS, Results
 from linksweep.reports.tables import UNITS
 
 LEAST_TRANSMISSION = 40.0
-"""Degrees, below which a linkage is commonly said to transmit badly: R. L. Norton, Design of Machinery, chapter 3."""
-BALANCED = 1e-9  # of what the powers are made of: what rounding leaves, with room
+"""Least transmission angle of common practice [degree]: R. L. Norton, Design of Machinery, chapter 3."""
+BALANCED = 1e-9  # of the terms of the powers: rounding, with a margin
 SOUND = {"whole", "everywhere"}
 """Meanings of a flag that all is well: such a flag has a verdict."""
 KNOWN = {

@@ -1,7 +1,7 @@
 """The inputs of a report: links in a table, motion and loads in words.
 
-Lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in bar. What changes over the
-revolution is told by its least and its greatest value.
+Lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in bar. A number
+that changes over the revolution stands as its least and its largest value.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ SHOWN = {
     "spring_rate": ("N/mm", 1e-3),
     "dimensionless": ("", 1.0),
 }
-"""Unit, and how many of it make the scene's own unit; other kinds of number are shown in that."""
+"""Unit on the page, and its count in the scene's own unit; other kinds of number stand in the scene's unit."""
 LEFT_OUT = ("length", "angle")
-"""Kinds of which a mechanism's own default, no offset and no turn, need not be said."""
-LONG = 10.0  # m: from here on a length is shown in m
+"""Kinds of number that are left out at their default, no offset and no turn."""
+LONG = 10.0  # m: lengths from here on stand in m
 
-SAMPLES = 720  # angles at which what changes over the revolution is looked at
+SAMPLES = 720  # angles for numbers that change over the revolution
 
 
 def kind_of(scene: Scene) -> str:

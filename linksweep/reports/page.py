@@ -2,7 +2,7 @@
 
 The template is `page.html`. Inputs, checks, tables and figures are pieces of their own: `page_inputs`, `page_checks`,
 `page_tables`, `page_figures`. There is no date in the page, and the figures are drawn with matplotlib's own settings
-whatever the user's are, so that the same scene gives the same file, byte for byte.
+whatever the user's are, so that equal scenes give equal files, byte for byte.
 """
 
 from __future__ import annotations

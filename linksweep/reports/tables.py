@@ -11,7 +11,7 @@ import xarray as xr
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
 
-NOISE = 1e-12  # of what it is the mean of: what is left of a sum that cancels
+NOISE = 1e-12  # of the terms of a mean: the rounding of a sum that cancels
 UNITS = {"degree": "°", "1": "", "m s-1": "m/s", "m s-2": "m/s²", "kg m2": "kg m²"}
 WORKS = {
     "work_fed": "work fed in a cycle",

@@ -100,7 +100,7 @@ def none_ok(ds: xr.Dataset, names: Iterable[str]) -> str:
     meanings = str(ds["status"].attrs.get("flag_meanings", "")).split()
     counts = {word: int((ds["status"] == code).sum()) for code, word in enumerate(meanings)}
     statuses = ", ".join(f"{count} {word}" for word, count in counts.items() if count)
-    return f'{nothing} (status: {statuses}); to see what is finite all the same, give ds.drop_vars("status")'
+    return f'{nothing} (status: {statuses}); to plot all that is finite, pass ds.drop_vars("status")'
 
 
 def column(item: xr.DataArray, values: np.ndarray) -> Column:
@@ -138,8 +138,8 @@ def whole(count: int) -> str:
 def span(values: np.ndarray) -> tuple[float, float]:
     """Return the ends of a scale that shows all designs, but for a few that lie far from the others.
 
-    Near toggles peaks grow without bound, and one such design would flatten all the others. What is farther from the
-    middle nine tenths than these are wide is off the scale.
+    Near toggles peaks grow without bound, and one such design would flatten all the others. A design
+    is off the scale where it is farther from the middle nine tenths than these are wide.
     """
     low, high = float(values.min()), float(values.max())
     least, most = (float(end) for end in np.quantile(values, (0.05, 0.95)))

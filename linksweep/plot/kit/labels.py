@@ -1,7 +1,7 @@
 """Labels that find a free place when the figure is drawn: near their point, off the curves, and off each other.
 
-They look at what is really on the paper: the size of the figure, of the font and of the axes at that moment. So they
-stay right when the figure is resized, or laid out anew because another panel came.
+Places are computed from the size of the figure, of the font and of the axes at that moment, so that labels stay free
+when the figure is resized, or laid out anew for another panel.
 """
 
 from __future__ import annotations

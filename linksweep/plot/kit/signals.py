@@ -179,8 +179,8 @@ def tip(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def scale(rows: Sequence[np.ndarray], peaks: Iterable[Peak | None]) -> float:
     """Return the largest size that a plot of these rows should show.
 
-    Beside a toggle forces grow without bound, and the largest sample only says how near the grid came to it. Where that
-    would flatten all the rest, the rest is shown, and what lies beyond is to be marked as off the scale.
+    Beside a toggle forces grow without bound, and the largest sample only measures how near the grid came to it. Where
+    that sample would flatten all others, the scale is theirs, and larger values are marked as off the scale.
     """
     largest = max((float(np.max(np.abs(row), initial=0.0, where=np.isfinite(row))) for row in rows), default=0.0)
     usual = max((_largest_away_from_gaps(np.abs(row)) for row in rows), default=0.0)

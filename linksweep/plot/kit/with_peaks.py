@@ -21,10 +21,10 @@ from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
 
 ASIDE = 1e-7
-"""Degrees beside a peak, where its one-sided limit is told in all the digits that a plot shows."""
+"""Distance from a peak [degree] at which its one-sided limit agrees in all digits that a plot prints."""
 SHAKING = ("Fsx", "Fsy")
 EQUAL = 1e-9
-"""Of its largest value: how far a sample may be from that of the scene; else the numbers are not the scene's."""
+"""Largest difference, relative to the largest value, between a sample and the scene's own; else it was altered."""
 
 
 def with_peaks(ds: xr.Dataset) -> xr.Dataset:
@@ -70,7 +70,7 @@ def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | 
 
 
 def _raise_to_infinity(ds: xr.Dataset, worst: xr.Dataset, period: float) -> None:
-    """Make infinite what is largest beside an infinite peak: it has an angle, and its size no meaning."""
+    """Make the largest samples beside an infinite peak infinite: only their angle has a meaning."""
     for name in (str(name) for name in worst.data_vars if f"{name}_at" in worst and np.isinf(worst[name])):
         stem, sign = name.rpartition("_")[0], float(np.sign(worst[name]))
         parts = [ds[part] for part in ([stem] if stem in ds else [f"{stem}x", f"{stem}y"]) if part in ds]
