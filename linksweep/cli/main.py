@@ -101,7 +101,7 @@ def _parser() -> argparse.ArgumentParser:
     worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
     worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     samples = "the largest of so many samples, not the exact peaks"
-    worst.add_argument("--theta2", type=int, metavar="N", help=samples)
+    worst.add_argument("--theta2", "--theta", dest="angles", type=int, metavar="N", help=samples)
     worst.add_argument("--of", type=_names, help="names of the quantities, separated by commas")
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
     worst.set_defaults(run=_peaks)
@@ -169,7 +169,7 @@ def _sweep(options: argparse.Namespace) -> None:
 
 def _peaks(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
-    ds = peaks(scene, of=options.of, theta2=options.theta2)
+    ds = peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
     print(peak_table(ds, scene.mechanism))
     if options.output:
         save(ds, options.output)
