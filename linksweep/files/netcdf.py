@@ -60,12 +60,18 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
     ...         ls.save(scene, os.path.join(folder, name))
     ...         assert ls.load_scene(os.path.join(folder, name)) == scene
     """
+    refuse([] if isinstance(ds, Scene) else dataset_problems(ds))
     if isinstance(ds, Scene):
         _save_scene(ds, path)
     elif ending_of(path, RESULTS) == ".csv":
         to_csv(ds, path)
     else:
         _save_dataset(ds, path)
+
+
+def dataset_problems(ds: Any) -> list[str]:
+    """Return a problem unless an object is a Dataset."""
+    return [] if isinstance(ds, xr.Dataset) else [f"ds is a {type(ds).__name__}: must be a Dataset, or a Scene"]
 
 
 def _save_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
@@ -166,6 +172,7 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset", whole: bool = True) -> Scene
 
     Raises ValueError where the Dataset holds no scene.
     """
+    refuse(dataset_problems(ds))
     text = ds.attrs.get("scene")
     if not isinstance(text, str):
         raise ValueError(

@@ -10,6 +10,7 @@ import xarray as xr
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import joints_of
 from linksweep.plot.kit.style import BLUE, GREY, VERMILION, crank_angles, grid, small_type
+from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -58,6 +59,8 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     """
     import matplotlib.pyplot as plt
 
+    require_scene(before)
+    require_scene(after)
     drawing = joints_of(before.mechanism)
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces

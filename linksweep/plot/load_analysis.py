@@ -14,6 +14,7 @@ from linksweep.base.validate import name_problems, refuse
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals, style
 from linksweep.plot.kit.style import BLUE, GREY, VERMILION, axes_or_new, crank_angles, grid
+from linksweep.results.compute import require
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
 
@@ -126,6 +127,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     >>> ls.plot.over_speed(ls.example("press"), "F32", speeds=[10, 20, 30, 40, 50], below=500.0).get_xlabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
+    require(scene, "drives")
     values = np.asarray(all_to_float64(speeds, "angular_velocity"), dtype=float)
     omega2 = xr.DataArray(values, dims="omega2")
     at_rest = replace(scene, omega2=0.0)

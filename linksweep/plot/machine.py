@@ -158,7 +158,8 @@ def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.
 def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
     """Return the machine's shape at the last angle of a cycle, with the curves over the others."""
     machine, carrier = scene.mechanism, drawing.carrier
-    moving = {pin: np.array([cycle[f"{pin}x"].values, cycle[f"{pin}y"].values]) for pin in drawing.moving}
+    count = cycle.sizes[signals.INDEX]
+    moving = {pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving}
     fixed = drawing.fixed(machine)
     link = getattr(machine, carrier.role)
     distance, turned = point or (link.cg_distance, link.cg_angle)

@@ -17,7 +17,7 @@ from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind,
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.links import Link
-from linksweep.results.compute import require, require_scene
+from linksweep.results.compute import require
 from linksweep.scene.checked_number import checked_number, unit_attribute_problems
 from linksweep.scene.scene import Scene
 
@@ -93,7 +93,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     >>> scene.mechanism.crank.mass, round(scene.mechanism.crank.cg_distance, 15)
     (0.496, 0.0)
     """
-    require_scene(scene)
+    require(scene, "bodies")
     weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
     refuse(
         [f"counterweights = {quote(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]

@@ -1,0 +1,310 @@
+"""Every machine meets every public function, plot and command: a result, or a sentence that states what it lacks.
+
+A sentence is a ValueError of linksweep's own (of a command, exit status 2) of one line, which names the machine or its
+parameter. Anything else that is raised, such as a KeyError from within, fails. The pairs that give a sentence are
+listed, so that none joins them unseen. What a function takes besides the machine stands in one table; a public function
+without an entry fails.
+"""
+
+import dataclasses
+import inspect
+import re
+import traceback
+from collections.abc import Callable, Iterable
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+import scotch_yoke
+import xarray as xr
+
+import linksweep as ls
+from linksweep.cli.main import main
+from linksweep.plot.accessor import Cycle
+
+PACKAGE = Path(ls.__file__).parent
+SAMPLES = 24
+BEARING = ls.Bearing(diameter=0.02, length=0.03, friction=0.05, capacity=5e4)
+MOTOR = ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01)
+WEIGHT = ls.Counterweight("crank", mass=0.1, at=(0.05, 180.0))
+
+
+class Subject:
+    """A machine with what functions take besides it: names of a force and of a parameter, a cycle, a study."""
+
+    def __init__(self, name: str, machine: ls.Scene | ls.MultiCylinder) -> None:
+        self.name, self.machine, self.several = name, machine, isinstance(machine, ls.MultiCylinder)
+        self.scene = machine.engine if self.several else machine
+        mechanism = self.scene.mechanism
+        self.kind = type(machine if self.several else mechanism).__name__
+        names = ("Fs", "T12") if self.several else mechanism.peak_quantities(self.scene.drive)
+        self.force, self.drive = names[0], names[-1]
+        self.samples = {} if self.several else {mechanism.index: SAMPLES}  # peaks of several cylinders are exact
+        self.word = mechanism.motion[0]
+        self.value = getattr(self.scene, self.word)
+        self.range = {self.word: (self.value, 1.1 * self.value)}
+        pins = [f"main{k}" for k in range(1, 6)] if self.several else mechanism.pins or "A"
+        self.bearings = dict.fromkeys(pins, BEARING)
+        self.numbers = {field.name for thing in (mechanism, self.scene) for field in dataclasses.fields(thing)}
+
+    def of(self, scene: ls.Scene) -> ls.Scene | ls.MultiCylinder:
+        """Return the machine for another scene of its mechanism."""
+        return dataclasses.replace(self.machine, engine=scene) if self.several else scene
+
+    def sweep(self, **names) -> xr.Dataset:
+        return self.machine.sweep(SAMPLES, **names) if self.several else ls.sweep(self.machine, SAMPLES, **names)
+
+    def peaks(self, scene: ls.Scene) -> xr.Dataset:
+        return ls.peaks(self.of(scene), of=[self.force, self.drive], **self.samples)
+
+    @cached_property
+    def cycle(self) -> xr.Dataset:
+        return self.sweep()
+
+    @cached_property
+    def shaking(self) -> xr.Dataset:
+        return self.sweep(of=["Fsx", "Fsy", "Fs", "Ms"])
+
+    @cached_property
+    def designs(self) -> ls.Scene:
+        return ls.sample(self.scene, self.range, n=4)
+
+    @cached_property
+    def study(self) -> xr.Dataset:
+        return self.peaks(self.designs)
+
+    @cached_property
+    def grid(self) -> xr.Dataset:
+        speeds, pulls = (
+            xr.DataArray([self.value, 1.1 * self.value], dims="pace"),
+            xr.DataArray([0.0, -9.81], dims="pull"),
+        )
+        return self.peaks(dataclasses.replace(self.scene, gravity=(0.0, pulls), **{self.word: speeds}))
+
+    @cached_property
+    def breakdown(self) -> xr.Dataset:
+        return ls.breakdown(self.machine, self.force, theta2=SAMPLES)
+
+    @cached_property
+    def flywheel(self) -> xr.Dataset:
+        return ls.flywheel(self.machine, fluctuation=0.02, theta2=SAMPLES)
+
+
+CALLS = {
+    "bearings": lambda s, path: ls.bearings(s.machine, s.bearings, theta2=SAMPLES),
+    "best_counterweights": lambda s, path: ls.best_counterweights(
+        s.machine, {"Fs_rms": 1.0}, radius=0.06, most=0.5, theta2=SAMPLES
+    ),
+    "breakdown": lambda s, path: s.breakdown,
+    "check": lambda s, path: ls.check(s.machine),
+    "compare": lambda s, path: ls.compare(s.machine, s.machine, of=[f"{s.force}_peak"], theta2=SAMPLES),
+    "counterweights": lambda s, path: ls.counterweights(s.machine, radius=0.06),
+    "coupler_curve": lambda s, path: ls.coupler_curve(s.machine, (0.10, 15.0), theta2=SAMPLES),
+    "duty": lambda s, path: ls.duty(s.machine),
+    "flywheel": lambda s, path: s.flywheel,
+    "geometry": lambda s, path: ls.geometry(s.machine),
+    "load_scene": lambda s, path: ls.load_scene(written(s, path)),
+    "load_spectrum": lambda s, path: ls.load_spectrum(ls.bearings(s.machine, s.bearings, theta2=SAMPLES)),
+    "motor_load": lambda s, path: ls.motor_load(s.machine, MOTOR, theta2=SAMPLES),
+    "objective": lambda s, path: ls.objective(s.machine, s.range, minimize=f"{s.force}_peak", **s.samples)([[s.value]]),
+    "open_study": lambda s, path: ls.open_study(stored(s, path)).close(),
+    "orders": lambda s, path: ls.orders(s.shaking, "Fsx", n=3),
+    "pareto": lambda s, path: ls.pareto(s.study, minimize=[f"{s.force}_peak"], maximize=[f"{s.drive}_peak"]),
+    "peaks": lambda s, path: ls.peaks(s.machine, of=[s.drive], **s.samples),
+    "pin_friction": lambda s, path: ls.pin_friction(s.machine, s.bearings, theta2=SAMPLES),
+    "position_equation": lambda s, path: ls.position_equation(s.machine, 45.0),
+    "quantities": lambda s, path: ls.quantities(s.machine, "force"),
+    "regressor": lambda s, path: ls.regressor(s.machine, [s.drive], theta2=SAMPLES),
+    "report": lambda s, path: ls.report(s.machine, path / "page.html"),
+    "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
+    "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
+    "scene_at": lambda s, path: ls.scene_at(s.study, design=2),
+    "shaking_moment": lambda s, path: ls.shaking_moment(s.shaking, about=(0.1, 0.0)),
+    "speed_limit": lambda s, path: ls.speed_limit(s.machine, s.force, below=1e5),
+    "speed_separation": lambda s, path: ls.speed_separation(s.machine, theta2=SAMPLES),
+    "study": lambda s, path: stored(s, path),
+    "sweep": lambda s, path: ls.sweep(s.machine, SAMPLES, of=[s.force, s.drive]),
+    "system": lambda s, path: ls.system(s.machine, 45.0),
+    "with_counterweights": lambda s, path: ls.with_counterweights(s.machine, [WEIGHT]),
+    "plot.animate": lambda s, path: ls.plot.animate(s.machine, frames=3),
+    "plot.balance": lambda s, path: ls.plot.balance(s.machine, s.machine, theta2=SAMPLES),
+    "plot.bearing": lambda s, path: s.cycle.linksweep.bearing(s.force),
+    "plot.bearings": lambda s, path: s.cycle.linksweep.bearings(),
+    "plot.breakdown": lambda s, path: s.breakdown.linksweep.breakdown(),
+    "plot.cycle": lambda s, path: s.cycle.linksweep.cycle(),
+    "plot.flywheel": lambda s, path: s.flywheel.linksweep.flywheel(),
+    "plot.forces": lambda s, path: s.cycle.linksweep.forces(),
+    "plot.heat_map": lambda s, path: s.grid.linksweep.heat_map(f"{s.drive}_peak"),
+    "plot.hodograph": lambda s, path: s.shaking.linksweep.hodograph(),
+    "plot.loop": lambda s, path: s.cycle.linksweep.loop(),
+    "plot.mechanism": lambda s, path: ls.plot.mechanism(s.machine, 45.0),
+    "plot.motor_load": lambda s, path: ls.motor_load(s.machine, MOTOR, theta2=SAMPLES).linksweep.motor_load(MOTOR),
+    "plot.orders": lambda s, path: ls.orders(s.shaking, "Fsx", n=3).linksweep.orders(),
+    "plot.over_speed": lambda s, path: ls.plot.over_speed(s.machine, s.force, speeds=[10.0, 20.0]),
+    "plot.parallel_coordinates": lambda s, path: s.study.linksweep.parallel_coordinates(),
+    "plot.scatter": lambda s, path: s.study.linksweep.scatter(x=f"{s.force}_peak", y=f"{s.drive}_peak"),
+    "plot.torque": lambda s, path: s.cycle.linksweep.torque(),
+    "plot.torque_with_flywheel": lambda s, path: s.flywheel.linksweep.torque_with_flywheel(),
+    "accessor.mechanism": lambda s, path: s.cycle.linksweep.mechanism(45.0),
+    "accessor.scene": lambda s, path: s.cycle.linksweep.scene,
+    "accessor.to_csv": lambda s, path: s.cycle.linksweep.to_csv(path / "cycle.csv"),
+    "accessor.to_pandas": lambda s, path: s.cycle.linksweep.to_pandas(),
+}
+"""A call of each public function, plot and method of results, by what it takes of a machine and a folder.
+
+Plots of a Dataset are called as its methods.
+"""
+
+NO_MACHINE = {"example"}
+
+COMMANDS = {
+    "sweep": lambda s, path: ["sweep", written(s, path), "--theta2", SAMPLES, "-o", path / "cycle.nc"],
+    "peaks": lambda s, path: ["peaks", written(s, path), "--theta2", SAMPLES],
+    "quantities": lambda s, path: ["quantities", written(s, path), "force"],
+    "study": lambda s, path: ["study", written(s, path), "-o", path / "study.nc", "--of", s.force],
+    "check": lambda s, path: ["check", written(s, path)],
+    "report": lambda s, path: ["report", written(s, path), "-o", path / "page.html"],
+    "animate": lambda s, path: ["animate", written(s, path), "-o", path / "film.gif", "--frames", 2],
+    "bearings": lambda s, path: ["bearings", written(s, path), "--diameter", "2 cm", "--length", "3 cm"],
+    "breakdown": lambda s, path: ["breakdown", written(s, path), s.force],
+    "balance": lambda s, path: ["balance", written(s, path), "--radius", "6 cm"],
+    "orders": lambda s, path: ["orders", written(s, path)],
+    "flywheel": lambda s, path: ["flywheel", written(s, path)],
+}
+"""Arguments of each command that takes a scene; `demo` takes none."""
+
+LACKING: dict[str, str] = {
+    "press": "plot.loop",
+    "engine": "best_counterweights position_equation regressor speed_limit speed_separation plot.loop",
+    "quick-return": "position_equation plot.loop",
+    "loop": """
+        bearings best_counterweights breakdown counterweights coupler_curve duty flywheel geometry load_spectrum
+        motor_load orders pin_friction position_equation regressor shaking_moment speed_limit speed_separation
+        with_counterweights plot.balance plot.bearing plot.bearings plot.breakdown plot.flywheel plot.forces
+        plot.hodograph plot.mechanism plot.motor_load plot.orders plot.over_speed plot.torque
+        plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown command.balance
+        command.orders command.flywheel
+    """,
+    "scotch-yoke": "counterweights position_equation plot.loop command.balance",
+    "inline-four": """
+        best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load
+        objective open_study pin_friction position_equation quantities regressor sample scene_at speed_limit
+        speed_separation study sweep system with_counterweights plot.balance plot.bearing plot.bearings
+        plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
+        plot.torque_with_flywheel accessor.mechanism accessor.scene
+    """,
+}
+"""The pairs that give a sentence, by machine."""
+
+OF_RESULTS = ("plot.", "accessor.", "orders", "pareto", "save", "scene_at", "shaking_moment")
+"""Calls that take a Dataset, which may be all that their sentence knows."""
+
+
+def written(subject: Subject, path):
+    """Return a scene file of the machine."""
+    ls.save(subject.machine, path / "scene.toml")
+    return path / "scene.toml"
+
+
+def stored(subject: Subject, path):
+    """Return the file of a study of two designs."""
+    ls.study(subject.of(subject.designs), path / "study.nc", of=[subject.force], **subject.samples).close()
+    return path / "study.nc"
+
+
+@lru_cache
+def subject(name: str) -> Subject:
+    if name == "scotch-yoke":
+        yoke = scotch_yoke.ScotchYoke(ls.Bar(0.10, 0.03, 0.02, 7800.0), yoke_mass=5.0)
+        push = ls.Load("yoke", force=(-100.0, 0.0), at=(0.3, 0.0))
+        return Subject(name, ls.Scene(yoke, omega2=20.0, gravity=(0.0, -9.81), loads=[push]))
+    if name == "inline-four":
+        return Subject(
+            name, ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360], positions=[-0.1, 0.0, 0.1, 0.2])
+        )
+    return Subject(name, ls.example(name))
+
+
+MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", "inline-four")
+ON_PAPER = {"press", "engine", "quick-return", "inline-four"}
+"""Machines whose report takes seconds: it is a long test."""
+
+
+def pairs(names: Iterable[str], machines: tuple[str, ...]) -> list:
+    return [
+        pytest.param(machine, name, marks=[pytest.mark.long] if name == "report" and machine in ON_PAPER else [])
+        for machine in machines
+        for name in names
+    ]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def register():
+    with scotch_yoke.registered():
+        yield
+    subject.cache_clear()
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    plt.close("all")
+
+
+def sentence(call: Callable[[], object]) -> str:
+    """Return the sentence of the package's own with which a call is refused, or "" where it gives a result."""
+    try:
+        call()
+    except ValueError as error:
+        if PACKAGE not in Path(traceback.extract_tb(error.__traceback__)[-1].filename).parents:
+            raise
+        return str(error)
+    return ""
+
+
+def about(machine: Subject, name: str, line: str) -> bool:
+    """Return whether a line names the machine, begins with a parameter of it, or is about a name or a Dataset."""
+    path = re.findall(r"\w+", line.split()[0])
+    of_results = name.startswith(OF_RESULTS) and ("Dataset" in line or path[0] in ("ds", "pin", "of"))
+    return machine.kind in line or bool({*path} & machine.numbers) or "nothing is named" in line or of_results
+
+
+def check_pair(machine: Subject, name: str, refusal: str) -> None:
+    assert bool(refusal) == (name in LACKING.get(machine.name, "").split()), refusal or "works: take it off LACKING"
+    assert all(about(machine, name, line) for line in refusal.splitlines()), refusal
+
+
+@pytest.mark.parametrize(("machine", "name"), pairs(CALLS, MACHINES))
+def test_functions(machine, name, tmp_path):
+    check_pair(subject(machine), name, sentence(lambda: CALLS[name](subject(machine), tmp_path)))
+
+
+@pytest.mark.parametrize(("machine", "name"), pairs(COMMANDS, MACHINES[:-1]))
+def test_commands(machine, name, tmp_path, capsys):
+    """A command gives what it prints, or exits with status 2 and its sentence."""
+    code = main([str(argument) for argument in COMMANDS[name](subject(machine), tmp_path)])
+    out, err = capsys.readouterr()
+    assert (code, bool(out)) in ((0, True), (2, False))
+    check_pair(subject(machine), f"command.{name}", err.strip().removeprefix("linksweep: ") if code else "")
+
+
+def test_every_public_function_plot_and_method_has_a_call():
+    functions = {name for name in ls.__all__ if inspect.isfunction(getattr(ls, name))} - NO_MACHINE
+    plots = {f"plot.{name}" for name in ls.plot.__all__}
+    methods = {name for name in dir(Cycle) if not name.startswith("_")}
+    others = {f"accessor.{name}" for name in (methods - {*ls.plot.__all__}) | {"mechanism"}}
+    assert functions | plots | others == {*CALLS}
+
+
+def test_every_command_has_a_call(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    commands = re.findall(r"^    ([a-z]+)(?:  |$)", capsys.readouterr().out, re.MULTILINE)
+    assert {*commands} == {"demo", *COMMANDS}
+
+
+def test_lacking_lists_pairs_that_there_are():
+    names = {*CALLS} | {f"command.{name}" for name in COMMANDS}
+    assert {name for text in LACKING.values() for name in text.split()} <= names
+    assert {*LACKING} <= {*MACHINES}
