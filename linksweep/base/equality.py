@@ -1,4 +1,4 @@
-"""Dataclasses that compare by content, also where they hold DataArrays, and whose numbers are float64."""
+"""Dataclasses that compare by content, also where they hold DataArrays, and print what differs from defaults."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linksweep.base.validate import is_array
 
 
 class ByContent:
-    """Base of frozen dataclasses (eq=False) whose numbers become float64 and that are equal to another of their class
-    with equal content: numbers, dims and labels. A `__post_init__` of a subclass calls this one first."""
+    """Base of frozen dataclasses (eq=False, repr=False) whose numbers become float64 and that are equal to another of
+    their class with equal content: numbers, dims and labels. A `__post_init__` of a subclass calls this one first."""
 
     def __post_init__(self) -> None:
         normalise(self, **converted_fields(self))
@@ -21,6 +21,15 @@ class ByContent:
 
     def __hash__(self) -> int:
         return hash(content(self))
+
+    def __repr__(self) -> str:
+        texts = {name: (repr(getattr(self, name)), repr(default)) for name, default in self._defaults().items()}
+        own = (f"{name}={text}" for name, (text, default) in texts.items() if text != default)
+        return f"{type(self).__name__}({', '.join(own)})"
+
+    def _defaults(self) -> dict[str, Any]:
+        """Return the default of each field."""
+        return {name: default for name, _, default in declared(self)}
 
 
 def content(value: Any) -> Any:

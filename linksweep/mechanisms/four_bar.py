@@ -76,7 +76,7 @@ CLOSED = (
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FourBar(Mechanism):
     """A four-bar linkage.
 

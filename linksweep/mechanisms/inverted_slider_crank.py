@@ -51,7 +51,7 @@ gravity of block and rocker. cylinder_force acts along (r3x, r3y), F43n across i
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class InvertedSliderCrank(Mechanism):
     """An inverted slider-crank: a shaper's quick-return, Whitworth's, a cylinder-driven rocker.
 

@@ -17,7 +17,7 @@ from linksweep.base.fields import PartField, below, declared, field_problems, pa
 from linksweep.base.validate import Number, overflow_problems
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Link(ByContent):
     """A link of any shape.
 
@@ -53,7 +53,7 @@ class Link(ByContent):
     cg_angle: Number = parameter("angle", 0.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Bar(ByContent):
     """A uniform rectangular bar from pin to pin.
 
@@ -107,7 +107,7 @@ class Bar(ByContent):
         return 0.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Disk(ByContent):
     """A uniform disk, centred on the link's first pin or off it.
 

@@ -24,7 +24,7 @@ UNKNOWNS = ("normal_force", "a_tangential")
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LoopTrack(Mechanism):
     """A car on the inside of a vertical loop, small against it, with a drive that pushes along the track.
 
@@ -59,7 +59,7 @@ class LoopTrack(Mechanism):
     >>> import linksweep as ls
     >>> car = ls.LoopTrack(radius=30.0, mass=700.0)
     >>> scene = ls.Scene(car, speed=100.0, thrust=10_000.0, gravity=(0.0, -9.81))
-    >>> there = ls.sweep(scene, theta2=[30.0])
+    >>> there = ls.sweep(scene, theta=[30.0])
     >>> round(float(there.normal_force[0]))
     239280
     """

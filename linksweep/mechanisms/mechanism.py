@@ -29,7 +29,7 @@ from linksweep.physics.closures.freudenstein import PositionEquation
 Kind = TypeVar("Kind", bound="type[Mechanism]")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mechanism(ByContent, ABC):
     """A machine: a frozen dataclass of its numbers, and a table of the quantities that can be computed of it.
 
@@ -37,7 +37,7 @@ class Mechanism(ByContent, ABC):
     over the crank angle `theta2`. Derive a dataclass, implement the abstract methods, and register it::
 
         @register
-        @dataclass(frozen=True, eq=False)
+        @dataclass(frozen=True, eq=False, repr=False)
         class ScotchYoke(Mechanism):
             crank: AnyLink = of_kind(LINK)
             yoke_mass: Number = parameter("mass", at_least=0.0)

@@ -54,7 +54,7 @@ def _guide(mechanism: Any) -> Guide:
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SliderCrank(Mechanism):
     """A slider-crank: engine, pump, compressor.
 

@@ -16,7 +16,6 @@ from linksweep.base.fields import (
     PairField,
     PartField,
     PartsField,
-    declared,
     field_problems,
     field_rules,
     left_out,
@@ -129,11 +128,8 @@ class Scene(ByContent):
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
         refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
 
-    def __repr__(self) -> str:
-        defaults = {name: default for name, _, default in declared(self)} | dict(self.mechanism.defaults)
-        values = {name: repr(value) for name, value in field_values(self).items()}
-        own = [f"{name}={text}" for name, text in values.items() if text != repr(defaults[name])]
-        return f"Scene({', '.join(own)})"
+    def _defaults(self) -> dict[str, Any]:
+        return super()._defaults() | dict(self.mechanism.defaults)
 
     def _normalised(self) -> dict[str, Any]:
         """Return the fields with arrays labelled, and the mechanism's defaults."""

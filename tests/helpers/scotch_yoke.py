@@ -54,7 +54,7 @@ TRANSLATES = {"yoke_inertia": 0.0, "yoke_length": 1.0, "r4x": 1.0, "r4y": 0.0, "
 """Numbers of the yoke as a body that does not turn; its axes are those of the ground."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ScotchYoke(Mechanism):
     """A scotch yoke: compressor, valve actuator, sine generator.
 

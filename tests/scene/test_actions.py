@@ -24,7 +24,7 @@ ENGINE = ls.example("engine")
 WIDTHS = xr.DataArray([0.1, 0.2], {"design": [1, 2]}, "design")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Brake(Action):
     """A kind of load that the package does not know: a torque against the crank, on in one of two turns."""
 

@@ -24,7 +24,7 @@ from linksweep.scene.scene import Scene
 RADIUS = Rule("length", above=0.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Counterweight(ByContent):
     """A mass fixed to a link.
 

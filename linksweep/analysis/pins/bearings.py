@@ -48,7 +48,7 @@ TEXTS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Bearing(ByContent):
     """The bearing of a pin.
 

@@ -42,7 +42,7 @@ ANGLE, LENGTH = Rule("angle"), Rule("length")
 SHAKING = ("T12", "Fsx", "Fsy", "Fs", "Ms", "Msx", "Msy")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MultiCylinder(ByContent):
     """An engine, pump or compressor of several equal cylinders on one crankshaft.
 

@@ -21,7 +21,7 @@ class Action(ByContent):
     Derive a dataclass, declare the kind of each field, and register it::
 
         @register
-        @dataclass(frozen=True, eq=False)
+        @dataclass(frozen=True, eq=False, repr=False)
         class Brake(Action):
             torque: Number = parameter("torque", at_least=0.0)
             ...

@@ -32,7 +32,7 @@ from linksweep.scene.parameters import along, bare
 ATMOSPHERE = 101325.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OttoCycle(ByContent):
     """Ideal Otto cycle: isentropic compression and expansion, all heat added at top dead centre.
 
@@ -118,7 +118,7 @@ class OttoCycle(ByContent):
         return self.peak_pressure, 1.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DieselCycle(ByContent):
     """Ideal Diesel cycle: isentropic compression and expansion, heat added at constant pressure until the cutoff.
 

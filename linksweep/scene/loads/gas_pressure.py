@@ -25,7 +25,7 @@ PRESSURE = Rule("pressure", over_angle=True)
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class GasPressure(ChangingLoad):
     """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
 

@@ -35,7 +35,7 @@ AT_ANGLES: dict[str, Any] = {"over": None, "while_": None, "breaks": (), "interp
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Load(ChangingLoad):
     """A force at a point of a link, a torque on it, or both, besides weight and inertia.
 

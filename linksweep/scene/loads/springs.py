@@ -33,7 +33,7 @@ class EndField(ListField):
         return (FieldKind(), *((LENGTH, LENGTH) if ground else POLAR_POINT.numbers))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class _Line(Action):
     """A load along the line between two points."""
 
@@ -58,7 +58,7 @@ class _Line(Action):
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Spring(_Line):
     """A linear spring between two points: tension rate·(length − free_length).
 
@@ -101,7 +101,7 @@ class Spring(_Line):
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Damper(_Line):
     """A viscous damper between two points: tension coefficient · rate of its length.
 

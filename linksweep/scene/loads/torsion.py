@@ -20,7 +20,7 @@ from linksweep.scene.loads.action import Action, register
 from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems, same_link_problems
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class _Turning(Action):
     """A torque between the lines of pins of two links; the line of the ground is x."""
 
@@ -35,7 +35,7 @@ class _Turning(Action):
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TorsionSpring(_Turning):
     """A torsion spring between two links: it turns `to` back, and `from_` on, by rate·twist.
 
@@ -87,7 +87,7 @@ class TorsionSpring(_Turning):
 
 
 @register
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TorsionDamper(_Turning):
     """A viscous damper between two links that turn against each other: torque coefficient · rate of their angle.
 
