@@ -1,1 +1,4 @@
-"""Choice of a design: geometry of the motion, objective for optimizers, Pareto front."""
+"""Choice of a design: geometry of the motion, objective for optimizers, Pareto front.
+
+Their functions are public; plots and reports import from here.
+"""

@@ -1,1 +1,4 @@
-"""Search for exact peaks within a kernel: lanes (brackets of candidate peaks), trials, and the calls that run them."""
+"""Search for exact peaks within a kernel: lanes (brackets of candidate peaks), trials, and the calls that run them.
+
+Results import `find_peaks`; `search` is compiled into the kernel by `search_kernel`.
+"""

@@ -1,1 +1,4 @@
-"""Hold the rows that the tables of several machines share: bodies, pins, loads, the crank, the whole machine."""
+"""Rows and quantities of the machines' tables: bodies, pins, loads, the crank, the whole machine.
+
+Machines import them; of other rooms, loads do (`load_forms`, `bodies`), and `results.system` (`bodies.Equation`).
+"""

@@ -1,1 +1,4 @@
-"""Hold what all pictures share: style, labels, signals, drawings of machines, films."""
+"""Common parts of all pictures: style, labels, signals, drawings of machines, films.
+
+Plots, reports and the command line import them; no part knows a plot, and none a mechanism by name.
+"""

@@ -1,1 +1,5 @@
-"""Bring functions and arrays to the angles, or positions, at which a scene is looked at."""
+"""Curves over the crank angle or a position: interpolation, evaluation, derivatives, and where they change quickly.
+
+Scenes, loads, scene files and the peak search import them. Functions and arrays come in; arrays at the angles of a
+grid go out.
+"""
