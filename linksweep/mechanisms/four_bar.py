@@ -13,28 +13,12 @@ from linksweep.base.validate import Number, is_lazy
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
+from linksweep.mechanisms.limits import four_bar_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.limits.four_bar_limits import (
-    angles,
-    classes,
-    coupler_dead_centres,
-    reversals,
-    rocker_dead_centres,
-    swings,
-)
 from linksweep.mechanisms.links import LINK, AnyLink, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, register
-from linksweep.mechanisms.rows.bodies import (
-    Body,
-    Equation,
-    arm_rows,
-    crank_pin_slope_rows,
-    drive_quantities,
-    drive_torque,
-    newton_euler_equations,
-    on_crank_pin,
-    position_quantities,
-)
+from linksweep.mechanisms.rows import bodies
+from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import (
     BRANCH_SIGN,
     between_rows,
@@ -59,8 +43,8 @@ JOURNALS = {"A": 2, "B": 2, "C": 3, "D": 4}
 DRIVEN = {"crank": "omega2", "coupler": "omega3", "rocker": "omega4"}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 BODIES = (
-    Body(2, "crank", steady=True, ratio=1.0),
-    on_crank_pin(3, "coupler", "ratio3", "slope3"),
+    bodies.CRANK,
+    bodies.on_crank_pin(3, "coupler", "ratio3", "slope3"),
     Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
 )
 
@@ -202,25 +186,25 @@ class FourBar(Mechanism):
         """Return the 9×9 of document 2 (ME 470), row by row."""
         torque = {drive: self.drives[drive]}.get
         return (
-            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank")),
-            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque("coupler")),
-            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque("rocker")),
+            *bodies.newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank")),
+            *bodies.newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque("coupler")),
+            *bodies.newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R14")}, torque("rocker")),
         )
 
     def findings(self) -> Checks:
         lengths = tuple(self.lengths().values())
-        return (classes, lengths), (angles, (*lengths, self.ground_angle))
+        return (limits.classes, lengths), (limits.angles, (*lengths, self.ground_angle))
 
     def dead_centre_findings(self, drive: str) -> Checks:
         """Return the check for angles at which coupler or rocker stands still."""
-        dead_centres = {"coupler": coupler_dead_centres, "rocker": rocker_dead_centres}
+        dead_centres = {"coupler": limits.coupler_dead_centres, "rocker": limits.rocker_dead_centres}
         numbers = (*self.lengths().values(), self.ground_angle)
         return ((dead_centres[drive], numbers),) if drive in dead_centres else ()
 
     def stroke_findings(self) -> Checks:
         """Return the closed forms of the rocker's swing, time ratio and reversals."""
         lengths = tuple(self.lengths().values())
-        return (swings, lengths), (reversals, (*lengths, self.ground_angle, self.branch_sign))
+        return (limits.swings, lengths), (limits.reversals, (*lengths, self.ground_angle, self.branch_sign))
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments that crank and rocker lack for the centre of gravity to stand still."""
@@ -255,6 +239,7 @@ class FourBar(Mechanism):
 def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool) -> Table:
     rows = [
         *(near_toggle_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *bodies.crank_pin_rows(),
         *_position(),
         Row(four_bar.side_of_diagonal, ("side",))
         if goes_through
@@ -264,14 +249,13 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool
         *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
     ]
     rows += machine_rows(BODIES, PINS, loads, **CLOSURE) + _transmission()
-    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R14", "R34")]
+    rows += [*bodies.arm_rows(2, "R12", "R32"), *bodies.arm_rows(3, "R23", "R43"), *bodies.arm_rows(4, "R14", "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 
 def _position() -> list[Row | Total]:
     return [
         Row(four_bar.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
-        Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(four_bar.closure_unit, ("closure_unit",)),
         Row(four_bar.least_factors, ("least_low", "least_low_lo", "least_high", "least_high_lo")),
         Row(four_bar.sums_unit, ("sums_unit",)),
@@ -290,7 +274,6 @@ def _position() -> list[Row | Total]:
         Row(freudenstein.coupler_equation, ("D", "E", "F")),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r4x", "r4y")),
-        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
         Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
         Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
     ]
@@ -302,8 +285,6 @@ def _rates() -> list[Row | Total]:
         Row(dyad_rrr.rrr_velocity_ratios, ("ratio3", "ratio4")),
         Row(planar.product, ("omega3",), ("omega2", "ratio3")),
         Row(planar.product, ("omega4",), ("omega2", "ratio4")),
-        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(four_bar.ratio_slopes, ("slope3", "slope4")),
         Row(crank_driven.angular_acceleration, ("alpha3",), ("omega2", "alpha2", "ratio3", "slope3")),
         Row(crank_driven.angular_acceleration, ("alpha4",), ("omega2", "alpha2", "ratio4", "slope4")),
@@ -314,7 +295,6 @@ def _transmission() -> list[Row | Total]:
     """Return rows of the ratios of the rocker's velocity and torque to the crank's."""
     radii = ("crank_length", "rocker_length")
     return [
-        *crank_pin_slope_rows(),
         Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
         Row(advantage.torque_ratio, ("torque_ratio",)),
         Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", *radii)),
@@ -370,8 +350,8 @@ def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
         Quantity("theta4", "degree", "angle of the rocker D→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between coupler and rocker"),
         Quantity("transmission_angle_signed", "degree", "mu = theta4 - theta3 of document 2 (ME 470), in (-180, 180]"),
-        *position_quantities("B", "C"),
-        *drive_quantities(drive_torque(FourBar.drives[drive], drive)),
+        *bodies.position_quantities("B", "C"),
+        *bodies.drive_quantities(bodies.drive_torque(FourBar.drives[drive], drive)),
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
         Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
         Quantity("mechanical_advantage", "1", "force of the rocker at C per force on the crank at B, square to them"),

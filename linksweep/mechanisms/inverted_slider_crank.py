@@ -14,27 +14,12 @@ from linksweep.base.validate import Number
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
+from linksweep.mechanisms.limits import inverted_slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.limits.inverted_slider_crank_limits import (
-    angles,
-    classes,
-    dead_centres,
-    reversals,
-    rocker_dead_centres,
-    swings,
-    wedging,
-    wedging_by_crank,
-)
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import (
-    BRANCH_SIGN,
-    STATUS_OF_SLIDER,
-    frame_parameters,
-    in_range,
-    turned,
-)
+from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, frame_parameters, in_range, turned
 from linksweep.mechanisms.rows.inverted_slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
@@ -220,11 +205,11 @@ class InvertedSliderCrank(Mechanism):
 
     def findings(self) -> Checks:
         lengths = self.lengths()
-        return (classes, lengths), (angles, (*lengths, self.ground_angle)), *self.stroke_findings()
+        return (limits.classes, lengths), (limits.angles, (*lengths, self.ground_angle)), *self.stroke_findings()
 
     def stroke_findings(self) -> Checks:
         """Return the closed forms of the rocker's swing, time ratio and reversals."""
-        return (swings, self.lengths()), (reversals, (*self.lengths(), self.ground_angle))
+        return (limits.swings, self.lengths()), (limits.reversals, (*self.lengths(), self.ground_angle))
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments that crank and rocker lack for the centre of gravity to stand still."""
@@ -234,13 +219,13 @@ class InvertedSliderCrank(Mechanism):
 
     def dead_centre_findings(self, drive: str) -> Checks:
         """Return the check for angles at which the block stands still on its line, or the rocker turns round."""
-        checks = {"cylinder": dead_centres, "rocker": rocker_dead_centres}
+        checks = {"cylinder": limits.dead_centres, "rocker": limits.rocker_dead_centres}
         return ((checks[drive], (*self.lengths(), self.ground_angle)),) if drive in checks else ()
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
         """Return also the check for wedging, by the moment equations without the drive; a cylinder overcomes it."""
         of_drive, numbers = super().driven_findings(motion), (*self.lengths(), self.ground_angle, self.friction)
-        wedges = {"crank": wedging, "rocker": wedging_by_crank}
+        wedges = {"crank": limits.wedging, "rocker": limits.wedging_by_crank}
         return (*of_drive, *((wedges[drive], numbers) for drive in wedges if drive == motion["drive"]))
 
     def jumps(self) -> tuple[Number, ...]:

@@ -148,9 +148,7 @@ def _table() -> Table:
         Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),
         Row(loop_track.tangential_acceleration, ("raw_a_tangential",)),
         Row(
-            loop_track.status_on_track,
-            ("status",),
-            ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts"),
+            loop_track.status_on_track, ("status",), ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts")
         ),
         Row(loop_track.mask_off_track, gated, ("status", "raw_squared_speed", "raw_force", "raw_a_tangential")),
         Row(loop_track.centripetal, ("a_radial",)),

@@ -16,17 +16,8 @@ from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.cylinder import Cylinder
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Guide, direction
+from linksweep.mechanisms.limits import slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.limits.slider_crank_limits import (
-    angles,
-    classes,
-    reversals,
-    rod_dead_centres,
-    slider_dead_centres,
-    travel,
-    wedging,
-    wedging_by_crank,
-)
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
@@ -38,12 +29,7 @@ from linksweep.mechanisms.strokes import Stroke, slider_strokes
 
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
-SLIDER = {
-    "slider_inertia": 0.0,
-    "slider_length": 1.0,
-    "omega4": 0.0,
-    "alpha4": 0.0,
-}
+SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0, "omega4": 0.0, "alpha4": 0.0}
 """Inputs of the slider as a body that does not turn; its axes lie along and across the guide."""
 
 
@@ -203,21 +189,21 @@ class SliderCrank(Mechanism):
         return self.crank.length, self.rod.length, self.offset
 
     def findings(self) -> Checks:
-        return (classes, self._lengths), (angles, (*self._lengths, self.slide_angle))
+        return (limits.classes, self._lengths), (limits.angles, (*self._lengths, self.slide_angle))
 
     def dead_centre_findings(self, drive: str) -> Checks:
         """Return the check for angles at which a driven rod does not turn."""
-        return ((rod_dead_centres, (*self._lengths, self.slide_angle)),) if drive == "coupler" else ()
+        return ((limits.rod_dead_centres, (*self._lengths, self.slide_angle)),) if drive == "coupler" else ()
 
     def output_findings(self) -> Checks:
         """Return the check for angles at which the slider turns round."""
-        return ((slider_dead_centres, (*self._lengths, self.slide_angle)),)
+        return ((limits.slider_dead_centres, (*self._lengths, self.slide_angle)),)
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
         """Return also the check for wedging, by the link whose moment equation is without the drive."""
         if motion["drive"] == "coupler":
-            return (*super().driven_findings(motion), (wedging_by_crank, (self.slide_angle, self.friction)))
-        return ((wedging, (*self._lengths, self.slide_angle, self.friction)),)
+            return (*super().driven_findings(motion), (limits.wedging_by_crank, (self.slide_angle, self.friction)))
+        return ((limits.wedging, (*self._lengths, self.slide_angle, self.friction)),)
 
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
@@ -251,7 +237,7 @@ class SliderCrank(Mechanism):
 
     def stroke_findings(self) -> Checks:
         """Return the closed forms of the slider's travel, time ratio and reversals."""
-        return (travel, self._lengths), (reversals, (*self._lengths, self.slide_angle, self.branch_sign))
+        return (limits.travel, self._lengths), (limits.reversals, (*self._lengths, self.slide_angle, self.branch_sign))
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moment that the crank lacks to cancel what turns, and a fraction of the first order."""

@@ -24,9 +24,10 @@ from linksweep.mechanisms.limits.finding import Finding, turning_round
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import MECHANISMS, Mechanism, register
 from linksweep.mechanisms.rows.bodies import (
+    CRANK,
     Body,
     arm_rows,
-    crank_pin_slope_rows,
+    crank_pin_rows,
     drive_quantities,
     drive_torque,
     newton_euler_equations,
@@ -40,7 +41,6 @@ from linksweep.physics.algebra import planar
 
 LINKS = {1: "ground", 2: "crank", 4: "yoke"}
 PINS = {"A": (1, 2), "B": (4, 2), "guide": (1, 4)}
-CRANK = Body(2, "crank", steady=True, ratio=1.0)
 YOKE = Body(
     4,
     "yoke",
@@ -156,9 +156,7 @@ def table(loads):
         Row(planar.identity, ("near_toggle_far",), (1.0,)),
         Row(planar.identity, ("assembly",), (0.0,)),
         Row(planar.identity, ("status",), (0.0,)),
-        *crank_pin_slope_rows(),
-        Row(crank_driven.crank_pin, ("r2x", "r2y")),
-        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        *crank_pin_rows(),
         Row(planar.vector_sum, ("Cx", "Cy"), (0.0, 0.0, "r2x", 0.0)),
         Row(planar.opposite, ("ratio_yoke",), ("r2y",)),
         Row(planar.opposite, ("slope_yoke",), ("r2x",)),

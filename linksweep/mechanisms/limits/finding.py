@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+Array = np.ndarray
+
 ASSEMBLY = ("everywhere", "partly", "never")
 
 
@@ -16,21 +18,23 @@ class Finding(NamedTuple):
     Small integers stand for `words`; other values are in `units`.
     """
 
-    values: np.ndarray
+    values: Array
     long_name: str
     units: str = "degree"
     words: tuple[str, ...] = ()
     along: tuple[str, tuple[str, ...]] | None = None
 
 
-Findings = Callable[..., dict[str, Finding]]
+Results = dict[str, Finding]
+
+Findings = Callable[..., Results]
 """A function of arrays of numbers, broadcast against each other, that returns findings by name."""
 
 Checks = tuple[tuple[Findings, tuple[Any, ...]], ...]
 """Closed-form checks, and the numbers that each takes."""
 
 
-def turning_round(stretched: np.ndarray, folded: np.ndarray) -> dict[str, Finding]:
+def turning_round(stretched: Array, folded: Array) -> Results:
     """Return the time ratio and the crank angles [degree] of an output that turns round where two links are in line."""
     between = np.mod(folded - stretched, 360.0)
     ratio = np.maximum(between, 360.0 - between) / np.minimum(between, 360.0 - between)

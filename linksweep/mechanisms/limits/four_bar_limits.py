@@ -19,17 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding, turning_round
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Array, Finding, Results, turning_round
 from linksweep.physics.closures.four_bar import extremes
 
-GRASHOF = (
-    "crank_rocker",
-    "double_crank",
-    "double_rocker",
-    "rocker_crank",
-    "triple_rocker",
-    "change_point",
-)
+GRASHOF = ("crank_rocker", "double_crank", "double_rocker", "rocker_crank", "triple_rocker", "change_point")
 """Classes by the shortest link (crank, ground, coupler, rocker); then no link that turns fully; then the borderline."""
 
 DEAD_CENTRES = {
@@ -41,7 +34,7 @@ DEAD_CENTRES = {
 TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
 
 
-def classes(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
+def classes(a: Array, b: Array, c: Array, d: Array) -> Results:
     """Compute the Grashof class, the assembly and the least transmission angle."""
     limits = limits_of(a, b, c, d)
     return {
@@ -53,7 +46,7 @@ def classes(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[
     }
 
 
-def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+def angles(a: Array, b: Array, c: Array, d: Array, ground_angle: Array) -> Results:
     """Compute the crank angles of arcs and toggles."""
     limits = limits_of(a, b, c, d)
     start, end = arcs(limits, ground_angle)
@@ -66,40 +59,32 @@ def angles(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_an
     }
 
 
-def swings(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> dict[str, Finding]:
+def swings(a: Array, b: Array, c: Array, d: Array) -> Results:
     """Compute how far the rocker of a crank that turns fully swings, from stretched to folded."""
     swing = _angle(c, a + b, d) - _angle(c, np.abs(a - b), d)
     swing = np.where(limits_of(a, b, c, d).assembly == 0, swing, np.nan)
     return {"swing": Finding(swing, "angle through which the rocker swings")}
 
 
-def reversals(
-    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray, side: np.ndarray
-) -> dict[str, Finding]:
+def reversals(a: Array, b: Array, c: Array, d: Array, ground_angle: Array, side: Array) -> Results:
     """Compute where the rocker of a crank that turns fully turns round; `side` is 1 for open, -1 for crossed."""
     stretched, folded = (np.where(limits_of(a, b, c, d).assembly == 0, angle, np.nan) for angle in _in_line(a, b, c, d))
     return turning_round(ground_angle + side * stretched, ground_angle + side * folded)
 
 
-def rocker_dead_centres(
-    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
-) -> dict[str, Finding]:
+def rocker_dead_centres(a: Array, b: Array, c: Array, d: Array, ground_angle: Array) -> Results:
     """Compute the crank angles at which the rocker turns round, and cannot drive."""
     return _dead_centres(_in_line(a, b, c, d), ground_angle, "rocker", "crank and coupler in one line")
 
 
-def coupler_dead_centres(
-    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, ground_angle: np.ndarray
-) -> dict[str, Finding]:
+def coupler_dead_centres(a: Array, b: Array, c: Array, d: Array, ground_angle: Array) -> Results:
     """Compute the crank angles at which the coupler does not turn, and cannot drive."""
     return _dead_centres(
         (_angle(a - c, b, d), -_angle(a + c, b, d)), ground_angle, "coupler", "crank and rocker parallel"
     )
 
 
-def _dead_centres(
-    angles_open: tuple[np.ndarray, np.ndarray], ground_angle: np.ndarray, driven: str, long_name: str
-) -> dict[str, Finding]:
+def _dead_centres(angles_open: tuple[Array, Array], ground_angle: Array, driven: str, long_name: str) -> Results:
     """Return the dead centres of both branches; those of the crossed one mirror those of the open one."""
     angle = np.mod(
         np.stack([*angles_open, *(-angle for angle in angles_open)], axis=-1) + ground_angle[..., None], 360.0
@@ -107,12 +92,12 @@ def _dead_centres(
     return {"dead_centre_angle": Finding(angle, long_name, along=("dead_centre", DEAD_CENTRES[driven]))}
 
 
-def _in_line(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _in_line(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
     """Return the crank's angles from the line A→D with the coupler in line with it: stretched, folded; branch open."""
     return _angle(a + b, c, d), -_angle(a - b, c, d)
 
 
-def _angle(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
+def _angle(g: Array, h: Array, d: Array) -> Array:
     """Return the angle φ in [0, 180] between the sides g and d of a triangle, h opposite; NaN where there is none.
 
     The module's equation of dead centres; a side g < 0 points the other way.
@@ -126,15 +111,15 @@ def _angle(g: np.ndarray, h: np.ndarray, d: np.ndarray) -> np.ndarray:
 class Limits(NamedTuple):
     """Limits as arrays over the designs; angles in degrees from the line A→D to the crank, NaN where there is none."""
 
-    grashof: np.ndarray
-    assembly: np.ndarray
-    folded: np.ndarray
-    stretched: np.ndarray
-    transmission_angle_min: np.ndarray
+    grashof: Array
+    assembly: Array
+    folded: Array
+    stretched: Array
+    transmission_angle_min: Array
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def limits_of(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Limits:
+def limits_of(a: Array, b: Array, c: Array, d: Array) -> Limits:
     """Compute the limits of four-bars with crank a, coupler b, rocker c and ground d [m]."""
     low, largest_low, high, largest_high = extremes(a, b, c, d)
     never = (largest_low < 0.0) | (largest_high < 0.0)
@@ -144,14 +129,14 @@ def limits_of(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> Lim
     return Limits(_grashof(a, b, c, d), assembly, folded, stretched, _least_transmission_angle(a, b, c, d, never))
 
 
-def _where_zero(x: np.ndarray, y: np.ndarray, never: np.ndarray) -> np.ndarray:
+def _where_zero(x: Array, y: Array, never: Array) -> Array:
     """Return the angle φ in [0, 180] where x cos²(φ/2) + y sin²(φ/2) is 0; NaN where x and y have the same sign."""
     crossing = (np.minimum(x, y) <= 0.0) & (np.maximum(x, y) >= 0.0) & ~never
     half = np.arctan2(np.sqrt(np.abs(x)), np.sqrt(np.abs(y)))
     return np.where(crossing, 2.0 * np.degrees(half), np.nan)
 
 
-def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+def _grashof(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Compare shortest + longest with the sum of the others; a difference below the rounding of the lengths is none."""
     links = np.stack(np.broadcast_arrays(a, d, b, c))
     shortest, p, q, longest = np.sort(links, axis=0)
@@ -160,7 +145,7 @@ def _grashof(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.n
     return np.select([borderline, margin > 0.0], [5, links.argmin(axis=0)], 4).astype(np.int8)
 
 
-def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
+def _least_transmission_angle(a, b, c, d, never) -> Array:
     """Return the least acute angle between coupler and rocker: where the diagonal f is shortest or longest."""
     shortest = np.maximum(np.abs(d - a), np.abs(b - c))
     longest = np.minimum(d + a, b + c)
@@ -174,7 +159,7 @@ def _least_transmission_angle(a, b, c, d, never) -> np.ndarray:
     return np.where(never, np.nan, np.minimum(acute(shortest), acute(longest)))
 
 
-def arcs(limits: Limits, ground_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def arcs(limits: Limits, ground_angle: Array) -> tuple[Array, Array]:
     """Return start and end of the one or two arcs of θ2 [degree] that can be assembled, on a trailing axis.
 
     NaN where there is no such arc; an end may pass 360. With both limits there is one arc on either side of the frame

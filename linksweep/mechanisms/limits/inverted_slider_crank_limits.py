@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.base.degrees import arcsine
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Array, Finding, Results
 
 MOTIONS = ("swings", "turns_fully", "limited")
 """Motion of the rocker: as the crank turns, or as it goes back and forth between its limits."""
@@ -34,7 +34,7 @@ JAMS_BY_CRANK = tuple(f"{reversal}_{side}" for reversal in REVERSALS for side in
 """Labels of the limits of wedging about each angle where the rocker turns round."""
 
 
-def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+def classes(a: Array, d: Array, e: Array) -> Results:
     """Compute the assembly, the kind of motion and the least transmission angle."""
     e = np.abs(e)
     whole = e < np.abs(d - a)
@@ -51,7 +51,7 @@ def classes(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     }
 
 
-def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+def angles(a: Array, d: Array, e: Array, ground_angle: Array) -> Results:
     """Compute the crank angles of arcs and toggles."""
     toggle = _toggle(a, d, e)
     whole = np.abs(e) < np.abs(d - a)
@@ -65,7 +65,7 @@ def angles(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray
     }
 
 
-def swings(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+def swings(a: Array, d: Array, e: Array) -> Results:
     """Compute how far the rocker swings, and how evenly it moves."""
     whole = np.abs(e) < np.abs(d - a)
     lean = _lean(a, d, np.abs(e), whole)
@@ -80,7 +80,7 @@ def swings(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     }
 
 
-def reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+def reversals(a: Array, d: Array, e: Array, ground_angle: Array) -> Results:
     """Compute the crank angles at which a rocker that swings turns round."""
     swings = (a + np.abs(e) < d)[..., None]
     angle = np.where(swings, np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0), np.nan)
@@ -88,7 +88,7 @@ def reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndar
     return {"reversal_angle": Finding(angle, long_name, along=("reversal", REVERSALS))}
 
 
-def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+def dead_centres(a: Array, d: Array, e: Array, ground_angle: Array) -> Results:
     """Compute where a cylinder along the rocker's line cannot drive, and how far it is extended there."""
     along = ("dead_centre", DEAD_CENTRES)
     way = np.stack([np.abs(d - a), d + a], axis=-1)
@@ -103,15 +103,13 @@ def dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.n
     }
 
 
-def rocker_dead_centres(a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray) -> dict[str, Finding]:
+def rocker_dead_centres(a: Array, d: Array, e: Array, ground_angle: Array) -> Results:
     """Compute the crank angles at which the rocker turns round, and cannot drive."""
     angle = np.mod(_reversals(a, d, e) + ground_angle[..., None], 360.0)
     return {"dead_centre_angle": Finding(angle, "crank square to the rocker's line", along=("dead_centre", REVERSALS))}
 
 
-def wedging(
-    a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
-) -> dict[str, Finding]:
+def wedging(a: Array, d: Array, e: Array, ground_angle: Array, friction: Array) -> Results:
     """Compute where friction wedges if the crank drives, |DB| ≤ |e|·√(1 + μ²), and the least that does."""
     reach = np.abs(e) * np.hypot(1.0, friction)
     half = np.where(reach < a + d, _toggle(a, d, reach), 180.0)
@@ -122,9 +120,7 @@ def wedging(
     return _jams(np.stack([-half, half], axis=-1), ground_angle, friction, least, JAMS)
 
 
-def wedging_by_crank(
-    a: np.ndarray, d: np.ndarray, e: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray
-) -> dict[str, Finding]:
+def wedging_by_crank(a: Array, d: Array, e: Array, ground_angle: Array, friction: Array) -> Results:
     """Compute where friction wedges if the rocker drives, μ·|tan ψ| ≥ 1 with ψ from crank to line, and the least."""
     lean = np.degrees(np.arctan(friction))[..., None]
     beside = _reversals(a / np.hypot(1.0, friction), d, e)
@@ -134,9 +130,7 @@ def wedging_by_crank(
     return _jams(angle, ground_angle, friction, least, JAMS_BY_CRANK)
 
 
-def _jams(
-    angle: np.ndarray, ground_angle: np.ndarray, friction: np.ndarray, least: np.ndarray, sides: tuple[str, ...]
-) -> dict[str, Finding]:
+def _jams(angle: Array, ground_angle: Array, friction: Array, least: Array, sides: tuple[str, ...]) -> Results:
     """Return the angles and the friction of a wedged block as findings."""
     turned = np.where(friction[..., None] > 0.0, np.mod(angle + ground_angle[..., None], 360.0), np.nan)
     return {
@@ -145,20 +139,20 @@ def _jams(
     }
 
 
-def _lean(a: np.ndarray, d: np.ndarray, e: np.ndarray, whole: np.ndarray) -> np.ndarray:
+def _lean(a: Array, d: Array, e: Array, whole: Array) -> Array:
     """Return the difference of the crank's two parts of a turn from 180°; NaN where it does not turn fully."""
     short, long = np.minimum(a, d), np.maximum(a, d)
     return np.where(whole, arcsine(short + e, long) + arcsine(short - e, long), np.nan)
 
 
-def _toggle(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
+def _toggle(a: Array, d: Array, e: Array) -> Array:
     """Return φ in [0, 180] with |DB| = |e|; NaN where there is none."""
     with np.errstate(invalid="ignore"):
         near, far = (e - (d - a)) * (e + (d - a)), ((d + a) - e) * ((d + a) + e)
         return 2.0 * np.degrees(np.arctan2(np.sqrt(near), np.sqrt(far)))
 
 
-def _reversals(a: np.ndarray, d: np.ndarray, e: np.ndarray) -> np.ndarray:
+def _reversals(a: Array, d: Array, e: Array) -> Array:
     """Return φ with the crank square to the rocker's line, on a trailing axis; NaN where it never is."""
     ahead, behind = arcsine(a - e, d), arcsine(a + e, d)
     return np.stack([270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead], axis=-1)

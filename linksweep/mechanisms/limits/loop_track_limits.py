@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.mechanisms.limits.finding import Finding
+from linksweep.mechanisms.limits.finding import Array, Finding, Results
 
 TURN = 2.0 * np.pi
 ROUNDING = 16.0 * 2.0**-52  # of the terms of f
@@ -28,21 +28,21 @@ LAP = ("whole", "leaves_track", "stalls")
 class Curve(NamedTuple):
     """Function f of the module's equation, for every design."""
 
-    A: np.ndarray
-    B: np.ndarray
-    C: np.ndarray
-    gx: np.ndarray
-    gy: np.ndarray
+    A: Array
+    B: Array
+    C: Array
+    gx: Array
+    gy: Array
 
-    def __call__(self, angle: np.ndarray) -> np.ndarray:
+    def __call__(self, angle: Array) -> Array:
         return self.A + self.B * angle + self.C * (self.gx * np.sin(angle) - self.gy * np.cos(angle))
 
-    def knots(self) -> np.ndarray:
+    def knots(self) -> Array:
         """Return bottom, extremes and end of the lap in order, on a leading axis."""
         extremes = np.sort(np.nan_to_num(_extremes(self)), axis=0)
         return np.concatenate([0.0 * extremes[:1], extremes, TURN + 0.0 * extremes[:1]])
 
-    def noise(self) -> np.ndarray:
+    def noise(self) -> Array:
         """Return a bound on the rounding error of f."""
         pull = np.hypot(self.gx, self.gy)
         return ROUNDING * (np.abs(self.A) + TURN * np.abs(self.B) + np.abs(self.C) * pull)
@@ -51,13 +51,10 @@ class Curve(NamedTuple):
 def curves(radius, mass, speed, thrust, gx, gy, work_counts) -> tuple[Curve, Curve]:
     """Return the curves of R·F_N/m and v²."""
     A, B = speed * speed + work_counts * 2.0 * radius * gy, work_counts * 2.0 * radius * (thrust / mass)
-    return (
-        Curve(A, B, radius * (1.0 + 2.0 * work_counts), gx, gy),
-        Curve(A, B, radius * (2.0 * work_counts), gx, gy),
-    )
+    return (Curve(A, B, radius * (1.0 + 2.0 * work_counts), gx, gy), Curve(A, B, radius * (2.0 * work_counts), gx, gy))
 
 
-def _extremes(curve: Curve) -> np.ndarray:
+def _extremes(curve: Curve) -> Array:
     """Return both angles in a lap at which f is extreme [rad], on a leading axis; NaN where it is monotone."""
     pull, direction = np.hypot(curve.gx, curve.gy), np.arctan2(curve.gy, curve.gx)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -65,7 +62,7 @@ def _extremes(curve: Curve) -> np.ndarray:
     return np.mod(np.stack([direction - side, direction + side]), TURN)
 
 
-def first_zero(curve: Curve) -> np.ndarray:
+def first_zero(curve: Curve) -> Array:
     """Return the angle in the lap at which f first falls below zero [rad]; infinite where it does not."""
     knots = curve.knots()
     below = curve(knots) < -curve.noise()
@@ -80,14 +77,14 @@ def first_zero(curve: Curve) -> np.ndarray:
 
 
 @np.errstate(all="ignore")
-def events(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, np.ndarray]:
+def events(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, Array]:
     """Compute where a car that follows work and energy first leaves the track, and where it first stalls [rad]."""
     force, squared_speed = curves(radius, mass, speed, thrust, gx, gy, work_counts)
     leaves, stalls = first_zero(force), first_zero(squared_speed)
     return {"leaves_at": leaves, "stalls_at": stalls}
 
 
-def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, Finding]:
+def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> Results:
     """Compute the outcome of one lap from the bottom, and the entry speed that the car needs to go round."""
     leaves, stalls = events(radius, mass, speed, thrust, gx, gy, work_counts).values()
     leaves, stalls = np.where(leaves < stalls, leaves, np.inf), np.where(stalls <= leaves, stalls, np.inf)
@@ -104,5 +101,5 @@ def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> dict[str, Finding]:
     }
 
 
-def _degrees(angle: np.ndarray) -> np.ndarray:
+def _degrees(angle: Array) -> Array:
     return np.degrees(np.where(np.isfinite(angle), angle, np.nan))

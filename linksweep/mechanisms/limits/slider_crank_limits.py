@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.base.degrees import arcsine
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Finding, turning_round
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Array, Finding, Results, turning_round
 
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
 """Labels of angles: at the largest height of the crank over the guide, before and past the normal; at the least."""
@@ -22,7 +22,7 @@ TURNS = ("stretched", "stretched_behind", "folded", "folded_behind")
 """Labels of the slider's dead centres."""
 
 
-def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+def classes(a: Array, b: Array, e: Array) -> Results:
     """Compute the assembly and the least transmission angle."""
     reach = np.abs(e) - b
     assembly = np.where(reach + a < 0.0, 0, np.where(reach - a < 0.0, 1, 2)).astype(np.int8)
@@ -36,7 +36,7 @@ def classes(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
     }
 
 
-def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
+def angles(a: Array, b: Array, e: Array, slide_angle: Array) -> Results:
     """Compute the crank angles of arcs and toggles."""
     limits = _crossings(a, b, e)
     start, end = _arcs(a, b, e, slide_angle)
@@ -49,16 +49,14 @@ def angles(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray)
     }
 
 
-def travel(a: np.ndarray, b: np.ndarray, e: np.ndarray) -> dict[str, Finding]:
+def travel(a: Array, b: Array, e: Array) -> Results:
     """Compute the stroke of a slider whose crank turns fully."""
     far, near = ((reach - e) * (reach + e) for reach in (b + a, b - a))
     stroke = np.where(np.abs(e) + a < b, np.sqrt(far) - np.sqrt(near), np.nan)
     return {"stroke": Finding(stroke, "travel of the slider from one dead centre to the other", "m")}
 
 
-def reversals(
-    a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray, side: np.ndarray
-) -> dict[str, Finding]:
+def reversals(a: Array, b: Array, e: Array, slide_angle: Array, side: Array) -> Results:
     """Compute where the slider of a crank that turns fully turns round; `side` is 1 for open, -1 for crossed."""
     turns = np.abs(e) + a < b
     stretched, folded = (np.where(turns, arcsine(e, reach), np.nan) for reach in (b + a, b - a))
@@ -66,7 +64,7 @@ def reversals(
     return turning_round(ahead + side * stretched, ahead + 180.0 + side * folded)
 
 
-def rod_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
+def rod_dead_centres(a: Array, b: Array, e: Array, slide_angle: Array) -> Results:
     """Compute the crank angles at which the rod does not turn, and cannot drive."""
     angle = np.mod(np.stack([slide_angle + 90.0, slide_angle - 90.0], axis=-1), 360.0)
     closes = np.abs(np.stack([e - a, e + a], axis=-1)) < b[..., None]
@@ -76,7 +74,7 @@ def rod_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: n
     }
 
 
-def slider_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> dict[str, Finding]:
+def slider_dead_centres(a: Array, b: Array, e: Array, slide_angle: Array) -> Results:
     """Compute the slider's dead centres on either branch: rod and crank in one line, sin φ = e/(a ± b)."""
     stretched, folded = arcsine(e, a + b), arcsine(e * np.sign(a - b), np.abs(a - b))
     angle = np.stack([stretched, 180.0 - stretched, folded, 180.0 - folded], axis=-1)
@@ -84,9 +82,7 @@ def slider_dead_centres(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle
     return {"dead_centre_angle": Finding(angle, "rod and crank in one line", along=("dead_centre", TURNS))}
 
 
-def wedging(
-    a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray
-) -> dict[str, Finding]:
+def wedging(a: Array, b: Array, e: Array, slide_angle: Array, friction: Array) -> Results:
     """Compute where friction wedges if the crank drives, about 90° and 270° from the guide, and the least that does."""
     highest = np.minimum(a + np.abs(e), b)
     with np.errstate(divide="ignore", over="ignore"):
@@ -94,16 +90,16 @@ def wedging(
     return _jams(_crossings(a, b / np.hypot(1.0, friction), e), slide_angle, friction, least)
 
 
-def wedging_by_crank(slide_angle: np.ndarray, friction: np.ndarray) -> dict[str, Finding]:
+def wedging_by_crank(slide_angle: Array, friction: Array) -> Results:
     """Compute where friction wedges if the rod drives: where the crank is too steep; with any μ at 90°."""
     steep = np.degrees(np.arctan2(1.0, friction))
     begin = np.stack([steep, 180.0 - steep, 180.0 + steep, 360.0 - steep], axis=-1)
     return _jams(begin, slide_angle, friction, np.zeros(friction.shape))
 
 
-def _jams(begin: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray, least: np.ndarray) -> dict[str, Finding]:
-    turned = np.where(friction[..., None] > 0.0, np.mod(begin + slide_angle[..., None], 360.0), np.nan)
+def _jams(begin: Array, slide_angle: Array, friction: Array, least: Array) -> Results:
     """Return the angles and the friction of a wedged slider as findings."""
+    turned = np.where(friction[..., None] > 0.0, np.mod(begin + slide_angle[..., None], 360.0), np.nan)
     long_name = "friction wedges the slider between upper and upper_beyond, and between lower_beyond and lower"
     return {
         "jam_angle": Finding(turned, long_name, along=("side", SIDES)),
@@ -111,13 +107,13 @@ def _jams(begin: np.ndarray, slide_angle: np.ndarray, friction: np.ndarray, leas
     }
 
 
-def _crossings(a: np.ndarray, height: np.ndarray, e: np.ndarray) -> np.ndarray:
+def _crossings(a: Array, height: Array, e: Array) -> Array:
     """Return φ with e − a sin φ = −height (upper) and = height (lower), two of each on a trailing axis; NaN: none."""
     upper, lower = arcsine(e + height, a), arcsine(e - height, a)
     return np.stack([upper, 180.0 - upper, 180.0 - lower, 360.0 + lower], axis=-1)
 
 
-def _arcs(a: np.ndarray, b: np.ndarray, e: np.ndarray, slide_angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _arcs(a: Array, b: Array, e: Array, slide_angle: Array) -> tuple[Array, Array]:
     """Return start and end of the one or two arcs that can be assembled, on a trailing axis; NaN for none."""
     upper, upper_beyond, lower_beyond, lower = np.moveaxis(_crossings(a, b, e), -1, 0)
     above, below = np.isfinite(upper), np.isfinite(lower)

@@ -130,17 +130,20 @@ class Body:
             Row(planar.point_velocity, u, (*self.pin_ratio, self.ratio, *centre)),
             Row(planar.point_acceleration, u_slope, (*self.pin_slope, self.ratio, self.slope, *centre)),
             Row(reduced_inertia.reduced_inertia, (f"reduced_inertia{k}",), moving),
-            Row(
-                reduced_inertia.reduced_inertia_slope,
-                (f"reduced_inertia_slope{k}",),
-                (*moving, *u_slope, self.slope),
-            ),
+            Row(reduced_inertia.reduced_inertia_slope, (f"reduced_inertia_slope{k}",), (*moving, *u_slope, self.slope)),
         ]
 
 
-def crank_pin_slope_rows() -> list[Row | Total]:
-    """Return rows of the velocity of pin B per rate of the crank, and of its slope: the motion at ω2 = 1, α2 = 0."""
+CRANK = Body(2, "crank", steady=True, ratio=1.0)
+
+
+def crank_pin_rows() -> list[Row | Total]:
+    """Return rows of pin B's position and motion, and of its velocity per rate of the crank: at ω2 = 1, α2 = 0."""
     return [
+        Row(crank_driven.crank_pin, ("r2x", "r2y")),
+        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
+        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
+        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(planar.point_velocity, ("uBx", "uBy"), (0.0, 0.0, 1.0, "r2x", "r2y")),
         Row(crank_driven.crank_pin_acceleration, ("uBx_slope", "uBy_slope"), (1.0, 0.0, "r2x", "r2y")),
     ]

@@ -6,16 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.rows.bodies import (
-    Body,
-    Source,
-    arm_rows,
-    crank_pin_slope_rows,
-    drive_quantities,
-    drive_torque,
-    on_crank_pin,
-    position_quantities,
-)
+from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
@@ -27,9 +18,9 @@ LINKS = {1: "ground", 2: "crank", 3: "block", 4: "rocker"}
 PINS = {"A": (1, 2), "B": (3, 2), "slide (at B)": (4, 3), "D": (1, 4)}
 JOURNALS = {"A": 2, "B": 2, "D": 4}
 BODIES = (
-    Body(2, "crank", steady=True, ratio=1.0),
-    on_crank_pin(3, "block", "ratio4", "slope4"),
-    Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
+    bodies.CRANK,
+    bodies.on_crank_pin(3, "block", "ratio4", "slope4"),
+    bodies.Body(4, "rocker", pin_position=("Dx", "Dy"), ratio="ratio4", slope="slope4"),
 )
 
 
@@ -39,13 +30,13 @@ class Drive(NamedTuple):
 
     unknown: Quantity
     rate: str
-    ratio: Source
-    leverage: tuple[Source, ...] = ()
+    ratio: bodies.Source
+    leverage: tuple[bodies.Source, ...] = ()
 
 
 DRIVES = {
-    "crank": Drive(drive_torque("T12", "crank"), "omega2", 1.0),
-    "rocker": Drive(drive_torque("T14", "rocker"), "omega4", "ratio4", ("crank_along", "crank_length", 1.0)),
+    "crank": Drive(bodies.drive_torque("T12", "crank"), "omega2", 1.0),
+    "rocker": Drive(bodies.drive_torque("T14", "rocker"), "omega4", "ratio4", ("crank_along", "crank_length", 1.0)),
     "cylinder": Drive(
         Quantity("cylinder_force", "N", "force of the cylinder on the block along the line, positive as slide"),
         "slide_velocity",
@@ -60,6 +51,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
     """Return the table for a drive, loads of these forms, and a frame line that may be turned."""
     rows = [
         *(near_toggle_rows("ground") if turned else straight_rows("cos2", "sin2")),
+        *bodies.crank_pin_rows(),
         *_position(),
         *_rates(),
         *_forces(drive),
@@ -67,7 +59,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         Row(planar.product, ("friction_power",), ("friction_force", "slide_velocity")),
     ]
     rows += machine_rows(BODIES, PINS, loads, slide_cosine=1.0, psi_versine=1.0) + _transmission()
-    rows += [*arm_rows(2, "R12", "R32"), *_arms()]
+    rows += [*bodies.arm_rows(2, "R12", "R32"), *_arms()]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 
 
@@ -75,13 +67,11 @@ def _arms() -> list[Row | Total]:
     """Return rows of the arms from the centres of gravity of block and rocker to their pins and to the slide at B."""
     line = ("r3x", "r3y")
     return [
-        *arm_rows(3, "R23"),
-        *arm_rows(4, "R14"),
+        *bodies.arm_rows(3, "R23"),
+        *bodies.arm_rows(4, "R14"),
         Row(inverted_slider_crank.slide_arms, ("normal_arm", "line_arm"), ("DBx", "DBy", "rG4x", "rG4y", *line)),
         Row(
-            inverted_slider_crank.slide_arms,
-            ("block_normal_arm", "block_line_arm"),
-            (0.0, 0.0, "rG3x", "rG3y", *line),
+            inverted_slider_crank.slide_arms, ("block_normal_arm", "block_line_arm"), (0.0, 0.0, "rG3x", "rG3y", *line)
         ),
         Row(inverted_slider_crank.contact_direction, ("contact_x", "contact_y")),
         Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
@@ -97,7 +87,6 @@ def _position() -> list[Row | Total]:
     return [
         Row(inverted_slider_crank.near_toggle_width, ("near_toggle_near",)),
         Row(planar.identity, ("near_toggle_far",), (1.0,)),
-        Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(inverted_slider_crank.toggle_cosine, ("toggle_cos", "toggle_cos_lo")),
         Row(inverted_slider_crank.versine, ("psi_versine",)),
         Row(inverted_slider_crank.block_from_rocker_pivot, ("DBx", "DBy")),
@@ -112,7 +101,6 @@ def _position() -> list[Row | Total]:
         Row(planar.dot, ("crank_along",), ("r2x", "r2y", "r3x", "r3y")),
         Row(planar.direction, ("theta4",), ("r3x", "r3y")),
         Row(planar.identity, ("theta3",), ("theta4",)),
-        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
         Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
     ]
 
@@ -123,8 +111,6 @@ def _rates() -> list[Row | Total]:
         Row(planar.product, ("omega4",), ("omega2", "ratio4")),
         Row(planar.identity, ("omega3",), ("omega4",)),
         Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
-        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rpr.rpr_accelerations, ("alpha4", "slide_acceleration")),
         Row(planar.identity, ("alpha3",), ("alpha4",)),
     ]
@@ -134,7 +120,6 @@ def _transmission() -> list[Row | Total]:
     """Return rows of the ratios of the rocker's velocity and torque to the crank's, and of their slopes."""
     line = ("ratio4", "slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
     return [
-        *crank_pin_slope_rows(),
         Row(dyad_rpr.rpr_accelerations, ("slope4", "slope_slide"), ("uBx_slope", "uBy_slope", *line)),
         Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
         Row(advantage.torque_ratio, ("torque_ratio",)),
@@ -187,7 +172,7 @@ def _contact(drive: str) -> list[Row]:
     return [Row(inverted_slider_crank.contact_force, forces)]
 
 
-def _drive(drive: str, unknown: str, ratio: Source) -> list[Row]:
+def _drive(drive: str, unknown: str, ratio: bodies.Source) -> list[Row]:
     """Return rows of the drive's unknown and of the force along the line: friction, or the balance with a cylinder."""
     if drive == "cylinder":
         return [
@@ -222,10 +207,10 @@ def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
         Quantity("slide_acceleration", "m s-2", "acceleration of the block along the rocker's line, relative to it"),
         Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
         Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
-        *position_quantities("B"),
+        *bodies.position_quantities("B"),
         Quantity("friction_force", "N", "friction of the rocker on the block along its line"),
         Quantity("friction_power", "W", "power of friction in the slide, never positive"),
-        *drive_quantities(DRIVES[drive].unknown, "drive, friction, loads, gravity and inertia"),
+        *bodies.drive_quantities(DRIVES[drive].unknown, "drive, friction, loads, gravity and inertia"),
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
         Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
         *machine_quantities(BODIES, PINS, LINKS, loads),

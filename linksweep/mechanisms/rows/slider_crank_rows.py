@@ -5,15 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.rows.bodies import (
-    Body,
-    arm_rows,
-    crank_pin_slope_rows,
-    drive_quantities,
-    drive_torque,
-    on_crank_pin,
-    position_quantities,
-)
+from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
@@ -28,9 +20,9 @@ PINS = {"A": (1, 2), "B": (3, 2), "C": (4, 3), "guide": (1, 4)}
 JOURNALS = {"A": 2, "B": 2, "C": 4}
 """As in engines: the crank carries crankshaft and crankpin, the piston the gudgeon pin; the rod has both its bushes."""
 BODIES = (
-    Body(2, "crank", steady=True, ratio=1.0),
-    on_crank_pin(3, "rod", "ratio3", "slope3"),
-    Body(
+    bodies.CRANK,
+    bodies.on_crank_pin(3, "rod", "ratio3", "slope3"),
+    bodies.Body(
         4,
         "slider",
         ("vCx", "vCy"),
@@ -47,6 +39,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
     """Return the table for a drive, loads of these forms, and a guide that may be turned."""
     rows = [
         *(near_toggle_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
+        *bodies.crank_pin_rows(),
         *_position(),
         *_rates(),
         *_forces(drive),
@@ -55,14 +48,13 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
     ]
     rows += machine_rows(BODIES, PINS, loads, low="crank_length", high="crank_length") + _transmission()
-    rows += [*arm_rows(2, "R12", "R32"), *arm_rows(3, "R23", "R43"), *arm_rows(4, "R34")]
+    rows += [*bodies.arm_rows(2, "R12", "R32"), *bodies.arm_rows(3, "R23", "R43"), *bodies.arm_rows(4, "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
 
 
 def _position() -> list[Row | Total]:
     return [
         Row(slider_crank.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
-        Row(crank_driven.crank_pin, ("r2x", "r2y")),
         Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_lo", "high_cos", "high_cos_lo")),
         Row(slider_crank.guide_components, ("crank_along", "crank_across", "rod_across")),
         Row(slider_crank.closure_factors, ("low", "high")),
@@ -73,7 +65,6 @@ def _position() -> list[Row | Total]:
         Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
         Row(slider_crank.slider_position, ("x_slider",)),
         Row(planar.direction, ("theta3",), ("r3x", "r3y")),
-        Row(planar.vector_sum, ("Bx", "By"), (0.0, 0.0, "r2x", "r2y")),
         Row(planar.vector_sum, ("Cx", "Cy"), ("r2x", "r2y", "r3x", "r3y")),
     ]
 
@@ -83,8 +74,6 @@ def _rates() -> list[Row | Total]:
         Row(dyad_rrp.rrp_velocity_ratios, ("ratio3", "ratio_slider")),
         Row(planar.product, ("omega3",), ("omega2", "ratio3")),
         Row(planar.product, ("v_slider",), ("omega2", "ratio_slider")),
-        Row(planar.point_velocity, ("vBx", "vBy"), (0.0, 0.0, "omega2", "r2x", "r2y")),
-        Row(crank_driven.crank_pin_acceleration, ("aBx", "aBy")),
         Row(dyad_rrp.rrp_accelerations, ("alpha3", "a_slider")),
         Row(planar.along, ("vCx", "vCy"), ("v_slider", "guide_cos", "guide_sin")),
         Row(planar.along, ("aCx", "aCy"), ("a_slider", "guide_cos", "guide_sin")),
@@ -95,7 +84,6 @@ def _transmission() -> list[Row | Total]:
     """Return rows of the ratios of the slider's velocity and force to the crank's, and of their slopes."""
     rod, guide = ("ratio3", "rod_along", "rod_across", "inverse_rod_along"), ("guide_cos", "guide_sin")
     return [
-        *crank_pin_slope_rows(),
         Row(dyad_rrp.rrp_accelerations, ("slope3", "slope_slider"), ("uBx_slope", "uBy_slope", *rod, *guide)),
         Row(planar.along, ("uCx", "uCy"), ("ratio_slider", *guide)),
         Row(planar.along, ("uCx_slope", "uCy_slope"), ("slope_slider", *guide)),
@@ -111,10 +99,8 @@ def _forces(drive: str) -> list[Row | Total]:
         "coupler": ("inverse_crank_along", "crank_across", "moment_r2"),
     }[drive]
     guide = ("guide_cos", "guide_sin")
-    torque = {
-        "crank": Row(planar.opposite, ("T12",), ("work",)),
-        "coupler": Row(slider_crank.torque_on_rod, ("T13",)),
-    }[drive]
+    by_crank = drive == "crank"
+    torque = Row(planar.opposite, ("T12",), ("work",)) if by_crank else Row(slider_crank.torque_on_rod, ("T13",))
     return [
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
         Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
@@ -153,6 +139,7 @@ def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
 
 
 def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
+    torque = bodies.drive_torque(DRIVES[drive], drive)
     return [
         Quantity("theta3", "degree", "angle of the rod B→C from x, counter-clockwise, in (-180, 180]"),
         Quantity("transmission_angle", "degree", "acute angle between the rod and the guide's normal"),
@@ -163,8 +150,8 @@ def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
         Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
         Quantity("friction_force", "N", "force of the guide on the slider along it"),
         Quantity("friction_power", "W", "power of friction on the slider, never positive"),
-        *position_quantities("B", "C"),
-        *drive_quantities(drive_torque(DRIVES[drive], drive), "drive, friction, loads, gravity and inertia"),
+        *bodies.position_quantities("B", "C"),
+        *bodies.drive_quantities(torque, "drive, friction, loads, gravity and inertia"),
         Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
         Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
         *machine_quantities(BODIES, PINS, LINKS, loads),

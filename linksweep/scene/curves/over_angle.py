@@ -78,13 +78,7 @@ def period_of(value: Any, shortest: float) -> float:
     return shortest * max(np.ceil(np.ptp(value["theta2"].values) / shortest), 1.0)
 
 
-def at_angles(
-    path: str,
-    value: Any,
-    rule: Rule,
-    grid: Grid,
-    curve: ArrayCurve | None = None,
-) -> Any:
+def at_angles(path: str, value: Any, rule: Rule, grid: Grid, curve: ArrayCurve | None = None) -> Any:
     """Evaluate a function or DataArray of theta2 at the grid's angles; return any other number as it is.
 
     At angles that a DataArray does not hold its `curve` is evaluated; at angles that it holds, or that are whole
