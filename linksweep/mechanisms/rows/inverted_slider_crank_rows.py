@@ -65,21 +65,15 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
 
 def _arms() -> list[Row | Total]:
     """Return rows of the arms from the centres of gravity of block and rocker to their pins and to the slide at B."""
-    line = ("r3x", "r3y")
+    line, block_arms = ("r3x", "r3y"), ("block_normal_arm", "block_line_arm")
     return [
         *bodies.arm_rows(3, "R23"),
         *bodies.arm_rows(4, "R14"),
         Row(inverted_slider_crank.slide_arms, ("normal_arm", "line_arm"), ("DBx", "DBy", "rG4x", "rG4y", *line)),
-        Row(
-            inverted_slider_crank.slide_arms, ("block_normal_arm", "block_line_arm"), (0.0, 0.0, "rG3x", "rG3y", *line)
-        ),
+        Row(inverted_slider_crank.slide_arms, block_arms, (0.0, 0.0, "rG3x", "rG3y", *line)),
         Row(inverted_slider_crank.contact_direction, ("contact_x", "contact_y")),
         Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
-        Row(
-            inverted_slider_crank.contact_arm,
-            ("block_contact_arm",),
-            ("F43n", "direction", "block_normal_arm", "block_line_arm"),
-        ),
+        Row(inverted_slider_crank.contact_arm, ("block_contact_arm",), ("F43n", "direction", *block_arms)),
     ]
 
 

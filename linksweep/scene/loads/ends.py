@@ -22,8 +22,8 @@ class Between:
 
     from_: str
     to: str
+    damps: bool
     full_turns: ClassVar[bool] = False
-    damps: ClassVar[bool] = False
 
     @property
     def place(self) -> str:

@@ -40,6 +40,9 @@ class _Line(Action):
     from_: End = of_kind(EndField(example='["ground", 0.3, 0]'))
     to: End = of_kind(EndField(example='["rocker", "10 cm", 15]'))
 
+    damps: ClassVar[bool] = False
+    """True where its force grows with the speed."""
+
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         """Return the problems of the load on a machine of these links."""
         problems = field_problems(self, path + ".")
@@ -47,6 +50,11 @@ class _Line(Action):
             problems += link_problems(f"{path}.from_[1]", self.from_[0], links)
             problems += link_problems(f"{path}.to[1]", self.to[0], links)
         return problems or same_link_problems(f"{path}.to[1]", self.from_[0], self.to[0])
+
+    @property
+    def form(self) -> LineForm:
+        """Form of its rows."""
+        return LineForm(self.from_[0], self.to[0], self.damps)
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:
         """Return the names of the quantities that locate where its ends come closest."""
@@ -90,13 +98,8 @@ class Spring(_Line):
     rate: Number = parameter("spring_rate", at_least=0.0)
     free_length: Number = parameter("length", at_least=0.0)
 
-    @property
-    def form(self) -> SpringForm:
-        """Form of its rows."""
-        return SpringForm(self.from_[0], self.to[0])
-
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Return the load\'s numbers under the names that its rows take."""
+        """Return the load's numbers under the names that its rows take."""
         return {f"{name}_rate": self.rate, f"{name}_free_length": self.free_length} | self.ends(name)
 
 
@@ -129,13 +132,10 @@ class Damper(_Line):
 
     coefficient: Number = parameter("damping_coefficient", at_least=0.0)
 
-    @property
-    def form(self) -> DamperForm:
-        """Form of its rows."""
-        return DamperForm(self.from_[0], self.to[0])
+    damps: ClassVar[bool] = True
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Return the load\'s numbers under the names that its rows take."""
+        """Return the load's numbers under the names that its rows take."""
         return {f"{name}_coefficient": self.coefficient} | self.ends(name)
 
 
@@ -148,7 +148,7 @@ def _end_parameters(name: str, end: End) -> dict[str, Number]:
 
 @dataclass(frozen=True)
 class LineForm(Between):
-    """A force along the line between two points; a subclass states its tension."""
+    """The rows of a force along the line between two points."""
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         unit, pull = (f"{name}_ux", f"{name}_uy"), (f"{name}_from_Fx", f"{name}_from_Fy")
@@ -162,7 +162,7 @@ class LineForm(Between):
             Row(springs.line_direction, unit, (*line, f"{name}_length")),
             Row(planar.difference, speed, (*_velocity(f"{name}_to", self.to), *_velocity(f"{name}_from", self.from_))),
             Row(planar.dot, (f"{name}_lengthening",), (*unit, *speed)),
-            self.tension(name),
+            self._tension(name),
             Row(planar.along, pull, (f"{name}_tension", *unit)),
             *(Row(planar.opposite, (f"{name}_to_F{axis}",), (f"{name}_from_F{axis}",)) for axis in "xy"),
             Row(springs.resisting_power, (f"{name}_power",), (f"{name}_tension", f"{name}_lengthening")),
@@ -179,9 +179,11 @@ class LineForm(Between):
             Row(springs.turning_width, (width,), (f"{name}_length", *ratio)),
         ]
 
-    def tension(self, name: str) -> Row:
-        """Return the row of the tension."""
-        raise NotImplementedError
+    def _tension(self, name: str) -> Row:
+        if self.damps:
+            return Row(planar.product, (f"{name}_tension",), (f"{name}_coefficient", f"{name}_lengthening"))
+        inputs = (f"{name}_rate", f"{name}_free_length", f"{name}_length")
+        return Row(springs.spring_tension, (f"{name}_tension",), inputs)
 
     def on(self, name: str, link: str) -> Acting:
         ends = [end for end, role in self.ends(name) if role == link]
@@ -198,25 +200,6 @@ class LineForm(Between):
 def approach(name: str) -> tuple[str, str]:
     """Return the names of l·dl/dθ2, which rises through 0 where the ends come closest, and of the width there."""
     return f"{name}_approach", f"{name}_width"
-
-
-@dataclass(frozen=True)
-class SpringForm(LineForm):
-    """The rows of a linear spring."""
-
-    def tension(self, name: str) -> Row:
-        inputs = (f"{name}_rate", f"{name}_free_length", f"{name}_length")
-        return Row(springs.spring_tension, (f"{name}_tension",), inputs)
-
-
-@dataclass(frozen=True)
-class DamperForm(LineForm):
-    """The rows of a viscous damper."""
-
-    damps: ClassVar[bool] = True
-
-    def tension(self, name: str) -> Row:
-        return Row(planar.product, (f"{name}_tension",), (f"{name}_coefficient", f"{name}_lengthening"))
 
 
 def _end_rows(end: str, body: Body) -> list[Row | Total]:

@@ -27,6 +27,14 @@ class _Turning(Action):
     from_: str = word('"ground"')
     to: str = word('"rocker"')
 
+    damps: ClassVar[bool] = False
+    """True where its torque grows with the speed."""
+
+    @property
+    def form(self) -> TurningForm:
+        """Form of its rows."""
+        return TurningForm(self.from_, self.to, self.damps)
+
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         """Return the problems of the load on a machine of these links."""
         problems = link_problems(f"{path}.from_", self.from_, links) + link_problems(f"{path}.to", self.to, links)
@@ -70,13 +78,8 @@ class TorsionSpring(_Turning):
     rate: Number = parameter("torsional_rate", at_least=0.0)
     free_angle: Number = parameter("angle", 0.0)
 
-    @property
-    def form(self) -> TorsionSpringForm:
-        """Form of its rows."""
-        return TorsionSpringForm(self.from_, self.to)
-
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
-        """Return the load\'s numbers under the names that its rows take."""
+        """Return the load's numbers under the names that its rows take."""
         cos, sin = cos_sin(self.free_angle)
         return {f"{name}_rate": self.rate, f"{name}_free_cos": cos, f"{name}_free_sin": sin}
 
@@ -114,10 +117,7 @@ class TorsionDamper(_Turning):
 
     coefficient: Number = parameter("torsional_damping", at_least=0.0)
 
-    @property
-    def form(self) -> TorsionDamperForm:
-        """Form of its rows."""
-        return TorsionDamperForm(self.from_, self.to)
+    damps: ClassVar[bool] = True
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """Return the load's number under the name that its rows take."""
@@ -133,7 +133,7 @@ class TurningForm(Between):
         rates = [f"omega{body.number}" if body else 0.0 for body in (second, first)]
         return [
             Row(springs.turning_rate, (f"{name}_turning",), tuple(rates)),
-            *self.resistance(name, first, second),
+            *self._resistance(name, first, second),
             Row(planar.identity, (f"{name}_from_torque",), (f"{name}_resistance",)),
             Row(planar.opposite, (f"{name}_to_torque",), (f"{name}_resistance",)),
             *(
@@ -143,25 +143,10 @@ class TurningForm(Between):
             Row(springs.resisting_power, (f"{name}_power",), (f"{name}_resistance", f"{name}_turning")),
         ]
 
-    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
+    def _resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
         """Return the rows of the resisting torque."""
-        raise NotImplementedError
-
-    def on(self, name: str, link: str) -> Acting:
-        return Acting(moments=tuple(f"{end}_torque" for end, role in self.ends(name) if role == link))
-
-    def quantities(self, name: str) -> list[Quantity]:
-        return [
-            Quantity(f"{name}_to_torque", "N m", f"torque of {self.title(name)} on the {self.to}"),
-            Quantity(f"{name}_power", "W", f"power of {self.title(name)}, positive when it feeds the mechanism"),
-        ]
-
-
-@dataclass(frozen=True)
-class TorsionSpringForm(TurningForm):
-    """The rows of a torsion spring."""
-
-    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
+        if self.damps:
+            return [Row(planar.product, (f"{name}_resistance",), (f"{name}_coefficient", f"{name}_turning"))]
         free = (f"{name}_free_cos", f"{name}_free_sin")
         return [
             Row(springs.twist, (f"{name}_twist_rad",), (*_line(first), *_line(second), *free)),
@@ -169,19 +154,17 @@ class TorsionSpringForm(TurningForm):
             Row(planar.product, (f"{name}_resistance",), (f"{name}_rate", f"{name}_twist_rad")),
         ]
 
+    def on(self, name: str, link: str) -> Acting:
+        return Acting(moments=tuple(f"{end}_torque" for end, role in self.ends(name) if role == link))
+
     def quantities(self, name: str) -> list[Quantity]:
-        twist = f"angle by which {self.title(name)} is wound from its free angle, in (-180, 180]"
-        return [Quantity(f"{name}_twist", "degree", twist), *super().quantities(name)]
-
-
-@dataclass(frozen=True)
-class TorsionDamperForm(TurningForm):
-    """The rows of a viscous damper of rotation."""
-
-    damps: ClassVar[bool] = True
-
-    def resistance(self, name: str, first: Body | None, second: Body | None) -> list[Row]:
-        return [Row(planar.product, (f"{name}_resistance",), (f"{name}_coefficient", f"{name}_turning"))]
+        wound = f"angle by which {self.title(name)} is wound from its free angle, in (-180, 180]"
+        twist = [] if self.damps else [Quantity(f"{name}_twist", "degree", wound)]
+        return [
+            *twist,
+            Quantity(f"{name}_to_torque", "N m", f"torque of {self.title(name)} on the {self.to}"),
+            Quantity(f"{name}_power", "W", f"power of {self.title(name)}, positive when it feeds the mechanism"),
+        ]
 
 
 def _line(body: Body | None) -> Pair:
