@@ -18,6 +18,7 @@ from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.pins.bearings import EXPONENTS, FRAMES, Bearing, bearings
 from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.cli import summaries
 from linksweep.files.atomic import ending_of, whole
@@ -26,7 +27,6 @@ from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
-from linksweep.scene.units import quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,9 +10,9 @@ import numpy as np
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.memory import require_memory
+from linksweep.base.units import unit_problems
 from linksweep.base.validate import quote, refuse
 from linksweep.engine.run import Grid
-from linksweep.scene.units import unit_problems
 
 NAMES = ("cos2", "sin2", "cos2_lo", "sin2_lo", "radians2")
 """Rows of a grid's table."""

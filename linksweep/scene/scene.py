@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent, content
 from linksweep.base.fields import (
     PairField,
@@ -28,7 +29,6 @@ from linksweep.base.validate import UNITS, Number, Rule, choice_problems, is_laz
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
-from linksweep.scene.checked_number import unit_attribute_problems
 from linksweep.scene.curves.over_angle import ArrayCurve, period_of, period_of_function, turning_problems
 from linksweep.scene.curves.quick import Quick, quick_angles
 from linksweep.scene.dimensions import dimension_problems

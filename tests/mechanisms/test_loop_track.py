@@ -9,9 +9,9 @@ import xarray as xr
 from refusals import refusal
 
 import linksweep as ls
+from linksweep.base.units import quantity
 from linksweep.cli.main import main
 from linksweep.scene.file.reading import parse_scene
-from linksweep.scene.units import quantity
 
 mp.mp.dps = 50
 G = (0.0, -9.81)

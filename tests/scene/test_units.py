@@ -7,9 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from linksweep.base.units import KINDS, accepted_unit, quantity
 from linksweep.scene import units
 from linksweep.scene.file.axis import design_axis
-from linksweep.scene.units import KINDS, accepted_unit, quantity
 
 # International definitions, all exact: the inch, the pound, standard gravity.
 INCH, FOOT, POUND, G0 = Fraction("0.0254"), Fraction("0.3048"), Fraction("0.45359237"), Fraction("9.80665")

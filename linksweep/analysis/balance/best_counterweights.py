@@ -24,10 +24,10 @@ import xarray as xr
 from linksweep.analysis.balance.compare import sizes_named
 from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
+from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, name_problems, quote, refuse
 from linksweep.results.compute import require
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import checked_number
 from linksweep.scene.designs.selection import design_sizes
 from linksweep.scene.scene import Scene
 

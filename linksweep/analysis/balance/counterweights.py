@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.checked_number import checked_number, unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind, parameter
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.links import Link
 from linksweep.results.compute import require
-from linksweep.scene.checked_number import checked_number, unit_attribute_problems
 from linksweep.scene.scene import Scene
 
 RADIUS = Rule("length", above=0.0)

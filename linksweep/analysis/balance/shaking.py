@@ -6,9 +6,9 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.checked_number import checked_pair
 from linksweep.base.fields import PairField
 from linksweep.base.validate import Rule, quote, refuse
-from linksweep.scene.checked_number import checked_pair
 
 POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m from A")
 

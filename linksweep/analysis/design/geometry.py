@@ -22,6 +22,7 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.base.checked_number import checked_pair
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT
 from linksweep.base.validate import choice_problems, refuse
@@ -31,7 +32,6 @@ from linksweep.results.compute import compute, require
 from linksweep.results.dataset import design_coordinates, provenance, variable
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import checked_pair
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene

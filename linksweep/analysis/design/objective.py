@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.peaks import peaks
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
-from linksweep.scene.units import quantity
 
 CANDIDATES = "candidate"
 """Dimension of the designs of one call; always of the same name, so that one kernel serves all calls."""

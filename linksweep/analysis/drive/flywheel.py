@@ -21,11 +21,11 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.duty import steady_problems
+from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import checked_number
 from linksweep.scene.scene import Scene
 
 FLUCTUATION = Rule("dimensionless", above=0.0)

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.checked_number import array_unit_problems, checked_number
 from linksweep.base.conversion import all_to_float64, to_float64
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
 from linksweep.results.compute import require
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import array_unit_problems, checked_number
 from linksweep.scene.scene import Scene
 
 INERTIA = Rule("inertia", at_least=0.0)

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import MEANINGS, UNBOUNDED, Rotation, rotation_under_load
+from linksweep.base.checked_number import unit_attribute_problems
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.memory import require_memory
@@ -24,7 +25,6 @@ from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import flags, joined
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import unit_attribute_problems
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene

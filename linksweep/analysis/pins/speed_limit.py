@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.pins.breakdown import forces_of, has_friction
+from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
@@ -24,7 +25,6 @@ from linksweep.results.dataset import design_coordinates
 from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
-from linksweep.scene.checked_number import checked_number
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 

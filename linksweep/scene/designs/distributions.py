@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, is_quantity, quote
-from linksweep.scene.units import quantity
 
 
 class Spread(Protocol):

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.units import accepted_unit, as_toml, key_as_toml, quantity
 from linksweep.base.validate import did_you_mean
 from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.storable import name_problem
-from linksweep.scene.units import accepted_unit, as_toml, key_as_toml, quantity
 
 MOST = 1_000_000
 """Numbers of an axis that is given by its ends."""

@@ -25,10 +25,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.units import accepted_unit, as_toml, key_as_toml, quantity
 from linksweep.base.validate import did_you_mean, name_problems, refuse
 from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.file.text_file import text_of
-from linksweep.scene.units import accepted_unit, as_toml, key_as_toml, quantity
 
 KEYS = ("csv", "column", "unit", "interpolation")
 LONGEST_CELL = 1000

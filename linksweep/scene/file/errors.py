@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.base.units import as_toml, key_as_toml
 from linksweep.base.validate import did_you_mean
-from linksweep.scene.units import as_toml, key_as_toml
 
 Where = tuple[str | int, ...]  # keys and list positions down to a value, as TOML nests them
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from linksweep.base.fields import FieldKind, ListField, NumberField, PairField, PartField, PartsField, declared
 from linksweep.base.frozen import unvalidated
+from linksweep.base.units import KINDS, as_toml, quantity
 from linksweep.base.validate import choice_problems
 from linksweep.scene.file.axis import design_axis
 from linksweep.scene.file.csv_table import csv_column
 from linksweep.scene.file.errors import Log, Where
-from linksweep.scene.units import KINDS, as_toml, quantity
 
 INSTEAD = 'give it as a DataArray, with interpolation="step" where it jumps'
 """Advice for a function that no samples represent."""

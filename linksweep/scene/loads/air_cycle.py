@@ -32,8 +32,105 @@ from linksweep.scene.parameters import along, bare
 ATMOSPHERE = 101325.0
 
 
+class Cycle(ByContent):
+    """An ideal air cycle: a frozen dataclass with these fields, and a `cutoff_ratio` where combustion goes on."""
+
+    compression_ratio: Number
+    peak_pressure: Number | None
+    intake_pressure: Number
+    gamma: Number
+    strokes: int
+    cutoff_ratio: Number = 1.0
+
+    @property
+    def period(self) -> float:
+        """Crank angle of a whole cycle [degree]."""
+        return 180.0 * float(self.strokes)
+
+    @property
+    def compressed(self) -> Number:
+        """Pressure at the end of compression [Pa]."""
+        try:
+            with np.errstate(over="ignore"):
+                return self.intake_pressure * self.compression_ratio**self.gamma
+        except OverflowError:
+            return np.inf
+
+    @property
+    def combustion(self) -> tuple[Number, Number]:
+        """Pressure during or right after combustion [Pa], and the volume at its end over the least."""
+        return self.compressed if self.peak_pressure is None else self.peak_pressure, self.cutoff_ratio
+
+    def problems(self, path: str) -> list[str]:
+        """Return the problems of the cycle.
+
+        Parameters
+        ----------
+        path : str
+            Path of the cycle, with which each problem begins.
+
+        Returns
+        -------
+        list of str
+            One line for each problem.
+        """
+        problems = field_problems(self, path + ".")
+        if as_float(self.strokes) not in (2.0, 4.0):
+            problems.append(f"{path}.strokes = {quote(self.strokes)}: must be 4 or 2")
+        return problems or self._compression_problems(path) or self._combustion_problems(path)
+
+    def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
+        """Return the absolute pressure at crank angles.
+
+        Parameters
+        ----------
+        engine : Mechanism
+            SliderCrank whose cylinder the cycle runs in.
+        theta2 : array_like
+            Crank angles [degree].
+        turning : float or DataArray, default 1.0
+            Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
+
+        Returns
+        -------
+        DataArray
+            Pressure [Pa] over the design dims and theta2.
+        """
+        missing = lack(engine, "cylinder")
+        refuse([f"engine is {missing}"] if missing else [])
+        angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
+        pressure = pressure_over(self, engine.cylinder, angles, turning)
+        labels: dict[Any, xr.Variable] = {}
+        for array in [*(number for owner in (self, engine) for _, number, _ in numbers(owner)), turning]:
+            if isinstance(array, xr.DataArray):
+                dims = [dim for dim in array.dims if dim in array.coords and dim in pressure.dims]
+                labels |= {dim: array[dim].variable for dim in dims}
+        return xr.DataArray(pressure, labels | {"theta2": angles})
+
+    def _compression_problems(self, path: str) -> list[str]:
+        """Return why the compression can't be computed."""
+        if is_lazy(self.compressed) or np.isfinite(self.compressed).all():
+            return []
+        largest = f"{float(np.max(self.compression_ratio)):.15g}"
+        return [f"{path}.compression_ratio = {largest}: compresses to more than 1.8e308 Pa; reduce it, or gamma"]
+
+    def _combustion_problems(self, path: str) -> list[str]:
+        """Return the problem of a combustion that ends beyond the largest volume, or below compression's pressure."""
+        over = self.cutoff_ratio > self.compression_ratio
+        if not is_lazy(over) and np.any(over):
+            largest = float(np.max(self.cutoff_ratio))
+            return [f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it"]
+        too_low = self.peak_pressure is not None and self.peak_pressure < self.compressed
+        if is_lazy(too_low) or not np.any(too_low):
+            return []
+        peak, compressed = xr.broadcast(xr.DataArray(self.peak_pressure), xr.DataArray(self.compressed))
+        k = int(np.argmax((peak < compressed).values))
+        least = f"{compressed.values.reshape(-1)[k]:.6g} Pa, what compression alone gives"
+        return [f"{path}.peak_pressure = {peak.values.reshape(-1)[k]:.15g} Pa: must be at least {least}"]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class OttoCycle(ByContent):
+class OttoCycle(Cycle):
     """Ideal Otto cycle: isentropic compression and expansion, all heat added at top dead centre.
 
     Parameters
@@ -70,56 +167,9 @@ class OttoCycle(ByContent):
     gamma: Number = parameter("dimensionless", 1.4, above=1.0)
     strokes: int = 4
 
-    @property
-    def period(self) -> float:
-        """Crank angle of a whole cycle [degree]."""
-        return 180.0 * float(self.strokes)
-
-    def problems(self, path: str) -> list[str]:
-        """Return the problems of the cycle.
-
-        Parameters
-        ----------
-        path : str
-            Path of the cycle, with which each problem begins.
-
-        Returns
-        -------
-        list of str
-            One line for each problem.
-        """
-        problems = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
-        problems = problems or _compression_problems(path, self)
-        end = "" if problems else _below(self.peak_pressure, _compressed(self))
-        return problems or ([f"{path}.peak_pressure = {end}"] if end else [])
-
-    def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
-        """Return the absolute pressure at crank angles.
-
-        Parameters
-        ----------
-        engine : Mechanism
-            SliderCrank whose cylinder the cycle runs in.
-        theta2 : array_like
-            Crank angles [degree].
-        turning : float or DataArray, default 1.0
-            Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
-
-        Returns
-        -------
-        DataArray
-            Pressure [Pa] over the design dims and theta2.
-        """
-        return _labelled(self, engine, theta2, turning)
-
-    @property
-    def combustion(self) -> tuple[Number, Number]:
-        """Pressure after combustion [Pa], and the volume at its end over the least."""
-        return self.peak_pressure, 1.0
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DieselCycle(ByContent):
+class DieselCycle(Cycle):
     """Ideal Diesel cycle: isentropic compression and expansion, heat added at constant pressure until the cutoff.
 
     Parameters
@@ -159,59 +209,7 @@ class DieselCycle(ByContent):
     gamma: Number = parameter("dimensionless", 1.4, above=1.0)
     strokes: int = 4
 
-    @property
-    def period(self) -> float:
-        """Crank angle of a whole cycle [degree]."""
-        return 180.0 * float(self.strokes)
 
-    def problems(self, path: str) -> list[str]:
-        """Return the problems of the cycle.
-
-        Parameters
-        ----------
-        path : str
-            Path of the cycle, with which each problem begins.
-
-        Returns
-        -------
-        list of str
-            One line for each problem.
-        """
-        problems = field_problems(self, path + ".") + _stroke_problems(path, self.strokes)
-        problems = problems or _compression_problems(path, self)
-        over = False if problems else self.cutoff_ratio > self.compression_ratio
-        if not is_lazy(over) and np.any(over):
-            largest = float(np.max(self.cutoff_ratio))
-            problems.append(f"{path}.cutoff_ratio = {largest:.15g}: must be at most the compression ratio; reduce it")
-        end = "" if problems or self.peak_pressure is None else _below(self.peak_pressure, _compressed(self))
-        return problems or ([f"{path}.peak_pressure = {end}"] if end else [])
-
-    def pressure(self, engine: Mechanism, theta2, turning: Number = 1.0) -> xr.DataArray:
-        """Return the absolute pressure at crank angles.
-
-        Parameters
-        ----------
-        engine : Mechanism
-            SliderCrank whose cylinder the cycle runs in.
-        theta2 : array_like
-            Crank angles [degree].
-        turning : float or DataArray, default 1.0
-            Sense of rotation of the crank [1]: 1 counter-clockwise, -1 clockwise.
-
-        Returns
-        -------
-        DataArray
-            Pressure [Pa] over the design dims and theta2.
-        """
-        return _labelled(self, engine, theta2, turning)
-
-    @property
-    def combustion(self) -> tuple[Number, Number]:
-        """Pressure during combustion [Pa], and the volume at its end over the least."""
-        return _compressed(self) if self.peak_pressure is None else self.peak_pressure, self.cutoff_ratio
-
-
-Cycle = OttoCycle | DieselCycle
 CYCLES = (OttoCycle, DieselCycle)
 
 
@@ -233,56 +231,3 @@ def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning:
     later = np.where(turned < opens, cycle.intake_pressure, compression)
     later = np.where(np.isnan(opened), np.nan, later)
     return xr.Variable(dims, np.where(turned < bottom, expansion, later))
-
-
-def _labelled(cycle: Cycle, engine: Mechanism, theta2: Any, turning: Number) -> xr.DataArray:
-    """Return the pressure over crank angles [degree], with all labels."""
-    missing = lack(engine, "cylinder")
-    refuse([f"engine is {missing}"] if missing else [])
-    angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
-    pressure = pressure_over(cycle, engine.cylinder, angles, turning)
-    arrays = [number for owner in (cycle, engine) for _, number, _ in numbers(owner)] + [turning]
-    labels = {
-        dim: array[dim].variable
-        for array in arrays
-        if isinstance(array, xr.DataArray)
-        for dim in array.dims
-        if dim in array.coords and dim in pressure.dims
-    }
-    return xr.DataArray(pressure, labels | {"theta2": angles})
-
-
-def _compressed(cycle: Cycle) -> Number:
-    """Return the pressure at the end of compression [Pa]."""
-    try:
-        with np.errstate(over="ignore"):
-            return cycle.intake_pressure * cycle.compression_ratio**cycle.gamma
-    except OverflowError:
-        return np.inf
-
-
-def _compression_problems(path: str, cycle: Cycle) -> list[str]:
-    """Return why the compression can't be computed."""
-    compressed = _compressed(cycle)
-    if is_lazy(compressed) or np.isfinite(compressed).all():
-        return []
-    largest = f"{float(np.max(cycle.compression_ratio)):.15g}"
-    return [f"{path}.compression_ratio = {largest}: compresses to more than 1.8e308 Pa; reduce it, or gamma"]
-
-
-def _below(peak: Number, compressed: Number) -> str:
-    """Return the problem of a peak pressure that compression alone exceeds; an empty text for none."""
-    too_low = peak < compressed
-    if is_lazy(too_low) or not np.any(too_low):
-        return ""
-    peak, compressed = xr.broadcast(xr.DataArray(peak), xr.DataArray(compressed))
-    short = (peak < compressed).values
-    k = int(np.argmax(short))
-    least = f"{compressed.values.reshape(-1)[k]:.6g} Pa"
-    return f"{peak.values.reshape(-1)[k]:.15g} Pa: must be at least {least}, what compression alone gives"
-
-
-def _stroke_problems(path: str, strokes: object) -> list[str]:
-    if as_float(strokes) in (2.0, 4.0):
-        return []
-    return [f"{path}.strokes = {quote(strokes)}: must be 4 or 2"]

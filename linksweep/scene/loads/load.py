@@ -12,6 +12,7 @@ import xarray as xr
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems, of_kind, parameter, word
 from linksweep.base.frozen import normalise, with_sound
+from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms import Mechanism
@@ -25,7 +26,6 @@ from linksweep.scene.curves.over_position import POSITION, at_positions, corners
 from linksweep.scene.loads.action import register
 from linksweep.scene.loads.changing_load import BREAKS, ChangingLoad
 from linksweep.scene.revolution import Revolution
-from linksweep.scene.units import unit_problems
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)

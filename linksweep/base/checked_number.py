@@ -7,8 +7,8 @@ from typing import Any
 
 from linksweep.base.conversion import to_float64
 from linksweep.base.fields import PairField, numbers_in
+from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, is_array, number_problems, refuse
-from linksweep.scene.units import unit_problems
 
 
 def checked_number(path: str, value: Any, rule: Rule) -> Number:
