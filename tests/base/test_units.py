@@ -7,8 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from linksweep.base import units
 from linksweep.base.units import KINDS, accepted_unit, quantity
-from linksweep.scene import units
 from linksweep.scene.file.axis import design_axis
 
 # International definitions, all exact: the inch, the pound, standard gravity.
