@@ -1,4 +1,4 @@
-"""Numbers with units: exact where the unit is; where the text is not what it seems, a message that helps."""
+"""Numbers with units: exact conversion, and a helpful message where the text is ambiguous."""
 
 import random
 from fractions import Fraction
@@ -80,7 +80,7 @@ def test_rounding_is_correct_for_any_number():
         ("60 rpm/s", "angular_acceleration", Fraction(2)),
     ],
 )
-def test_turns_are_correctly_rounded(text, kind, per_pi):
+def test_units_of_rotation_are_correctly_rounded(text, kind, per_pi):
     with mpmath.workdps(40):
         assert quantity(text, kind) == float(mpmath.pi * per_pi.numerator / per_pi.denominator)
 
@@ -92,9 +92,9 @@ def test_radians_become_degrees():
 
 @pytest.mark.parametrize("value", [0.1, -3, 0, np.float64(0.3), np.int32(7)])
 def test_a_plain_number_passes_through(value):
-    found = quantity(value, "length")
-    assert type(found) is float
-    assert found == value
+    result = quantity(value, "length")
+    assert type(result) is float
+    assert result == value
 
 
 def test_a_plain_number_in_another_unit():
@@ -115,7 +115,7 @@ def test_every_listed_unit_is_known_and_of_one_kind(kind):
 
 
 REFUSED = [
-    # what pint alone would read as something else
+    # texts that pint alone would misread
     ("12 Nm", "torque", '"12 Nm": "Nm" runs its units together; write them with a space, "N m"'),
     ("2e-3 kgm^2", "inertia", 'write them with a space, "kg m^2"'),
     ("1 1/2 in", "length", '"1 1/2 in": a fraction is not read; write the decimal number, "1.5 in"'),
@@ -166,7 +166,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("value", "kind", "part"), REFUSED)
-def test_what_is_refused_says_what_to_write(value, kind, part):
+def test_refused_texts_name_the_correct_one(value, kind, part):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         quantity(value, kind)
     assert part in str(refused.value)
@@ -176,7 +176,7 @@ def test_what_is_refused_says_what_to_write(value, kind, part):
 
 
 @pytest.mark.parametrize("text", ["2.5 mm", "1.5 in", "-1.5 in", "1500 rpm", "12 N m"])
-def test_what_the_messages_tell_to_write_is_read(text):
+def test_texts_suggested_by_messages_are_read(text):
     kind = {"mm": "length", "in": "length", "rpm": "angular_velocity", "m": "torque"}[text.split()[-1]]
     assert quantity(text, kind) != 0
 
@@ -199,7 +199,7 @@ def test_design_axis_in_a_unit():
     ]
 
 
-def test_design_axis_evenly_spaced_has_the_decimals_one_means():
+def test_design_axis_evenly_spaced_has_exact_decimals():
     axis = design_axis({"dim": "n", "start": "6 cm", "stop": 0.09, "num": 4}, "length")
     assert axis.values.tolist() == [0.06, 0.07, 0.08, 0.09]
     assert design_axis({"dim": "n", "start": 6, "stop": 9, "num": 1}, "length").values.tolist() == [6.0]
@@ -251,7 +251,7 @@ def test_design_axis_of_two_dims_and_crank_angles():
         ({"dim": "theta2", "values": [1, 2], "theta2": [0, "90"]}, ['theta2[2] = "90": has no unit']),
     ],
 )
-def test_design_axis_says_all_that_is_wrong_with_it(table, problems):
+def test_design_axis_reports_all_problems(table, problems):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         design_axis(table, "length")
     lines = str(refused.value).splitlines()
@@ -260,12 +260,12 @@ def test_design_axis_says_all_that_is_wrong_with_it(table, problems):
         assert line.startswith(problem)
 
 
-# ------------------------------------------------------------------------------- what pint says, kept
+# ------------------------------------------------------------------------------- factors of pint in the cache
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A cache folder in which the factors of all units are kept, and a process that has not looked there yet."""
+    """Return a cache folder with the factors of all units, not yet read by this process."""
     monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(tmp_path / "cache"))
     units._factors_kept.cache_clear()
     quantity("8 cm", "length")
@@ -274,17 +274,17 @@ def folder(tmp_path, monkeypatch):
     units._factors_kept.cache_clear()
 
 
-def asked_again(monkeypatch):
-    """Whether pint is asked for what a unit is worth; the numbers must be right either way."""
-    asked = []
-    monkeypatch.setattr(units, "_pint", lambda pint=units._pint: asked.append(1) or pint())
+def pint_is_called(monkeypatch):
+    """Return whether pint is called for a unit's factor; the numbers must be right either way."""
+    requested = []
+    monkeypatch.setattr(units, "_pint", lambda pint=units._pint: requested.append(1) or pint())
     for text, kind, expected in EXACT:
         assert quantity(text, kind) == float(expected)
-    return bool(asked)
+    return bool(requested)
 
 
-def test_a_second_process_need_not_ask_pint(folder, monkeypatch):
-    assert not asked_again(monkeypatch)
+def test_a_second_process_reads_factors_from_the_cache(folder, monkeypatch):
+    assert not pint_is_called(monkeypatch)
 
 
 @pytest.mark.parametrize("damage", [lambda b: b[:-9], lambda b: b.replace(b"127", b"128"), lambda b: b"\xff" + b])
@@ -292,21 +292,21 @@ def test_a_damaged_file_is_written_again(folder, monkeypatch, damage):
     (file,) = folder.glob("units_*")
     whole = file.read_bytes()
     file.write_bytes(damage(whole))
-    assert asked_again(monkeypatch)
+    assert pint_is_called(monkeypatch)
     assert file.read_bytes() == whole
 
 
 @pytest.mark.parametrize("change", ["another pint", "another list"])
-def test_what_was_kept_for_another_list_or_pint_is_not_believed(folder, monkeypatch, change):
+def test_a_cache_of_another_list_or_pint_is_not_used(folder, monkeypatch, change):
     if change == "another pint":
         monkeypatch.setattr(units, "version", lambda _: "0.0")
     else:
         monkeypatch.setattr(units, "_NOT_IN_PINT", (*units._NOT_IN_PINT, "furlong = 660 * foot"))
-    assert asked_again(monkeypatch)
+    assert pint_is_called(monkeypatch)
     assert len(list(folder.glob("units_*"))) == 2
 
 
-def test_without_a_folder_pint_is_asked(folder, monkeypatch):
+def test_without_a_folder_pint_is_called(folder, monkeypatch):
     (folder.parent / "file").write_text("not a folder")
     monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(folder.parent / "file"))
-    assert asked_again(monkeypatch)
+    assert pint_is_called(monkeypatch)

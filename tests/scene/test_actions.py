@@ -26,7 +26,7 @@ WIDTHS = xr.DataArray([0.1, 0.2], {"design": [1, 2]}, "design")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Brake(Action):
-    """A kind of load that the package does not know: a torque against the crank, on in one of two turns."""
+    """Load type unknown to the package: a torque against the crank, on in one of two turns."""
 
     torque: float = parameter("torque", at_least=0.0)
     on: float = parameter("angle")
@@ -53,7 +53,7 @@ class Brake(Action):
 
 @pytest.fixture
 def _registered(monkeypatch):
-    """What `register` does, undone after the test."""
+    """Register the load for one test."""
     monkeypatch.setitem(LOADS, "Brake", Brake)
 
 
@@ -66,14 +66,14 @@ def test_a_new_kind_of_load_is_swept():
     """Period, jumps and torque of a load that only this test knows, beside one of the package."""
     free = replace(braked(), loads=[ls.Load("rocker", torque=-12.0)])
     assert braked().period == 720.0 and braked().jumps() == (100.5,)
-    found = ls.sweep(braked(), 720, of=["T12"]).T12
+    result = ls.sweep(braked(), 720, of=["T12"]).T12
     without = ls.sweep(free, np.arange(720.0), of=["T12"]).T12
-    on = (found.theta2 > 100.5) & (found.theta2 <= 460.0)
-    np.testing.assert_allclose(found - without, xr.where(on, 5.0, 0.0), atol=1e-11)
+    on = (result.theta2 > 100.5) & (result.theta2 <= 460.0)
+    np.testing.assert_allclose(result - without, xr.where(on, 5.0, 0.0), atol=1e-11)
 
 
 def test_exact_peaks_of_a_new_kind_of_load():
-    """In one of the two turns the drive gives 5 N m more: the highest torque is that much higher, the least is not."""
+    """In one of the two turns the drive gives 5 N m more: the maximum is 5 N m higher, the minimum unchanged."""
     free = ls.peaks(replace(braked(), loads=[ls.Load("rocker", torque=-12.0)]), of=["T12"])
     peaks = ls.peaks(braked(on=free.T12_max_at.item() - 1.0), of=["T12"])
     np.testing.assert_allclose(peaks.T12_max, free.T12_max + 5.0, rtol=1e-10)
@@ -82,7 +82,7 @@ def test_exact_peaks_of_a_new_kind_of_load():
 
 
 @pytest.mark.usefixtures("_registered")
-def test_a_new_kind_of_load_has_its_table_in_files():
+def test_a_new_kind_of_load_round_trips_through_files():
     torques = xr.DataArray([5.0, 6.0], {"pad": [1, 2]}, "pad")
     for scene in (braked(), braked(torque=torques), braked(lining="wet")):
         assert parse_scene(write_scene(scene)) == scene
@@ -100,7 +100,7 @@ def test_a_new_kind_of_load_has_its_table_in_files():
 
 
 def test_a_new_kind_of_load_varies_like_the_others():
-    """Its numbers are free in a study, and convert; its words are no numbers."""
+    """Its numeric fields may vary in a study, with units converted; its choices may not."""
     assert {path for path in free(braked()) if path.startswith("loads[2]")} == {"loads[2].torque", "loads[2].on"}
     drawn = ls.sample(braked(), {"loads[2].torque": ("4000 N mm", "6 N m")}, n=8)
     torque = drawn.arrays["loads[2].torque"]
@@ -108,7 +108,7 @@ def test_a_new_kind_of_load_varies_like_the_others():
     assert ls.peaks(drawn, of=["T12"], theta2=72).sizes == {"design": 8}
 
 
-def test_a_report_has_words_for_a_new_kind_of_load():
+def test_a_report_describes_a_new_kind_of_load():
     assert "Brake (torque 5\u202fN m, on 100.5°, lining dry)" in str(loads_in_words(braked()))
 
 
@@ -120,12 +120,12 @@ def test_a_new_kind_of_load_is_checked_like_the_others():
 
 
 def test_all_loads_of_the_package_are_actions():
-    """Each is public by its own name: the line that registers it is all that `linksweep` needs."""
+    """Each registered load is public under its own name."""
     assert all(issubclass(kind, Action) and getattr(ls, name) is kind for name, kind in LOADS.items())
     assert {*LOADS} == {"Load", "GasPressure", "Spring", "Damper", "TorsionSpring", "TorsionDamper"} <= {*ls.__all__}
 
 
-def test_jumps_of_all_loads_are_those_of_the_scene():
+def test_a_scene_collects_the_jumps_of_all_loads():
     """Dead centres of a cycle in line with the guide, and where a torsion spring between ground and crank flips."""
     engine = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), 0.5)
     loads = [ls.TorsionSpring("crank", "ground", 2.0, 30.0), ls.GasPressure(0.09, ls.OttoCycle(9.0, 5e6))]
@@ -143,11 +143,11 @@ def test_jumps_of_all_loads_are_those_of_the_scene():
         ls.Scene(ENGINE.mechanism, omega2=100.0, loads=[ls.GasPressure(0.09, 3e5)]),
     ],
 )
-def test_a_scene_without_change_is_its_own_sample(scene):
+def test_a_constant_scene_is_its_own_sample(scene):
     assert scene.at(crank_grid(8, scene.period)) is scene
 
 
-def test_a_scene_that_changes_is_brought_to_the_angles():
+def test_loads_that_vary_are_sampled_at_the_angles():
     saw = lambda theta2: np.mod(theta2, 360.0) / 4.0  # noqa: E731
     changing = replace(PRESS, loads=[ls.Load("coupler", force=(0.0, saw)), ls.Load("rocker", torque=2.0)])
     sampled = changing.at(crank_grid(4, 360.0))
@@ -178,7 +178,7 @@ MADE = {
 
 
 @pytest.mark.parametrize("make", MADE.values(), ids=MADE.keys())
-def test_what_holds_the_same_is_equal(make):
+def test_equal_contents_compare_equal(make):
     named = WIDTHS.rename("width").assign_attrs(comment="as measured")
     assert make(0.1) == make(0.1) and hash(make(0.1)) == hash(make(0.1))
     assert make(WIDTHS) == make(named) and hash(make(WIDTHS)) == hash(make(named))
@@ -195,10 +195,10 @@ def test_other_classes_are_not_equal():
 
 
 def test_a_pair_may_be_a_bare_array():
-    """As gravity may; of a slider too, whose force may also be one number along its guide."""
+    """Gravity and force, also of a slider, whose force may be one number along its guide."""
     for link in ("coupler", "slider"):
-        given = ls.Load(link, force=np.array([3.0, -80.0]), at=np.array([0.1, 15.0]))
-        assert given == ls.Load(link, force=(3.0, -80.0), at=(0.1, 15.0))
+        inputs = ls.Load(link, force=np.array([3.0, -80.0]), at=np.array([0.1, 15.0]))
+        assert inputs == ls.Load(link, force=(3.0, -80.0), at=(0.1, 15.0))
     with pytest.raises(ValueError, match=r"loads\[1\].force = array\(\[1., 2., 3.\]\): must be a pair"):
         ls.Scene(PRESS.mechanism, omega2=1.0, loads=ls.Load("coupler", force=np.array([1.0, 2.0, 3.0])))
 
@@ -206,47 +206,53 @@ def test_a_pair_may_be_a_bare_array():
 # --------------------------------------------------------------------------------- units that arrays say
 
 
-def said(values, units) -> xr.DataArray:
+def in_unit(values, units) -> xr.DataArray:
     return xr.DataArray(values, dims="design", attrs={"units": units})
 
 
 @pytest.mark.parametrize("units", ["m", "metre", "meters", "", None])
-def test_a_unit_that_is_the_parameters_own_changes_nothing(units):
-    lengths = said([0.20, 0.21], units)
-    found = ls.sweep(replace(PRESS, mechanism=replace(PRESS.mechanism, ground=lengths)), 8)
+def test_a_units_attribute_in_the_parameters_own_unit_is_accepted(units):
+    lengths = in_unit([0.20, 0.21], units)
+    cycle = ls.sweep(replace(PRESS, mechanism=replace(PRESS.mechanism, ground=lengths)), 8)
     plain = ls.sweep(replace(PRESS, mechanism=replace(PRESS.mechanism, ground=lengths.drop_attrs())), 8)
-    xr.testing.assert_identical(found, plain)
+    xr.testing.assert_identical(cycle, plain)
 
 
-def test_results_are_parameters_in_their_own_units():
-    """UDUNITS spelling, as results say it: a speed of one machine drives another."""
-    found = ls.sweep(PRESS, 8, of=["omega3", "F32x", "T12", "theta3"]).isel(theta2=[1], drop=True).rename(theta2="at")
-    loads = [ls.Load("coupler", force=(found.F32x, 0.0), at=(0.1, found.theta3), torque=found.T12)]
-    assert ls.Scene(PRESS.mechanism, omega2=found.omega3, loads=loads).omega2.units == "rad s-1"
+def test_results_may_be_parameters():
+    """Units in UDUNITS spelling are accepted: the speed of one machine drives another."""
+    cycle = ls.sweep(PRESS, 8, of=["omega3", "F32x", "T12", "theta3"]).isel(theta2=[1], drop=True).rename(theta2="at")
+    loads = [ls.Load("coupler", force=(cycle.F32x, 0.0), at=(0.1, cycle.theta3), torque=cycle.T12)]
+    assert ls.Scene(PRESS.mechanism, omega2=cycle.omega3, loads=loads).omega2.units == "rad s-1"
 
 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"omega2": said([900.0], "rpm")}, 'omega2 has attrs["units"] = "rpm": must be in rad/s; convert its values'),
-        ({"omega2": said([15.0], "Hz")}, 'omega2 has attrs["units"] = "Hz": must be in rad/s'),
-        ({"alpha2": said([15.0], "rad s-1")}, 'alpha2 has attrs["units"] = "rad s-1": must be in rad/s^2'),
-        ({"gravity": (0.0, said([-386.0], "in/s^2"))}, 'gravity[2] has attrs["units"] = "in/s^2": must be in m/s^2'),
-        ({"loads": ls.Load("crank", torque=said([1.0], "lbf in"))}, 'loads[1].torque has attrs["units"] = "lbf in": '),
         (
-            {"loads": ls.Load("crank", (1.0, 0.0), (0.1, said([1.0], "rad")))},
+            {"omega2": in_unit([900.0], "rpm")},
+            'omega2 has attrs["units"] = "rpm": must be in rad/s; convert its values',
+        ),
+        ({"omega2": in_unit([15.0], "Hz")}, 'omega2 has attrs["units"] = "Hz": must be in rad/s'),
+        ({"alpha2": in_unit([15.0], "rad s-1")}, 'alpha2 has attrs["units"] = "rad s-1": must be in rad/s^2'),
+        ({"gravity": (0.0, in_unit([-386.0], "in/s^2"))}, 'gravity[2] has attrs["units"] = "in/s^2": must be in m/s^2'),
+        (
+            {"loads": ls.Load("crank", torque=in_unit([1.0], "lbf in"))},
+            'loads[1].torque has attrs["units"] = "lbf in": ',
+        ),
+        (
+            {"loads": ls.Load("crank", (1.0, 0.0), (0.1, in_unit([1.0], "rad")))},
             'loads[1].at[2] has attrs["units"] = ',
         ),
         (
-            {"loads": ls.Spring(("ground", said([300.0], "mm"), 0.0), ("crank", 0.0, 0.0), 10.0, 0.1)},
+            {"loads": ls.Spring(("ground", in_unit([300.0], "mm"), 0.0), ("crank", 0.0, 0.0), 10.0, 0.1)},
             'loads[1].from_[2] has attrs["units"] = "mm": must be in m; convert its values, and say units="m"',
         ),
         (
-            {"mechanism": replace(PRESS.mechanism, crank=replace(PRESS.mechanism.crank, length=said([8.0], "cm")))},
+            {"mechanism": replace(PRESS.mechanism, crank=replace(PRESS.mechanism.crank, length=in_unit([8.0], "cm")))},
             'crank.length has attrs["units"] = "cm": must be in m',
         ),
         (
-            {"mechanism": replace(PRESS.mechanism, ground=said([0.2], "cubit-ish"))},
+            {"mechanism": replace(PRESS.mechanism, ground=in_unit([0.2], "cubit-ish"))},
             'ground has attrs["units"] = ',
         ),
     ],

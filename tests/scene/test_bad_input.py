@@ -1,4 +1,4 @@
-"""Bad input is refused at the door: every message is read here, and says where, what, what is allowed, what to do."""
+"""Bad input is refused by the constructors with a message that states path, value, what is allowed and what to do."""
 
 import warnings
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Number:
     over_angle: bool = False
 
     @property
-    def wanted(self) -> str:
+    def phrase(self) -> str:
         return "a number in " + {"degree": "degrees"}.get(self.unit, self.unit)
 
     @property
@@ -87,7 +87,7 @@ TURNED = "; for a point on the other side turn its angle by 180 degrees"
 OVER_ANGLE = "only omega2, alpha2 and loads may change over the revolution"
 
 
-def test_the_table_has_every_number_of_every_constructor():
+def test_the_table_lists_every_number_of_every_constructor():
     def ruled(cls) -> set[str]:
         return {*field_rules(cls)}
 
@@ -103,17 +103,17 @@ def test_the_table_has_every_number_of_every_constructor():
 def test_negative_and_zero(number):
     allowed = {"any": (-1.0, 0.0), "positive": (), "not negative": (0.0,)}[number.bound]
     turned = TURNED if number.path in POLAR else ""
-    for value, shown in ((-1.0, "-1"), (0.0, "0"), (-2.5e-4, "-0.00025"), (-np.float32(0.5), "-0.5"), (-3, "-3")):
+    for value, text in ((-1.0, "-1"), (0.0, "0"), (-2.5e-4, "-0.00025"), (-np.float32(0.5), "-0.5"), (-3, "-3")):
         if value in allowed or number.bound == "any":
             number.change(value)
         else:
-            expected = f"{number.path} = {shown} {number.unit}: must be {number.allowed}{turned}"
+            expected = f"{number.path} = {text} {number.unit}: must be {number.allowed}{turned}"
             assert refusal(number.change, value) == [expected]
 
 
 @every_number
-def test_numbers_that_are_none(number):
-    path, unit, wanted = number.path, number.unit, number.wanted
+def test_values_that_are_not_numbers(number):
+    path, unit, phrase = number.path, number.unit, number.phrase
     bare = 'is a bare array: name its dimensions, as in xarray.DataArray(values, dims="design")'
     for value, expected in (
         (np.nan, f"{path} = nan {unit}: must be {number.finite}"),
@@ -121,43 +121,43 @@ def test_numbers_that_are_none(number):
         (np.inf, f"{path} = inf {unit}: must be {number.finite}"),
         (-np.inf, f"{path} = -inf {unit}: must be {number.finite}"),
         (10**400, f"{path} = inf {unit}: must be {number.finite}"),
-        (True, f"{path} = True: must be {wanted}, not a truth value"),
-        (np.False_, f"{path} = False: must be {wanted}, not a truth value"),
-        ("8 cm", f"{path} = '8 cm': must be {wanted}, not text; numbers with units stand in scene files"),
-        ("0.1", f"{path} = '0.1': must be {wanted}, not text; numbers with units stand in scene files"),
+        (True, f"{path} = True: must be {phrase}, not a truth value"),
+        (np.False_, f"{path} = False: must be {phrase}, not a truth value"),
+        ("8 cm", f"{path} = '8 cm': must be {phrase}, not text; numbers with units stand in scene files"),
+        ("0.1", f"{path} = '0.1': must be {phrase}, not text; numbers with units stand in scene files"),
         ([0.1, 0.2], f"{path} = [0.1, 0.2] {bare}"),
         ((0.1, 0.2), f"{path} = (0.1, 0.2) {bare}"),
         ([[1], [1, 2]], f"{path} = [[1], [1, 2]] {bare}"),
         (np.array([0.1, 0.2]), f"{path} = array([0.1, 0.2]) {bare}"),
         (np.array(0.1), f"{path} = array(0.1) is a bare array: write float(...) of it"),
-        (0.1j, f"{path} = 0.1j: must be {wanted}, or an xarray.DataArray of them"),
-        (Decimal("0.1"), f"{path} = Decimal('0.1'): must be {wanted}, or an xarray.DataArray of them"),
-        ({}, f"{path} = {{}}: must be {wanted}, or an xarray.DataArray of them"),
-        (xr.Variable("n", [0.1]), f"{path} = <xarray.Variable (n: 1)> Size: 8B array([0.1]): must be {wanted}, or an"),
-        (xr.Dataset(), f"{path} = <xarray.Dataset> Size: 0B Dimensions: () Data variables: ...: must be {wanted}, or"),
-        (np.timedelta64(1, "s"), f"{path} = np.timedelta64(1,'s'): must be {wanted}, or an xarray.DataArray of them"),
+        (0.1j, f"{path} = 0.1j: must be {phrase}, or an xarray.DataArray of them"),
+        (Decimal("0.1"), f"{path} = Decimal('0.1'): must be {phrase}, or an xarray.DataArray of them"),
+        ({}, f"{path} = {{}}: must be {phrase}, or an xarray.DataArray of them"),
+        (xr.Variable("n", [0.1]), f"{path} = <xarray.Variable (n: 1)> Size: 8B array([0.1]): must be {phrase}, or an"),
+        (xr.Dataset(), f"{path} = <xarray.Dataset> Size: 0B Dimensions: () Data variables: ...: must be {phrase}, or"),
+        (np.timedelta64(1, "s"), f"{path} = np.timedelta64(1,'s'): must be {phrase}, or an xarray.DataArray of them"),
     ):
-        (said,) = refusal(number.change, value)
-        assert said.startswith(expected)
-        assert said == expected or expected.endswith(("or an", "or"))
+        (message,) = refusal(number.change, value)
+        assert message.startswith(expected)
+        assert message == expected or expected.endswith(("or an", "or"))
 
 
 @every_number
-def test_none_is_no_number_but_no_torque(number):
+def test_none_is_refused_as_a_number_and_means_no_torque(number):
     if number.path == "loads[2].torque":
         assert number.change(None).loads[1].torque is None
     elif number.path in ("alpha2", "thrust"):
         assert number.change(None).motion[number.path] == 0.0
     elif number.path in ("omega2", "speed"):
-        (said,) = refusal(number.change, None)
-        assert said.startswith(f"{number.path}: missing; give ") and said.endswith(number.wanted)
+        (message,) = refusal(number.change, None)
+        assert message.startswith(f"{number.path}: missing; give ") and message.endswith(number.phrase)
     else:
-        expected = f"{number.path} = None: must be {number.wanted}, or an xarray.DataArray of them"
+        expected = f"{number.path} = None: must be {number.phrase}, or an xarray.DataArray of them"
         assert refusal(number.change, None) == [expected]
 
 
 @every_number
-def test_arrays_with_values_that_are_not_allowed(number):
+def test_arrays_with_refused_values(number):
     path, unit = number.path, number.unit
     for value, expected in (
         (array(0.1, np.nan), f"{path} = nan {unit} at design[1]: must be {number.finite}"),
@@ -170,11 +170,11 @@ def test_arrays_with_values_that_are_not_allowed(number):
             f"{path} = nan {unit} at case[1], speed = 20.5: must be {number.finite}",
         ),
         (xr.DataArray(np.nan), f"{path} = nan {unit}: must be {number.finite}"),
-        (array(1j), f"{path} holds complex128 values: each must be {number.wanted}"),
-        (array(True), f"{path} holds bool values: each must be {number.wanted}"),
-        (array("8 cm"), f"{path} holds <U4 values: each must be {number.wanted}"),
-        (array(np.datetime64("2020-01-01", "ns")), f"{path} holds datetime64[ns] values: each must be {number.wanted}"),
-        (array(None, 0.1), f"{path} holds object values: each must be {number.wanted}"),
+        (array(1j), f"{path} holds complex128 values: each must be {number.phrase}"),
+        (array(True), f"{path} holds bool values: each must be {number.phrase}"),
+        (array("8 cm"), f"{path} holds <U4 values: each must be {number.phrase}"),
+        (array(np.datetime64("2020-01-01", "ns")), f"{path} holds datetime64[ns] values: each must be {number.phrase}"),
+        (array(None, 0.1), f"{path} holds object values: each must be {number.phrase}"),
         (array(), f"{path} is empty, {{'design': 0}}: give each dimension at least one value"),
     ):
         assert refusal(number.change, value) == [expected]
@@ -198,8 +198,8 @@ def test_dimensions_that_a_number_cannot_have(number):
         assert line.startswith(f"{path} has a dimension {dim!r}: its name must be a text that begins with a letter, ")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # xarray's own, of duplicate names
-        said = refusal(number.change, xr.DataArray(np.ones((2, 2)), dims=("n", "n")))
-    assert said == [f"{path} has dimensions ('n', 'n'): each name may appear once; rename one"]
+        message = refusal(number.change, xr.DataArray(np.ones((2, 2)), dims=("n", "n")))
+    assert message == [f"{path} has dimensions ('n', 'n'): each name may appear once; rename one"]
 
 
 @every_number
@@ -211,25 +211,25 @@ def test_the_crank_angle_and_functions_of_it(number):
     else:
         expected = f"{number.path} depends on theta2: it must be the same at every angle; {OVER_ANGLE}"
         assert refusal(number.change, over) == [expected]
-        expected = f"{number.path} = <ufunc 'cos'>: must be {number.wanted}, not a function; {OVER_ANGLE}"
+        expected = f"{number.path} = <ufunc 'cos'>: must be {number.phrase}, not a function; {OVER_ANGLE}"
         assert refusal(number.change, np.cos) == [expected]
 
 
 @pytest.mark.parametrize("number", [number for number in NUMBERS if number.over_angle], ids=str)
-def test_crank_angles_that_are_none(number):
-    def given(*angles):
+def test_refused_theta2_coordinates(number):
+    def torque_at(*angles):
         return array(*np.ones(len(angles)), dims="theta2", theta2=list(angles))
 
-    for angles, said in (
+    for angles, text in (
         ((0.0, np.nan, 180.0), "[0.0, nan, 180.0]: its coordinate must hold finite angles in degrees"),
         (("a", "b"), "['a', 'b']: its coordinate must hold finite angles in degrees"),
         ((0.0, 90.0, 90.0, 180.0), "90 more than once: give one value for each angle"),
     ):
-        assert refusal(number.change, given(*angles)) == [f"{number.path} has theta2 = {said}"]
+        assert refusal(number.change, torque_at(*angles)) == [f"{number.path} has theta2 = {text}"]
 
 
 @every_number
-def test_what_is_a_number_is_taken(number):
+def test_accepted_types_of_number(number):
     for value in (0.1, np.float64(0.1), np.float32(0.1), Fraction(1, 10), array(0.1, 0.2), xr.DataArray(0.1)):
         number.change(value)
     for value in (1, np.int8(1), array(1, 2)):
@@ -351,15 +351,15 @@ def test_a_number_without_unit():
         (lambda: load(at=None), "loads[2].at = None: must be a pair (distance in m, angle in degrees)"),
     ],
 )
-def test_words_and_things(change, message):
-    (said,) = refusal(change)
-    assert said.startswith(message)
+def test_refused_choices_and_objects(change, message):
+    (line,) = refusal(change)
+    assert line.startswith(message)
 
 
 # ------------------------------------------------------------------------------------ several at a time
 
 
-def test_all_that_is_wrong_with_a_mechanism_is_said_at_once():
+def test_all_problems_of_a_mechanism_are_reported_together():
     assert refusal(
         ls.FourBar,
         crank=None,
@@ -381,7 +381,7 @@ def test_all_that_is_wrong_with_a_mechanism_is_said_at_once():
     ]
 
 
-def test_all_that_is_wrong_with_a_scene_is_said_at_once():
+def test_all_problems_of_a_scene_are_reported_together():
     assert refusal(
         ls.Scene,
         FOUR_BAR,
@@ -406,7 +406,7 @@ def test_all_that_is_wrong_with_a_scene_is_said_at_once():
     ]
 
 
-def test_an_array_is_no_link():
+def test_an_array_in_place_of_a_link_is_refused():
     load = ls.Load(xr.DataArray([0.1, 0.2], dims="n"), force=(0.0, 1.0))
     (line,) = refusal(ls.Scene, FOUR_BAR, omega2=1.0, loads=[load])
     assert line.startswith("loads[1].link = <xarray.DataArray")

@@ -1,4 +1,4 @@
-"""Breaks of a load: angles that the user names, which exact peaks look at, and which files keep."""
+"""Breaks of a load: angles named by the user, at which exact peaks are evaluated, and which files store."""
 
 import numpy as np
 import pytest
@@ -16,21 +16,21 @@ def pushed(force, breaks=()) -> ls.Scene:
 
 
 def spike(width: float, at: float = 77.7):
-    """A force that rises to -1000 N within so many degrees of one angle."""
+    """Return a force that reaches -1000 N at one angle, zero beyond `width` degrees from it."""
     return lambda theta2: -1000.0 * np.exp(-(((theta2 - at) / width) ** 2))
 
 
 @pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
-def test_a_narrow_load_is_found_where_its_break_says(width):
+def test_exact_peaks_see_a_narrow_load_at_its_break(width):
     """At the top of the spike the load is -1000 N: the peak is at least the force there, and next to nothing more."""
     top = ls.sweep(pushed(-1000.0), [77.7], outputs=["F43y", "F32"])
-    found = ls.peaks(pushed(spike(width), breaks=[77.7]), of=["F32"])
-    assert found.F32_peak == pytest.approx(top.F32.item(), rel=2e-6 if width > 1e-3 else 1e-7)
-    assert found.F32_peak >= top.F32.item() * (1.0 - 1e-10)
-    assert found.F32_peak_at == pytest.approx(77.7, abs=width)
+    peaks = ls.peaks(pushed(spike(width), breaks=[77.7]), of=["F32"])
+    assert peaks.F32_peak == pytest.approx(top.F32.item(), rel=2e-6 if width > 1e-3 else 1e-7)
+    assert peaks.F32_peak >= top.F32.item() * (1.0 - 1e-10)
+    assert peaks.F32_peak_at == pytest.approx(77.7, abs=width)
 
 
-def test_breaks_are_equal_in_any_form_and_shown():
+def test_breaks_of_any_sequence_type_compare_equal():
     one, other = pushed(1.0, [10, 20.5]), pushed(1.0, np.array([10.0, 20.5]))
     assert one == other and hash(one) == hash(other)
     assert one != pushed(1.0)
@@ -59,7 +59,7 @@ def test_files_keep_breaks_and_read_units():
         ([xr.DataArray([1.0], dims="a")], r"loads\[1\].breaks\[1\] is an array: must be a number in degrees, for all"),
     ],
 )
-def test_what_is_no_list_of_angles_is_refused(breaks, problem):
+def test_breaks_that_are_not_angles_are_refused(breaks, problem):
     with pytest.raises(ValueError, match=problem):
         pushed(1.0, breaks)
     with pytest.raises(ValueError, match=problem):

@@ -1,4 +1,4 @@
-"""Loads that follow the crank: columns of CSV files in scenes, and periods of one turn and of two."""
+"""Loads over the crank angle: columns of CSV files in scenes, and periods of one turn and of two."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ MECHANISM = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 0.5, 1e-3), sl
 
 
 def ripple(theta2, period=360.0):
-    """A force [kN] of this period with few digits, as a measurement has them."""
+    """Return a force [kN] of a period, rounded as a measurement is."""
     return np.round(2.0 + np.cos(2 * np.pi * np.asarray(theta2) / period), 3)
 
 
@@ -45,9 +45,11 @@ def scene(force, **more) -> ls.Scene:
     return ls.Scene(MECHANISM, omega2=100.0, loads=[ls.Load("slider", force=force)], **more)
 
 
-def assert_equal(found: xr.Dataset, expected: xr.Dataset) -> None:
+def assert_equal(actual: xr.Dataset, expected: xr.Dataset) -> None:
     for name in expected.data_vars:
-        np.testing.assert_array_equal(found[name].values, expected[name].broadcast_like(found[name]).values, str(name))
+        np.testing.assert_array_equal(
+            actual[name].values, expected[name].broadcast_like(actual[name]).values, str(name)
+        )
 
 
 # ------------------------------------------------------------------------------------------------ reading
@@ -91,7 +93,7 @@ def test_forms_of_a_csv_in_a_scene(tmp_path):
         lambda text: text.replace("\n", ",1\n").replace("P,1", "P,note"),
     ],
 )
-def test_what_spreadsheets_write_is_read(tmp_path, spoil):
+def test_files_of_spreadsheets_are_read(tmp_path, spoil):
     angles = np.arange(0.0, 360.0, 30.0)
     text = table(angles, ripple(angles))
     expected = read_scene(write(tmp_path, text))
@@ -107,7 +109,7 @@ def test_the_file_is_looked_for_beside_the_scene(tmp_path, monkeypatch):
     assert ls.load_scene("data/scene.toml").period == 360.0
 
 
-def test_results_hold_the_column_and_not_the_file(tmp_path):
+def test_results_store_the_column_and_not_the_file_name(tmp_path):
     angles = np.arange(0.0, 720.0, 10.0)
     path = write(tmp_path, table(angles, ripple(angles, 720.0)))
     cycle = ls.sweep(ls.load_scene(path), 144)
@@ -120,8 +122,8 @@ def test_results_hold_the_column_and_not_the_file(tmp_path):
 
 
 def test_a_force_on_a_slider_may_be_one_number():
-    given = ls.Load("slider", force=-2000.0)
-    assert given == ls.Load("slider", force=(-2000.0, 0.0), frame="link")
+    inputs = ls.Load("slider", force=-2000.0)
+    assert inputs == ls.Load("slider", force=(-2000.0, 0.0), frame="link")
     angles = np.arange(0.0, 720.0, 10.0)
     constant = ls.sweep(scene(-2000.0), angles)
     for same in (lambda theta2: -2000.0, xr.DataArray(np.full(72, -2000.0), {"theta2": angles}, "theta2")):
@@ -144,25 +146,25 @@ def test_a_period_of_one_turn_repeats_beside_one_of_two():
 def test_a_function_has_the_period_of_the_scene():
     two_turns = np.arange(0.0, 720.0, 15.0)
     two = xr.DataArray(ripple(two_turns, 720.0), {"theta2": two_turns}, "theta2")
-    asked = []
+    requested = []
 
     def force(theta2):
-        asked.append(theta2)
+        requested.append(theta2)
         return 0.0 * theta2
 
     ls.sweep(ls.Scene(MECHANISM, 100.0, loads=[ls.Load("slider", force=force), ls.Load("rod", torque=two)]), 720)
-    assert list(range(720)) in [angles.tolist() for angles in asked]
+    assert list(range(720)) in [angles.tolist() for angles in requested]
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_sampled_angles_are_exact_in_every_turn():
     angles = np.sort(np.random.default_rng(5).uniform(0.0, 719.0, 30))
     values = np.random.default_rng(6).normal(size=30)
-    given = xr.DataArray(values, {"theta2": angles}, "theta2")
+    inputs = xr.DataArray(values, {"theta2": angles}, "theta2")
     hinge = ls.SliderCrank(ls.Link(0.04, 0.0, 0.0), ls.Link(0.14, 0.0, 0.0), slider_mass=0.0)
-    scene = ls.Scene(hinge, 1.0, loads=[ls.Load("crank", torque=given)])
-    found = ls.sweep(scene, np.append(angles, angles[3] + 0.5), of=["T12"]).T12.values[:-1]
-    assert found.tolist() == (-values).tolist()
+    scene = ls.Scene(hinge, 1.0, loads=[ls.Load("crank", torque=inputs)])
+    result = ls.sweep(scene, np.append(angles, angles[3] + 0.5), of=["T12"]).T12.values[:-1]
+    assert result.tolist() == (-values).tolist()
 
 
 def test_peaks_join_the_ends_of_two_turns():
@@ -213,7 +215,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("text", "message"), REFUSED)
-def test_what_is_wrong_with_a_csv_has_its_line(tmp_path, text, message):
+def test_an_error_in_a_csv_names_its_line(tmp_path, text, message):
     path = write(tmp_path, text)
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read_scene(path)
@@ -238,7 +240,7 @@ REFUSED_IN_THE_SCENE = [
 
 
 @pytest.mark.parametrize(("load", "message"), REFUSED_IN_THE_SCENE)
-def test_what_is_wrong_in_the_scene_has_its_line(tmp_path, load, message):
+def test_an_error_in_the_scene_names_its_line(tmp_path, load, message):
     path = write(tmp_path, SOUND, load)
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read_scene(path)
@@ -246,7 +248,7 @@ def test_what_is_wrong_in_the_scene_has_its_line(tmp_path, load, message):
     assert "\n" not in str(refused.value)
 
 
-def test_all_bad_cells_are_named_up_to_a_few(tmp_path):
+def test_the_first_few_bad_cells_are_named(tmp_path):
     path = write(tmp_path, SOUND.replace(",", ",x").replace("theta2,xP", "theta2,P"))
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read_scene(path)

@@ -1,4 +1,4 @@
-"""Numbers enter as float64: every number of every constructor, in every dtype and as quantities of pint."""
+"""Every number of every constructor is converted to float64, from every dtype and from quantities of pint."""
 
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
@@ -32,20 +32,20 @@ def numbers(scene):
 
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize("name", SCENES)
-def test_every_number_is_float64_whatever_it_came_in(name, dtype):
+def test_every_number_is_converted_to_float64(name, dtype):
     made = SCENES[name]
     for path, value in numbers(made).items():
         array = xr.DataArray(np.abs([value, value + 1.0]), dims="design")
         for plain, other in ((array, array.astype(dtype)), (abs(value), np.dtype(dtype).type(abs(value)))):
-            expected, found = replaced(made, {path: plain}), replaced(made, {path: other})
-            assert np.result_type(numbers(found)[path]) == "=f8", path
-            assert not isinstance(numbers(found)[path], np.generic), path
-            assert found == expected and scene_digest(found) == scene_digest(expected), path
+            expected, result = replaced(made, {path: plain}), replaced(made, {path: other})
+            assert np.result_type(numbers(result)[path]) == "=f8", path
+            assert not isinstance(numbers(result)[path], np.generic), path
+            assert result == expected and scene_digest(result) == scene_digest(expected), path
 
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("dtype", ["float32", "int8"])
-def test_results_are_those_of_float64_to_the_bit(name, dtype):
+def test_results_equal_those_of_float64_to_the_bit(name, dtype):
     made = SCENES[name]
     values = {path: value for path, (value, _) in free(made).items() if value is not None}
     arrays = {path: xr.DataArray([value, value], dims="design") for path, value in values.items()}
@@ -59,7 +59,7 @@ def test_masses_of_int8_do_not_wrap():
     assert bar.mass.values.tolist() == [800.0, 1440.0]
 
 
-def test_a_study_opens_that_of_the_same_numbers_with_the_same_results(tmp_path):
+def test_a_study_of_equal_numbers_of_another_dtype_is_opened(tmp_path):
     press = ls.example("press")
     lengths = xr.DataArray(np.linspace(0.2, 0.24, 5, dtype=np.float32), dims="d")
     one, other = (replaced(press, {"coupler.length": values}) for values in (lengths, lengths.astype(float)))
@@ -68,7 +68,7 @@ def test_a_study_opens_that_of_the_same_numbers_with_the_same_results(tmp_path):
 
 
 @pytest.mark.parametrize("whole", [2**53 + 1, -(2**70), np.int64(2**62 + 1), Fraction(1, 3), np.uint64(2**64 - 1)])
-def test_what_float64_cannot_hold_is_the_nearest_that_it_can(whole):
+def test_integers_beyond_float64_are_rounded_to_nearest(whole):
     assert ls.Link(0.1, 1, whole).inertia == float(whole)
     assert type(ls.Link(0.1, 1, whole).inertia) is float
 
@@ -85,9 +85,9 @@ def test_angles_of_arrays_over_theta2_are_float64(dtype):
     table = xr.DataArray([1, 2, 4, 2, 3], {"theta2": angles}, "theta2")
     other = table.astype(dtype).assign_coords(theta2=angles.astype(dtype))
     loads = [ls.Load("rocker", torque=torque, interpolation="pchip") for torque in (table, other)]
-    expected, found = (ls.Scene(ls.example("press").mechanism, 3, loads=[load]) for load in loads)
-    assert found.loads[0].torque.theta2.dtype == float
-    assert ls.sweep(found, 7).identical(ls.sweep(expected, 7))
+    expected, result = (ls.Scene(ls.example("press").mechanism, 3, loads=[load]) for load in loads)
+    assert result.loads[0].torque.theta2.dtype == float
+    assert ls.sweep(result, 7).identical(ls.sweep(expected, 7))
 
 
 @pytest.mark.parametrize(
@@ -114,18 +114,18 @@ def test_angles_of_arrays_over_theta2_are_float64(dtype):
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.float32, np.float16])
-def test_other_constructors_and_functions_take_them_as_float64(call, expected, dtype):
+def test_other_constructors_and_functions_convert_to_float64(call, expected, dtype):
     if dtype in (np.float32, np.float16):  # counts are whole numbers
         counts = {4}
-        found = call(lambda value: value if value in counts else dtype(value))
+        result = call(lambda value: value if value in counts else dtype(value))
     else:
-        found = call(dtype)
-    assert found == expected
-    assert all(type(n) is float for n in plain_numbers(found))
+        result = call(dtype)
+    assert result == expected
+    assert all(type(n) is float for n in plain_numbers(result))
 
 
 def plain_numbers(value):
-    """Every scalar number in a dataclass, but for counts."""
+    """Return every scalar number in a dataclass, except counts."""
     if is_dataclass(value):
         return [n for f in fields(value) if f.name != "strokes" for n in plain_numbers(getattr(value, f.name))]
     if isinstance(value, list | tuple):
@@ -149,7 +149,7 @@ def plain_numbers(value):
     ],
 )
 @pytest.mark.parametrize("dtype", [np.int8, np.float16, np.float32])
-def test_results_of_functions_are_those_of_float64(call, dtype):
+def test_results_of_functions_equal_those_of_float64(call, dtype):
     np.testing.assert_equal(
         call(dtype).to_dict(data="list")["data_vars"], call(float).to_dict(data="list")["data_vars"]
     )
@@ -159,21 +159,21 @@ def test_results_of_functions_are_those_of_float64(call, dtype):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_quantities_of_pint_are_converted_wherever_a_number_is_taken(name):
+def test_quantities_of_pint_are_converted_in_every_parameter(name):
     made = SCENES[name]
     for path, value in numbers(made).items():
         _, kind = free(made)[path]
         unit = "" if kind == "dimensionless" else UNITS_OF_KINDS[kind].replace(" ", "*")
         quantity = UNITS.Quantity(np.array([value, value]), unit).to(OTHER_UNITS[kind])
         array = xr.DataArray(quantity, dims="design", attrs={"units": OTHER_UNITS[kind]})
-        found = numbers(replaced(made, {path: array}))[path]
-        assert type(found.data) is np.ndarray and "units" not in found.attrs, path
-        np.testing.assert_allclose(found.values, value, rtol=1e-15, err_msg=path)
+        result = numbers(replaced(made, {path: array}))[path]
+        assert type(result.data) is np.ndarray and "units" not in result.attrs, path
+        np.testing.assert_allclose(result.values, value, rtol=1e-15, err_msg=path)
         assert numbers(replaced(made, {path: quantity[0]}))[path] == pytest.approx(value, rel=1e-15), path
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_quantity_of_another_kind_is_refused_by_its_path(name):
+def test_a_quantity_of_another_dimension_is_refused_by_its_path(name):
     for path in numbers(SCENES[name]):
         _, kind = free(SCENES[name])[path]
         wrong = UNITS.Quantity(np.array([1.0]), "m" if kind == "dimensionless" else "kelvin")
@@ -185,19 +185,19 @@ def test_a_quantity_of_another_kind_is_refused_by_its_path(name):
 @pytest.mark.parametrize(
     ("path", "unit"), [("omega2", "Hz"), ("omega2", "1/s"), ("ground_angle", ""), ("omega2", "m/s")]
 )
-def test_an_angle_is_not_a_plain_number(path, unit):
+def test_a_quantity_of_pint_for_an_angle_needs_an_angular_unit(path, unit):
     (line,) = refusal(replaced, SCENES["four_bar"], {path: UNITS.Quantity(50.0, unit)})
     assert line.startswith(f"{path} has the unit ")
 
 
-def test_a_study_at_quantities_of_pint_is_that_at_their_angles(tmp_path):
+def test_a_study_accepts_theta2_as_a_quantity_of_pint(tmp_path):
     press, angles = ls.example("press"), UNITS.Quantity([0.0, 0.25, 0.5], "turn")
-    found = ls.study(press, tmp_path / "s.nc", of=["T12"], theta2=angles)
-    assert found.T12_peak == ls.peaks(press, ["T12"], theta2=[0.0, 90.0, 180.0]).T12_peak
+    study = ls.study(press, tmp_path / "s.nc", of=["T12"], theta2=angles)
+    assert study.T12_peak == ls.peaks(press, ["T12"], theta2=[0.0, 90.0, 180.0]).T12_peak
     ls.study(press, tmp_path / "s.nc", of=["T12"], theta2=[0, 90, 180])
 
 
-def test_pint_at_other_places():
+def test_other_constructors_and_functions_accept_pint():
     q = UNITS.Quantity
     assert ls.Scene(ls.example("press").mechanism, 3, gravity=q([0.0, -9810.0], "mm/s^2")).gravity == (0.0, -9.81)
     assert ls.Spring(("ground", q(30, "cm"), 0), ("rocker", 1, q(90, "deg")), 1, 1).to == ("rocker", 1.0, 90.0)
@@ -232,6 +232,6 @@ def test_angles_and_positions_of_another_unit_are_refused():
         (lambda mm: ls.coupler_curve(ls.example("press"), at=(mm, 0)), "at[1]"),
     ],
 )
-def test_arrays_that_say_another_unit_are_refused_everywhere(call, path):
+def test_arrays_with_a_units_attribute_of_another_unit_are_refused(call, path):
     (line,) = refusal(call, xr.DataArray([20.0], dims="design", attrs={"units": "mm"}))
     assert line.startswith(f'{path} has attrs["units"] = "mm": must be in m')

@@ -1,4 +1,4 @@
-"""Scenes and scene files by chance: a result whose power balance holds, or an error of ours that names the parameter.
+"""Random scenes and scene files: a result whose power balance holds, or an error that names the parameter.
 
 A few hundred examples in all, the same in every run. ``LINKSWEEP_FUZZ=25000 pytest tests/scene/test_fuzz.py`` does so
 many of each test, others every time.
@@ -10,11 +10,12 @@ import signal
 from contextlib import contextmanager
 from pathlib import Path
 
+import hypothesis
 import numpy as np
 import pytest
 import tomli_w
 import xarray as xr
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from random_scenes import built, listed, objects, sound, spoiled
 
@@ -36,16 +37,16 @@ fuzzed = settings(
 THETA2 = [0.0, 77.7, 200.0, 300.0]
 FORCES = [f"F{pin}{axis}" for pin in ("12", "32", "43", "14") for axis in "xy"]
 TOLERANCE = 1e-11
-SAID = re.compile(r"[a-z]\w*(\[\d+\])*(\.\w+(\[\d+\])*)*( = |: | has | is | holds | depends )")
+MESSAGE = re.compile(r"[a-z]\w*(\[\d+\])*(\.\w+(\[\d+\])*)*( = |: | has | is | holds | depends )")
 UNKNOWN = r".*: (unknown key|belongs to the mechanism|belongs at the top)"
-SAID_OF_A_FILE = re.compile(
-    rf".*scene.toml(:\d+: (not TOML|{SAID.pattern}|{UNKNOWN})|: is not a text file in UTF-8)", re.DOTALL
+MESSAGE_OF_A_FILE = re.compile(
+    rf".*scene.toml(:\d+: (not TOML|{MESSAGE.pattern}|{UNKNOWN})|: is not a text file in UTF-8)", re.DOTALL
 )
 
 
 @contextmanager
 def in_finite_time():
-    """An example that never ends fails, where the system has such a clock."""
+    """Raise where an example does not end in time, if the system has an alarm clock."""
 
     def late(*_):
         raise AssertionError(f"not finished after {FOREVER} s")
@@ -59,8 +60,8 @@ def in_finite_time():
         signal.signal(signal.SIGALRM, before)
 
 
-def outcome(make, said: re.Pattern = SAID):
-    """What is made, or None where it is refused in our words."""
+def outcome(make, pattern: re.Pattern = MESSAGE):
+    """Return the result of `make`, or None where it is refused with a message of the expected form."""
     try:
         with in_finite_time():
             return make()
@@ -68,14 +69,14 @@ def outcome(make, said: re.Pattern = SAID):
         refusal = error
     assert type(refusal) is ValueError, refusal
     for line in str(refusal).split("\n"):
-        assert said.match(line) and " at 0x" not in line, refusal
+        assert pattern.match(line) and " at 0x" not in line, refusal
     return None
 
 
 def assert_sound(scene: ls.Scene, finite: bool = False) -> None:
-    """Where a sample is ok the powers add up, where it is not there are no values.
+    """Check that the powers add up where a sample is ok, and that there are no values where it is not.
 
-    And where it is ok they are `finite`: numbers near the ends of their range may overflow.
+    With `finite`, values of ok samples must be finite; numbers near the ends of their range may overflow.
     """
     names = scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
     cycle = outcome(lambda: ls.sweep(scene, THETA2, of=names))  # functions and arrays of theta2 are read only now
@@ -91,7 +92,7 @@ def assert_sound(scene: ls.Scene, finite: bool = False) -> None:
 
 
 def assert_powers_add_up(scene: ls.Scene) -> None:
-    """To the rounding of what cancels in them: of the powers themselves, and of the pins' forces at the links' speeds.
+    """Check the power balance to the rounding of the terms that cancel: powers, and pin forces times link speeds.
 
     `power_residual` is relative to what the links' powers are made of; of massless links that may be nothing.
     """
@@ -100,34 +101,34 @@ def assert_powers_add_up(scene: ls.Scene) -> None:
     names = (*terms, *speeds, *FORCES, "power_residual", "transmission_angle", "status")
     grid = crank_grid(THETA2, scene.period)
     fields = compute(scene.at(grid), grid, names)
-    found = {name: xr.DataArray(field.values, dims=field.dims) for name, field in fields.items()}
-    powers = sum(abs(found[name]) for name in terms)
-    cancelling = sum(abs(found[name]) for name in FORCES) * sum(abs(found[name]) for name in speeds)
-    sharpness = np.sin(np.radians(found["transmission_angle"]))
-    wrong = abs(found["power_residual"]) * powers * sharpness > TOLERANCE * (powers + cancelling) + 1e-300
-    assert not (wrong & (found["status"] == 0)).any(), found["power_residual"]
+    result = {name: xr.DataArray(field.values, dims=field.dims) for name, field in fields.items()}
+    powers = sum(abs(result[name]) for name in terms)
+    cancelling = sum(abs(result[name]) for name in FORCES) * sum(abs(result[name]) for name in speeds)
+    sharpness = np.sin(np.radians(result["transmission_angle"]))
+    wrong = abs(result["power_residual"]) * powers * sharpness > TOLERANCE * (powers + cancelling) + 1e-300
+    assert not (wrong & (result["status"] == 0)).any(), result["power_residual"]
 
 
 @fuzzed
-@given(sound)
-def test_a_sound_scene_is_computed_or_refused_in_our_words(raw):
+@hypothesis.given(sound)
+def test_a_valid_scene_is_computed_or_refused_with_a_message(raw):
     scene = outcome(lambda: ls.Scene(**built(raw)))
     if scene is not None:
         assert_sound(scene, finite=True)
 
 
 @fuzzed
-@given(spoiled(st.one_of(objects, listed), ways=["change"]))
-def test_a_spoiled_scene_is_computed_or_refused_in_our_words(raw):
+@hypothesis.given(spoiled(st.one_of(objects, listed), ways=["change"]))
+def test_a_spoiled_scene_is_computed_or_refused_with_a_message(raw):
     scene = outcome(lambda: ls.Scene(**built(raw)))
     if scene is not None:
         assert_sound(scene)
 
 
 @fuzzed
-@given(spoiled())
+@hypothesis.given(spoiled())
 def test_a_spoiled_scene_file_is_computed_or_refused_with_its_line(raw):
-    scene = outcome(lambda: parse_scene(tomli_w.dumps(raw), "scene.toml"), SAID_OF_A_FILE)
+    scene = outcome(lambda: parse_scene(tomli_w.dumps(raw), "scene.toml"), MESSAGE_OF_A_FILE)
     if scene is not None:
         assert_sound(scene)
 
@@ -141,7 +142,7 @@ PIECES = st.sampled_from(
 
 @st.composite
 def damaged_text(draw) -> bytes:
-    """A scene file with some bytes changed, cut out or put in."""
+    """Draw a scene file with some bytes changed, cut out or inserted."""
     content = draw(st.sampled_from(EXAMPLE_FILES))
     for _ in range(draw(st.integers(0, 4))):
         at = draw(st.integers(0, len(content)))
@@ -151,11 +152,11 @@ def damaged_text(draw) -> bytes:
 
 
 @fuzzed
-@given(content=st.one_of(damaged_text(), damaged_text(), st.binary(), st.text().map(str.encode)))
-def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, content):
+@hypothesis.given(content=st.one_of(damaged_text(), damaged_text(), st.binary(), st.text().map(str.encode)))
+def test_damaged_bytes_are_read_or_refused_with_the_line(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "scene.toml"
     path.write_bytes(content)
-    scene = outcome(lambda: ls.load_scene(path), SAID_OF_A_FILE)
+    scene = outcome(lambda: ls.load_scene(path), MESSAGE_OF_A_FILE)
     if scene is not None:
         assert_sound(scene)
 
@@ -179,7 +180,7 @@ def test_bytes_are_a_scene_file_or_refused_with_the_line(tmp_path_factory, conte
         ('omega2 = {dim = "n", start = 1, stop = 2, num = 1000000000000}', "1: omega2.num = 1000000000000: must be at"),
     ],
 )
-def test_what_chance_seldom_finds(line, message):
-    rest = (EXAMPLES / "press.toml").read_text().split('omega2 = "300 rpm"\n')[1]
+def test_rare_errors_are_refused_with_the_line(line, message):
+    other_lines = (EXAMPLES / "press.toml").read_text().split('omega2 = "300 rpm"\n')[1]
     with in_finite_time(), pytest.raises(ValueError, match=rf"^scene\.toml:{re.escape(message)}"):
-        parse_scene(f"{line}\n{rest}", "scene.toml")
+        parse_scene(f"{line}\n{other_lines}", "scene.toml")

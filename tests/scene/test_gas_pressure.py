@@ -1,4 +1,4 @@
-"""Gas pressure in a cylinder: known points by hand, the work of closed form, and the ways to give a pressure."""
+"""Gas pressure in a cylinder: points by hand, work in closed form, and every form of input."""
 
 import dataclasses
 import math
@@ -27,7 +27,7 @@ def scene(pressure=OTTO, engine=ENGINE, omega2=100.0, crankcase=P1, bore=BORE, *
 
 
 def height(engine: ls.SliderCrank, theta2: float) -> float:
-    """Position of the slider along the guide, from a triangle: independent of the package."""
+    """Return the slider's position along the guide, from a triangle: independent of the package."""
     turned = math.radians(theta2 - engine.slide_angle)
     sign = 1.0 if engine.branch == "open" else -1.0
     a, b, e = engine.crank.length, engine.rod.length, engine.offset
@@ -97,9 +97,9 @@ def test_dead_centres_are_where_the_slider_turns(branch, offset, slide_angle):
 
 
 def indicated(cycle, engine) -> float:
-    """Work per cycle [J] from the torque of a massless engine without friction: the integral of -T12 over theta2."""
-    found = ls.sweep(scene(cycle, engine), 14400, of=["T12"])
-    return -float(found.T12.mean()) * math.radians(cycle.strokes * 180.0)
+    """Return the work per cycle [J] of a massless engine without friction: the integral of -T12 over theta2."""
+    result = ls.sweep(scene(cycle, engine), 14400, of=["T12"])
+    return -float(result.T12.mean()) * math.radians(cycle.strokes * 180.0)
 
 
 def otto_work(swept: float, r: float, gamma: float) -> float:
@@ -113,14 +113,14 @@ ENGINES = [ENGINE, replace(ENGINE, offset=0.03, slide_angle=35.0), replace(ENGIN
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("strokes", [2, 4])
 @pytest.mark.parametrize(("r", "gamma"), [(9.0, 1.4), (6.0, 1.3)])
-def test_otto_work_is_that_of_closed_form(engine, strokes, r, gamma):
+def test_otto_work_in_closed_form(engine, strokes, r, gamma):
     e = engine.offset
     stroke = math.sqrt((A + B) ** 2 - e**2) - math.sqrt((B - A) ** 2 - e**2)
     work = indicated(ls.OttoCycle(r, P3, P1, gamma, strokes), engine)
     assert work == pytest.approx(otto_work(AREA * stroke, r, gamma), rel=2e-4)
 
 
-def test_diesel_work_is_that_of_closed_form():
+def test_diesel_work_in_closed_form():
     r, cut = 18.0, 2.2
     heat = GAMMA / (GAMMA - 1) * P1 * r**GAMMA * STROKE_VOLUME / (r - 1) * (cut - 1)
     efficiency = 1 - r ** (1 - GAMMA) * (cut**GAMMA - 1) / (GAMMA * (cut - 1))
@@ -141,10 +141,10 @@ def test_a_crank_that_turns_the_other_way_gains_the_same_work():
 def test_pressure_pushes_the_slider_away_from_the_head(branch, sign):
     engine = replace(ENGINE, branch=branch, slide_angle=30.0)
     by_hand = ls.Load("slider", force=(sign * (7e5 - P1) * AREA, 0.0), frame="link")
-    found = ls.sweep(scene(7e5, engine), 24)
+    cycle = ls.sweep(scene(7e5, engine), 24)
     expected = ls.sweep(ls.Scene(engine, omega2=100.0, loads=[by_hand]), 24)
     for name in ("F12x", "F43y", "F14y", "T12"):
-        np.testing.assert_allclose(found[name], expected[name], rtol=1e-13, atol=1e-9)
+        np.testing.assert_allclose(cycle[name], expected[name], rtol=1e-13, atol=1e-9)
     assert ls.sweep(scene(P1, engine), 24, of=["T12"]).T12.max() == 0.0
 
 
@@ -162,24 +162,24 @@ def test_peaks_see_both_sides_of_the_jumps():
     assert float(peaks.F43_peak_at) == pytest.approx(math.degrees(math.asin(slope)), abs=1e-5)
 
 
-# ------------------------------------------------------------------------------- how a pressure is given
+# ----------------------------------------------------------------------------- forms of a pressure
 
 
-def test_constant_array_and_function_give_equal_bits():
+def test_a_pressure_as_constant_array_or_function_gives_equal_bits():
     constant = ls.sweep(scene(7.3e5), 36)
     angles = np.arange(36) * 10.0
-    for given in (
+    for inputs in (
         lambda theta2: 7.3e5,
         xr.DataArray(np.full(36, 7.3e5), {"theta2": angles}, "theta2"),
         xr.DataArray(np.full(5, 7.3e5), {"theta2": [0.0, 70.0, 100.0, 200.0, 290.0]}, "theta2"),
         xr.DataArray([7.3e5] * 36, dims="theta2"),
     ):
-        found = ls.sweep(scene(given), 36)
+        cycle = ls.sweep(scene(inputs), 36)
         for name in constant.data_vars:
-            np.testing.assert_array_equal(found[name].values, constant[name].broadcast_like(found[name]).values)
+            np.testing.assert_array_equal(cycle[name].values, constant[name].broadcast_like(cycle[name]).values)
 
 
-def test_a_cycle_and_its_samples_are_the_same_load():
+def test_a_cycle_and_its_samples_give_equal_results():
     angles = np.arange(720.0)
     sampled = xr.DataArray(OTTO.pressure(ENGINE, angles).values, {"theta2": angles}, "theta2")
     assert scene(sampled).period == 720.0
@@ -191,26 +191,26 @@ def test_design_dims():
     ratio = xr.DataArray([8.0, 9.0, 10.0], dims="ratio")
     length = xr.DataArray([0.12, 0.14], dims="rod_length")
     study = scene(replace(OTTO, compression_ratio=ratio), replace(ENGINE, rod=ls.Link(length, 0.0, 0.0)), bore=bore)
-    found = ls.sweep(study, 72, of=["T12", "theta3"])
-    assert set(found.T12.dims) == {"bore_size", "ratio", "rod_length", "theta2"}
-    assert set(found.theta3.dims) == {"rod_length", "theta2"}
+    cycle = ls.sweep(study, 72, of=["T12", "theta3"])
+    assert set(cycle.T12.dims) == {"bore_size", "ratio", "rod_length", "theta2"}
+    assert set(cycle.theta3.dims) == {"rod_length", "theta2"}
     one = ls.sweep(scene(), 72, of=["T12"])
-    np.testing.assert_allclose(found.T12.isel(bore_size=1, ratio=1, rod_length=1), one.T12, rtol=1e-13, atol=1e-9)
+    np.testing.assert_allclose(cycle.T12.isel(bore_size=1, ratio=1, rod_length=1), one.T12, rtol=1e-13, atol=1e-9)
     assert set(ls.peaks(study, of=["F12"]).F12_peak.dims) == {"bore_size", "ratio", "rod_length"}
 
 
-def test_a_design_that_does_not_turn_spoils_no_other():
+def test_a_design_that_does_not_turn_changes_no_other():
     offset = xr.DataArray([0.0, 0.11], dims="offset_size")
     engine = replace(ENGINE, offset=offset, friction=0.1)
-    found, one = ls.sweep(scene(OTTO, engine), 72), ls.sweep(scene(OTTO, replace(ENGINE, friction=0.1)), 72)
-    np.testing.assert_array_equal(found.T12.isel(offset_size=0), one.T12)
-    assert (found.status.isel(offset_size=1) != 0).all()
+    result, one = ls.sweep(scene(OTTO, engine), 72), ls.sweep(scene(OTTO, replace(ENGINE, friction=0.1)), 72)
+    np.testing.assert_array_equal(result.T12.isel(offset_size=0), one.T12)
+    assert (result.status.isel(offset_size=1) != 0).all()
     peaks = ls.peaks(scene(OTTO, engine), of=["F12"])
     assert float(peaks.F12_peak[0]) == float(ls.peaks(scene(OTTO, replace(ENGINE, friction=0.1)), of=["F12"]).F12_peak)
 
 
 def test_functions_of_theta2_and_designs_that_share_their_jumps():
-    """The samples beside a jump are the same angles for every friction, and a function is asked once for each."""
+    """Samples beside a jump are shared by all frictions, and a function is evaluated once at each."""
     loads = [ls.GasPressure(BORE, OTTO, P1), ls.Load("rod", torque=lambda theta2: 5.0 * np.cos(np.radians(theta2)))]
     friction = xr.DataArray([0.05, 0.2], dims="friction_size")
     study = ls.Scene(replace(ENGINE, friction=friction), omega2=100.0, loads=loads)
@@ -237,17 +237,17 @@ def test_functions_of_theta2_and_designs_that_share_their_jumps():
 )
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # few angles, through a spline all the same
 def test_files_give_the_scene_back(pressure, tmp_path):
-    given = scene(pressure, drive="coupler")
+    inputs = scene(pressure, drive="coupler")
     if not callable(pressure):
-        assert parse_scene(write_scene(given)) == given
-    cycle = ls.sweep(given, 60)
+        assert parse_scene(write_scene(inputs)) == inputs
+    cycle = ls.sweep(inputs, 60)
     ls.save(cycle, tmp_path / "cycle.nc")
     again = ls.load_scene(tmp_path / "cycle.nc")
     assert isinstance(again.loads[0], ls.GasPressure)
     xr.testing.assert_identical(ls.sweep(again, cycle.theta2).drop_attrs(), cycle.drop_attrs())
 
 
-def test_the_engine_that_comes_with_the_package():
+def test_the_example_engine():
     engine = ls.example("engine")
     assert engine.period == 720.0
     assert engine.loads[0].pressure.peak_pressure == 6e6
@@ -329,7 +329,7 @@ REFUSED_IN_A_FILE = [
 
 
 @pytest.mark.parametrize(("old", "new", "message"), REFUSED_IN_A_FILE)
-def test_what_is_refused_in_a_file_says_where(old, new, message):
+def test_refusals_in_a_file_name_the_line(old, new, message):
     text = FILE.read_text(encoding="utf-8")
     assert text.count(old) == 1
     with pytest.raises(ValueError) as refused:  # noqa: PT011

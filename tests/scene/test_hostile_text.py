@@ -1,4 +1,4 @@
-"""Text files that are no files, huge, damaged or odd: one clean message, soon."""
+"""Pipes, devices, huge and damaged text files: one clear message, in short time."""
 
 import os
 import resource
@@ -31,7 +31,7 @@ def here(tmp_path, monkeypatch):
 
 
 def refusal(text: str, csv: str | None = None) -> str:
-    """Return what is said of a scene file that must be refused."""
+    """Return the message with which a scene file is refused."""
     Path("scene.toml").write_text(text)
     if csv is not None:
         Path("a.csv").write_text(csv)
@@ -45,14 +45,14 @@ def refusal(text: str, csv: str | None = None) -> str:
 # --------------------------------------------------------------------------------------------------- no files at all
 
 
-def test_a_pipe_as_a_scene_is_not_waited_for(here):
+def test_a_pipe_as_a_scene_is_refused_without_waiting(here):
     for name in ("a.toml", "a.nc"):
         os.mkfifo(name)
         with pytest.raises(ValueError, match=rf"{name}: cannot be read: it is a pipe, no file"):
             ls.load_scene(name)
 
 
-def test_a_pipe_as_a_study_is_not_waited_for(here):
+def test_a_pipe_as_a_study_is_refused_without_waiting(here):
     os.mkfifo("a.nc")
     with pytest.raises(ValueError, match=r"a.nc: there is no such file"):
         ls.open_study("a.nc")
@@ -67,12 +67,12 @@ def test_a_device_as_a_csv_is_not_read(here):
 # ------------------------------------------------------------------------------------------------------------- sizes
 
 
-def test_a_file_may_not_be_endless(here, monkeypatch):
+def test_a_file_too_large_is_refused(here, monkeypatch):
     monkeypatch.setattr(text_file, "LARGEST", 2**20)
     assert refusal("#" * 2**20 + "\n").startswith("scene.toml: has more than 1 MB")
 
 
-def test_a_cell_may_not_be_endless(here):
+def test_a_cell_too_long_is_refused(here):
     longest = csv_table.LONGEST_CELL
     assert "a.csv:2: a cell has more than 1000 char" in refusal(PRESS + LOAD, f"theta2,P\n0,{'1' * (longest + 1)}\n")
     assert "a.csv:2: cannot be read as CSV: field larger than" in refusal(
@@ -81,14 +81,14 @@ def test_a_cell_may_not_be_endless(here):
 
 
 @pytest.mark.parametrize("unit", ["m" * 61, "m" * 1_000_000])
-def test_a_unit_may_not_be_endless(here, unit):
+def test_a_unit_too_long_is_refused(here, unit):
     assert "characters: must have at most" in refusal(PRESS.replace('"20 cm"', f'"20 {unit}"'))
     array = {"dims": "d", "attrs": {"units": unit}}
     with pytest.raises(ValueError, match=r'ground has attrs\["units"\] = "mmm.{53}\.\.\.: must be in m'):
         ls.Scene(ls.FourBar(*(ls.Link(0.2, 1.0, 0.1),) * 3, ground=xr.DataArray([0.2, 0.3], **array)), omega2=1.0)
 
 
-def test_errors_behind_a_long_value_are_placed_in_one_pass(here, monkeypatch):
+def test_errors_after_a_long_value_are_located_in_one_pass(here, monkeypatch):
     """Each piece of the file is parsed once: a piece for each of its keys and headers, however many lines it has."""
     text = 'bogus = """' + "a\n" * 50_000 + '"""\n' + PRESS
     parsed = []
@@ -99,7 +99,7 @@ def test_errors_behind_a_long_value_are_placed_in_one_pass(here, monkeypatch):
     assert sum(map(len, parsed)) == 2 * len(text)
 
 
-def test_lines_of_keys_behind_every_kind_of_value():
+def test_line_numbers_after_every_kind_of_value():
     text = (
         'a = """x\n# [ "\\""""\nb = \'\'\'y\n[\'\'\'\nc = [1, # ]\n 2]\n[[d]]\ne = "]"\n[[d]]\n[d.f]\ng = {h = \'"\'}\n'
     )
@@ -115,16 +115,16 @@ FINITE = "must be a finite number, at most 1.8e308"
 RATIO = "compression_ratio = 1e+300: compresses to more than 1.8e308 Pa; reduce it, or gamma"
 
 
-def test_a_fraction_beyond_every_number(here):
+def test_a_number_that_overflows_is_refused(here):
     assert refusal(PRESS.replace('"20 cm"', f'"{"1" * 400} 1/3 in"')).endswith(FINITE)
     assert "has 4007 characters: must have at most 1000" in refusal(PRESS.replace('"20 cm"', f'"{"1" * 4000} 1/3 in"'))
 
 
-def test_an_integer_beyond_every_number(here):
+def test_an_integer_that_overflows_is_refused(here):
     assert f"ground = <int>: {FINITE}" in refusal(PRESS.replace('"20 cm"', "0x1" + "0" * 9999))
 
 
-def test_a_compression_beyond_every_number(here):
+def test_a_compression_ratio_that_overflows_is_refused(here):
     assert RATIO in refusal(ENGINE.replace("compression_ratio = 10", "compression_ratio = 1e300"))
     engine = ls.example("engine")
     for cycle in (ls.OttoCycle(1e300, 5e6), ls.DieselCycle(xr.DataArray([18.0, 1e300], dims="d"), 2.0)):
@@ -133,13 +133,13 @@ def test_a_compression_beyond_every_number(here):
         assert RATIO in str(refused.value)
 
 
-def test_a_column_beyond_every_slope(here):
+def test_a_column_whose_slope_overflows_is_refused(here):
     column = "theta2,P\n" + "".join(f"{angle},{1e308 if angle == 90 else -1e308}\n" for angle in range(0, 360, 30))
     assert refusal(PRESS + LOAD, column) == "loads[3].torque holds 1e+308: is interpolated, so it must be below 1e+290"
 
 
 @pytest.mark.parametrize("interpolation", ["periodic cubic", "pchip", "linear", "step"])
-def test_angles_that_are_one_a_period_later(here, interpolation):
+def test_angles_that_coincide_a_period_later_are_refused(here, interpolation):
     column = "theta2,P\n0,1\n1e-320,2\n" + "".join(f"{angle},1\n" for angle in range(30, 360, 30))
     kind = f'interpolation = "{interpolation}"\n'
     assert refusal(PRESS + LOAD + kind, column).startswith(
@@ -147,7 +147,7 @@ def test_angles_that_are_one_a_period_later(here, interpolation):
     )
 
 
-def test_lengths_at_the_ends_of_what_a_number_can_hold():
+def test_lengths_at_the_limits_of_float64():
     engine = ls.example("engine")
     loop = ls.Scene(ls.LoopTrack(1e308, 700.0), speed=100.0, thrust=1e4, profile="energy")
     for scene in (
@@ -159,7 +159,7 @@ def test_lengths_at_the_ends_of_what_a_number_can_hold():
         assert (ls.sweep(scene, 6).status != 0).any() or scene is loop
 
 
-def test_a_value_too_large_in_its_unit_is_told_with_file_and_line(here):
+def test_a_value_too_large_in_its_unit_is_refused_with_file_and_line(here):
     rows = "theta2,P\n0,1\n90,2\n180,1e307\n270,2\n"
     message = refusal(PRESS + LOAD.replace("}", ', unit = "kN m"}'), rows)
     assert "torque.csv: a.csv:4: 1e+307: must be a finite number" in message
@@ -173,7 +173,7 @@ def test_a_long_key_is_cut(here):
 
 
 @pytest.mark.parametrize("text", ["root:x:0:0:secret\nmore\n", "secret,P\n0,1\n", "secret\n", '"secret', "0,secret\n"])
-def test_a_message_shows_nothing_of_a_file_that_is_no_csv_of_ours(here, text):
+def test_a_message_quotes_nothing_of_a_file_that_is_not_csv(here, text):
     message = refusal(PRESS + LOAD, text)
     assert "secret" not in message
     assert "the first line must name the columns, the first of them theta2" in message
@@ -182,11 +182,11 @@ def test_a_message_shows_nothing_of_a_file_that_is_no_csv_of_ours(here, text):
 # ------------------------------------------------------------------------------------------------------------- output
 
 
-def test_a_label_is_no_formula(here):
+def test_a_label_is_not_written_as_a_formula(here):
     labels = ["=cmd|'/c calc'!A1", "+1+1", "-1+1", "@sum", "\tx", "\rx", "-5", "plain"]
     scene = replace(ls.example("press"), omega2=xr.DataArray(np.arange(8.0), dims="speed"))
-    found = ls.peaks(scene, ["T12"], theta2=8).rename(speed="=dim").assign_coords({"=dim": labels})
-    found.linksweep.to_csv("a.csv")
+    peaks = ls.peaks(scene, ["T12"], theta2=8).rename(speed="=dim").assign_coords({"=dim": labels})
+    peaks.linksweep.to_csv("a.csv")
     with open("a.csv", newline="") as file:
         rows = list(csv_table.csv.reader(file))
     assert rows[0][0] == "'=dim"
@@ -201,14 +201,14 @@ def run(*words: str, **surroundings: str) -> subprocess.CompletedProcess:
     )
 
 
-def test_an_ascii_terminal_shows_a_question_mark_for_what_it_lacks(here):
+def test_an_ascii_terminal_shows_question_marks(here):
     ran = run("peaks", "press.toml", "--theta2", "36", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
     assert (ran.returncode, ran.stderr) == (0, b"")
     assert b"0.00?" in ran.stdout
 
 
 @pytest.mark.parametrize("buffered", ["", "1"])
-def test_a_closed_pipe_is_left_quietly(here, buffered):
+def test_a_closed_pipe_ends_the_command_quietly(here, buffered):
     Path("press.toml").write_text(PRESS)
     reading, writing = os.pipe()
     os.close(reading)
@@ -220,13 +220,13 @@ def test_a_closed_pipe_is_left_quietly(here, buffered):
     assert (ran.returncode, ran.stderr) == (141, b"")
 
 
-def test_output_that_was_closed_before_the_start(here, monkeypatch):
+def test_output_closed_before_the_start(here, monkeypatch):
     Path("press.toml").write_text(PRESS)
     monkeypatch.setattr(sys, "stdout", None)  # as Python starts after ">&-"
     assert main(["check", "press.toml"]) == 0
 
 
-def test_a_name_with_a_bad_byte(here, capsys):
+def test_a_file_name_with_an_invalid_byte(here, capsys):
     name = os.fsdecode(b"scene\xff.toml")
     Path(name).write_text(PRESS)
     assert main(["report", name, "-o", "report.html"]) == 0
@@ -239,7 +239,7 @@ def test_a_name_with_a_bad_byte(here, capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ("sweep press.toml -o a.nc --theta2 1000000000000", "theta2 = 1000000000000: needs 4.8e+04 GB of memory"),
         ("peaks press.toml --theta2 1000000000000", "theta2 = 1000000000000: needs 4.8e+04 GB of memory"),
@@ -247,23 +247,23 @@ def test_a_name_with_a_bad_byte(here, capsys):
         ("animate press.toml -o a.gif --frames 1000000000", "frames = 1000000000: needs 3.11e+05 GB of memory"),
     ],
 )
-def test_the_memory_that_a_request_needs_is_told_before_it_is_taken(here, capsys, words, said):
+def test_a_request_that_needs_too_much_memory_is_refused(here, capsys, words, message):
     Path("press.toml").write_text(PRESS)
     assert main(words.split()) == 2
-    assert capsys.readouterr().err.startswith(f"linksweep: {said}")
+    assert capsys.readouterr().err.startswith(f"linksweep: {message}")
     assert os.listdir() == ["press.toml"]
 
 
-def test_the_memory_of_designs_and_classes_is_told_before_it_is_taken():
+def test_designs_and_classes_that_need_too_much_memory_are_refused():
     scene = ls.example("press")
     with pytest.raises(ValueError, match=r"n = 1000000000000: needs 1.6e\+04 GB of memory"):
         ls.sample(scene, {"ground": (0.19, 0.21)}, n=10**12)
-    found = ls.bearings(scene, {"B": ls.Bearing(diameter=0.02, length=0.03)}, theta2=12)
+    bearings = ls.bearings(scene, {"B": ls.Bearing(diameter=0.02, length=0.03)}, theta2=12)
     with pytest.raises(ValueError, match=r"classes = 1000000000000: needs .* GB of memory"):
-        ls.load_spectrum(found, classes=10**12)
+        ls.load_spectrum(bearings, classes=10**12)
 
 
-def test_results_that_do_not_fit_are_told(monkeypatch):
+def test_results_that_do_not_fit_in_memory_are_refused(monkeypatch):
     monkeypatch.setattr(memory, "free_memory", lambda: 3e8)
     scene = ls.example("press")
     with pytest.raises(
@@ -272,7 +272,7 @@ def test_results_that_do_not_fit_are_told(monkeypatch):
         ls.sweep(ls.Scene(scene.mechanism, omega2=xr.DataArray(np.arange(1e4), dims="d")), 10_000, of=["T12"])
 
 
-def test_free_memory_is_that_of_the_machine_or_of_the_limit():
+def test_free_memory_is_the_less_of_machine_and_limit():
     limit = resource.getrlimit(resource.RLIMIT_AS)
     total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     assert 0.0 < memory.free_memory() < 4.0 * total

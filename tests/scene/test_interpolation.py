@@ -1,5 +1,5 @@
-"""How an array goes on between its angles: each kind against its definition, its jumps in peaks and means, the ringing
-of splines, and every way through a file."""
+"""Interpolation of arrays over an angle: each kind against its definition, jumps in peaks and means, overshoot of
+splines, and files."""
 
 import warnings
 from dataclasses import replace
@@ -35,13 +35,13 @@ def force(interpolation, values, angles, theta2) -> np.ndarray:
 
 
 def held(values, angles, theta2, period=360.0):
-    """A step, by its definition: the value of the last known angle at or before each of these."""
+    """Return a step function by its definition: the value at the last known angle at or before each of `theta2`."""
     behind = np.mod(np.asarray(theta2)[:, None] - np.asarray(angles), period)
     return np.asarray(values)[behind.argmin(axis=1)]
 
 
 def fritsch_butland(values, angles, theta2):
-    """The monotone cubic by its published formula, in Hermite form, from three periods of data."""
+    """Return the monotone cubic by its published formula, in Hermite form, from three periods of data."""
     x = np.concatenate([np.asarray(angles) + turn for turn in (-360.0, 0.0, 360.0)])
     y = np.tile(values, 3)
     h, slope = np.diff(x), np.diff(y) / np.diff(x)
@@ -69,7 +69,7 @@ DEFINED = {
 
 
 @pytest.mark.parametrize("kind", [*DEFINED])
-def test_each_kind_is_as_defined_whatever_the_angles(kind):
+def test_each_kind_against_its_definition(kind):
     rng = np.random.default_rng(3)
     for first in (0.0, -50.5, 200.0):
         angles = first + np.sort(rng.uniform(0.0, 350.0, 30))
@@ -93,8 +93,8 @@ def test_a_step_holds_up_to_the_next_angle():
 
 
 def test_a_step_of_two_angles_needs_no_more():
-    found = force("step", [-700.0, 0.0], [320.0, 355.0], np.array([319.9, 320.0, 354.0, 355.0, 10.0]))
-    assert found.tolist() == [0.0, -700.0, -700.0, 0.0, 0.0]
+    result = force("step", [-700.0, 0.0], [320.0, 355.0], np.array([319.9, 320.0, 354.0, 355.0, 10.0]))
+    assert result.tolist() == [0.0, -700.0, -700.0, 0.0, 0.0]
 
 
 def test_two_turns_come_round_after_two():
@@ -102,20 +102,20 @@ def test_two_turns_come_round_after_two():
     values = np.where(angles < 180.0, 900.0, 0.0)
     four_stroke = scene("step", values, angles)
     assert four_stroke.period == 720.0
-    found = ls.sweep(four_stroke, [170.0, 190.0, 530.0, 890.0], of=["T12"])["loads[1].force[1]"]
-    assert found.values.tolist() == [900.0, 0.0, 0.0, 900.0]
+    result = ls.sweep(four_stroke, [170.0, 190.0, 530.0, 890.0], of=["T12"])["loads[1].force[1]"]
+    assert result.values.tolist() == [900.0, 0.0, 0.0, 900.0]
 
 
 def test_each_design_has_its_own_curve():
     values = np.stack([PUSH, 2.0 * PUSH])
     both = xr.DataArray(values, {"case": [1, 2], "theta2": ANGLES}, ("case", "theta2"))
     load = ls.Load("slider", force=both, interpolation="step")
-    found = ls.peaks(ls.Scene(PRESS, omega2=100.0, loads=[load]), ["T12"])
+    peaks = ls.peaks(ls.Scene(PRESS, omega2=100.0, loads=[load]), ["T12"])
     for k in range(2):
-        assert float(found.T12_max[k]) == float(ls.peaks(scene("step", values[k]), ["T12"]).T12_max)
+        assert float(peaks.T12_max[k]) == float(ls.peaks(scene("step", values[k]), ["T12"]).T12_max)
 
 
-def test_gas_pressure_takes_one_too():
+def test_gas_pressure_accepts_an_interpolation():
     pressure = over_angles(1e5 - 100.0 * PUSH, ANGLES)
     gas = ls.GasPressure(bore=0.05, pressure=pressure, interpolation="step")
     cycle = ls.sweep(ls.Scene(PRESS, omega2=100.0, loads=[gas]), [99.0, 105.0], of=["T12"])
@@ -126,21 +126,21 @@ def test_gas_pressure_takes_one_too():
 
 
 @pytest.mark.parametrize(("kind", "names"), [("step", ["F32", "T12"]), ("linear", ["F32", "T12"])])
-def test_peaks_look_at_every_corner(kind, names):
-    """Off the even angles, where no sample would find them; the reference are both sides of each, and a fine sweep."""
+def test_exact_peaks_include_every_corner(kind, names):
+    """Corners lie between the even angles; the reference is a fine sweep with both sides of each corner."""
     rng = np.random.default_rng(5)
     angles = np.sort(rng.uniform(0.0, 360.0, 12))
     values = np.round(rng.uniform(-9000.0, 9000.0, 12))
     made = scene(kind, values, angles)
-    found = ls.peaks(made, names)
+    peaks = ls.peaks(made, names)
     theta2 = np.concatenate([np.arange(0.0, 360.0, 0.01), np.mod(angles - 1e-9, 360.0), np.mod(angles + 1e-9, 360.0)])
     fine = ls.sweep(made, theta2, of=names)
-    for largest, dense in ((found.F32_peak, fine.F32.max()), (found.T12_max, fine.T12.max())):
+    for largest, dense in ((peaks.F32_peak, fine.F32.max()), (peaks.T12_max, fine.T12.max())):
         assert float(dense) * (1.0 - 1e-11) <= float(largest) <= float(dense) * (1.0 + 1e-6)
-    assert float(found.T12_min) == pytest.approx(float(fine.T12.min()), rel=1e-6)
+    assert float(peaks.T12_min) == pytest.approx(float(fine.T12.min()), rel=1e-6)
 
 
-def test_a_step_is_the_same_load_as_a_function_with_breaks():
+def test_a_step_equals_a_function_with_breaks():
     function = ls.Load("slider", force=lambda t: held(PUSH, ANGLES, t), breaks=[100.0, 200.0])
     by_function = ls.peaks(ls.Scene(PRESS, omega2=100.0, loads=[function]), ["F32", "T12", "T12_mean"])
     by_table = ls.peaks(scene("step"), ["F32", "T12", "T12_mean"])
@@ -151,25 +151,25 @@ def test_a_step_is_the_same_load_as_a_function_with_breaks():
 def test_the_mean_torque_does_the_work_of_the_steps():
     """Nothing else does work over a turn: 2π·mean = −F·(x at 200° − x at 100°), x in closed form."""
     x = [CRANK * np.cos(t) + np.sqrt(ROD**2 - (CRANK * np.sin(t)) ** 2) for t in np.radians([100.0, 200.0])]
-    found = ls.peaks(scene("step"), ["T12_mean"])
-    assert float(found.T12_mean) == pytest.approx(1000.0 * (x[1] - x[0]) / (2.0 * np.pi), rel=1e-11)
+    peaks = ls.peaks(scene("step"), ["T12_mean"])
+    assert float(peaks.T12_mean) == pytest.approx(1000.0 * (x[1] - x[0]) / (2.0 * np.pi), rel=1e-11)
 
 
 # ----------------------------------------------------------------------------------------------- ringing
 
 
-def test_a_spline_that_rings_warns_and_check_tells():
+def test_a_spline_that_overshoots_warns_and_check_reports_it():
     rings = scene()
     with pytest.warns(
         ls.OvershootWarning, match=r"^loads\[1\].force\[1\]: .* by 11 % of it; .*interpolation = \"pchip"
     ):
         ls.peaks(rings, ["F32"])
-    found = ls.check(rings)
-    assert found.overshoot.spline.values.tolist() == ["loads[1].force[1]"]
-    assert float(found.overshoot[0]) == pytest.approx(0.108, abs=1e-3)  # −1107.8 … +107.8, measured on a fine grid
+    checks = ls.check(rings)
+    assert checks.overshoot.spline.values.tolist() == ["loads[1].force[1]"]
+    assert float(checks.overshoot[0]) == pytest.approx(0.108, abs=1e-3)  # −1107.8 … +107.8, measured on a fine grid
 
 
-def test_it_warns_once_for_a_scene():
+def test_a_scene_warns_once():
     rings = scene()
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
@@ -179,21 +179,21 @@ def test_it_warns_once_for_a_scene():
 
 
 @pytest.mark.parametrize("kind", KINDS[1:])
-def test_nothing_else_rings(kind):
+def test_other_interpolations_do_not_overshoot(kind):
     made = scene(kind)
-    found = ls.sweep(made, 3600, of=["T12"])["loads[1].force[1]"]
-    assert (float(found.min()), float(found.max())) == (-1000.0, 0.0)
+    result = ls.sweep(made, 3600, of=["T12"])["loads[1].force[1]"]
+    assert (float(result.min()), float(result.max())) == (-1000.0, 0.0)
     assert "overshoot" not in ls.check(made)
 
 
-def test_smooth_loads_do_not_warn_and_angles_that_are_held_need_no_spline():
+def test_smooth_loads_and_sweeps_at_the_known_angles_do_not_warn():
     smooth = scene(values=np.cos(np.radians(ANGLES)))
     ls.sweep(smooth, 720)
     assert float(ls.check(smooth).overshoot[0]) < 0.01
     ls.sweep(scene(), ANGLES)
 
 
-def test_omega2_warns_too():
+def test_an_omega2_that_overshoots_warns():
     jerky = ls.Scene(PRESS, omega2=over_angles(100.0 + np.where(ANGLES < 180.0, 10.0, 0.0), ANGLES))
     with pytest.warns(ls.OvershootWarning, match="^omega2: .*give it at more angles, or as a function"):
         ls.sweep(jerky, 720, of=["omega3"])
@@ -228,7 +228,7 @@ def read(folder, load, table="theta2,P\n320,-0.7\n355,0\n"):
         'force = {dim = "theta2", values = [-700, 0], theta2 = [320.0, 355.0], interpolation = "step"}',
     ],
 )
-def test_a_scene_file_says_it_in_the_table_or_in_the_load(tmp_path, load):
+def test_a_scene_file_names_the_interpolation_in_the_table_or_the_load(tmp_path, load):
     assert read(tmp_path, load) == scene("step", [-700.0, 0.0], [320.0, 355.0])
 
 
@@ -240,7 +240,7 @@ def test_round_trips(tmp_path, kind):
     assert ls.load_scene(tmp_path / "cycle.nc").loads[0].interpolation == kind
 
 
-def test_kinds_are_told_apart():
+def test_loads_of_different_interpolations_are_not_equal():
     made = [scene(kind) for kind in (None, *KINDS[1:])]
     assert len({*made}) == len({scene_digest(one) for one in made}) == 4
 
@@ -268,13 +268,13 @@ def test_kinds_are_told_apart():
         ('force = {csv = "p.csv"}', ":9: loads[1].force.csv: p.csv: has 2 rows of numbers: give at least 4"),
     ],
 )
-def test_what_is_wrong_has_its_line(tmp_path, load, message):
+def test_an_unknown_interpolation_is_refused_with_its_line(tmp_path, load, message):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         read(tmp_path, load)
     assert message in str(refused.value)
 
 
-def test_a_function_takes_none():
+def test_a_function_with_an_interpolation_is_refused():
     mixed = ls.Load("slider", force=(over_angles(PUSH, ANGLES), np.cos), interpolation="step")
     with pytest.raises(
         ValueError, match=r"^loads\[1\].interpolation = 'step': .* but one is a function; give that a l"
@@ -282,13 +282,13 @@ def test_a_function_takes_none():
         ls.Scene(PRESS, omega2=1.0, loads=[mixed])
 
 
-def test_the_speed_takes_none():
+def test_a_speed_with_an_interpolation_is_refused():
     speed = over_angles(100.0 + np.cos(np.radians(ANGLES)), ANGLES, interpolation="step")
     with pytest.raises(ValueError, match=r"^omega2.interpolation: is for loads over theta2; leave it out"):
         ls.Scene(PRESS, omega2=speed)
 
 
-def test_an_array_that_goes_not_all_the_way_round_is_checked_where_it_is_used():
+def test_an_array_over_part_of_a_turn_is_checked_when_swept():
     part = replace(scene(), loads=[ls.Load("slider", force=over_angles([1.0, 2.0], [30.0, 70.0]))])
     assert "overshoot" not in ls.check(part)
     assert ls.sweep(part, [30.0, 70.0], of=["T12"]).T12.notnull().all()

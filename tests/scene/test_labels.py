@@ -1,4 +1,4 @@
-"""Labels and names of dims: what no file gives back as it is, is refused before anything is computed or written."""
+"""Labels and names of dims that files cannot store unchanged are refused before anything is computed or written."""
 
 import datetime
 import warnings
@@ -16,9 +16,9 @@ from linksweep.scene.file.writing import write_scene
 
 
 def objects(*labels):
-    found = np.empty(len(labels), object)
-    found[:] = labels
-    return found
+    result = np.empty(len(labels), object)
+    result[:] = labels
+    return result
 
 
 def over(labels, dim="case"):
@@ -76,13 +76,13 @@ SOUND_NAMES = ["a b", "crank (mm)", "é", "🙂", "1", "_a", "a.b", "a$\\%", LON
 
 
 @pytest.mark.parametrize(("labels", "problem"), ODD.values(), ids=ODD)
-def test_labels_that_no_file_gives_back_are_refused_by_the_scene(labels, problem):
+def test_labels_that_files_cannot_store_are_refused_by_the_scene(labels, problem):
     (line,) = refusal(scene, labels)
     assert line.startswith(f"omega2 has along case {problem}")
 
 
 @pytest.mark.parametrize(("labels", "problem"), ODD.values(), ids=ODD)
-def test_save_refuses_them_before_it_touches_the_file(labels, problem, tmp_path):
+def test_save_refuses_labels_before_it_touches_the_file(labels, problem, tmp_path):
     (tmp_path / "a.nc").write_text("before")
     (line,) = refusal(ls.save, over(labels).to_dataset(name="F32"), tmp_path / "a.nc")
     assert line.startswith(f"ds has along case {problem}")
@@ -91,7 +91,7 @@ def test_save_refuses_them_before_it_touches_the_file(labels, problem, tmp_path)
 
 @pytest.mark.parametrize("labels", SOUND.values(), ids=SOUND)
 @pytest.mark.parametrize("way", ["a.nc", "study.nc", "scene.toml", "scene.nc"])
-def test_labels_come_back_as_they_were(labels, way, tmp_path):
+def test_labels_round_trip(labels, way, tmp_path):
     made, path = scene(labels), tmp_path / way
     if way == "study.nc":
         ls.study(made, path, of=["T12"], theta2=4, chunk=2)
@@ -112,7 +112,7 @@ def test_a_multi_index_is_refused():
 
 
 @pytest.mark.parametrize("name", ODD_NAMES)
-def test_names_that_no_file_gives_back_are_refused(name, tmp_path):
+def test_names_that_files_cannot_store_are_refused(name, tmp_path):
     (line,) = refusal(scene, [1, 2, 3], dim=name)
     assert line.startswith("omega2 has a dimension ") and "its name must " in line
     assert "its name must " in refusal(ls.save, over([1, 2, 3], name).to_dataset(name="F32"), tmp_path / "a.nc")[0]
@@ -120,13 +120,13 @@ def test_names_that_no_file_gives_back_are_refused(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", SOUND_NAMES)
-def test_other_names_come_back(name, tmp_path):
-    found = ls.study(scene([1, 2, 3], name), tmp_path / "a.nc", of=["T12"], theta2=4)
-    assert found.T12_peak.dims == (name,)
+def test_other_names_round_trip(name, tmp_path):
+    study = ls.study(scene([1, 2, 3], name), tmp_path / "a.nc", of=["T12"], theta2=4)
+    assert study.T12_peak.dims == (name,)
     assert ls.load_scene(tmp_path / "a.nc") == scene([1, 2, 3], name)
 
 
-def test_times_beside_a_load_over_the_angle_stand_in_the_text_of_the_scene():
+def test_time_labels_beside_a_load_over_the_angle_are_written_in_the_scene():
     angles = [0.0, 90.0, 180.0, 270.0]
     torque = xr.DataArray(np.ones((3, 4)), {"day": TIMES, "theta2": angles}, ("day", "theta2"))
     made = replace(ls.example("press"), loads=[ls.Load("rocker", torque=torque)])

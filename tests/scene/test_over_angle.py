@@ -1,4 +1,4 @@
-"""What changes over the revolution: constants, DataArrays over theta2 and functions of theta2 say the same."""
+"""Parameters over the revolution: constants, DataArrays over theta2 and functions of theta2 give equal results."""
 
 from dataclasses import replace
 from functools import partial
@@ -33,20 +33,20 @@ def over_angles(values, angles) -> xr.DataArray:
     return xr.DataArray(values, {"theta2": angles}, "theta2")
 
 
-def brought(value, theta2) -> np.ndarray:
-    """A torque brought to the angles of a sweep."""
+def sampled_torque(value, theta2) -> np.ndarray:
+    """Return a torque sampled at the angles of a sweep."""
     sampled = at_angles("torque", value, TORQUE, crank_grid(theta2, 360.0), ArrayCurve("torque", value, 360.0))
     return sampled.transpose("theta2", ...).values
 
 
-def assert_equal_arrays(found: xr.Dataset, expected: xr.Dataset) -> None:
-    assert set(found.data_vars) == set(expected.data_vars)
+def assert_equal_arrays(actual: xr.Dataset, expected: xr.Dataset) -> None:
+    assert set(actual.data_vars) == set(expected.data_vars)
     for name in expected.data_vars:
-        broadcast = expected[name].variable.set_dims(found[name].sizes)
-        np.testing.assert_array_equal(found[name].values, broadcast.values, err_msg=str(name))
+        broadcast = expected[name].variable.set_dims(actual[name].sizes)
+        np.testing.assert_array_equal(actual[name].values, broadcast.values, err_msg=str(name))
 
 
-# ------------------------------------------------------------------------- three ways to say the same
+# ------------------------------------------------------------------------- constants, arrays, functions
 
 
 @pytest.mark.parametrize("parameter", ["omega2", "alpha2", "Fx", "Fy", "torque"])
@@ -68,7 +68,7 @@ def test_a_constant_a_data_array_and_a_function_give_equal_arrays(parameter, num
 
 @pytest.mark.parametrize("parameter", ["omega2", "alpha2", "Fx", "Fy", "torque"])
 @pytest.mark.parametrize("frame", ["ground", "link"])
-def test_what_changes_gives_at_each_angle_what_a_constant_of_that_value_gives(parameter, frame):
+def test_a_varying_parameter_equals_at_each_angle_a_constant_of_its_value(parameter, frame):
     angles = np.array([0.0, 20.0, 111.0, 250.5])
     values = np.array([3.0, -2.0, 5.5, 1.25])
     for value in (lambda theta2: np.interp(np.mod(theta2, 360.0), angles, values), over_angles(values, angles)):
@@ -79,7 +79,7 @@ def test_what_changes_gives_at_each_angle_what_a_constant_of_that_value_gives(pa
                 assert cycle[name].values.reshape(-1)[k if cycle[name].size > 1 else 0] == alone[name].item(), name
 
 
-def test_a_variable_depends_on_theta2_only_as_far_as_its_inputs_do():
+def test_a_variable_has_theta2_only_where_its_inputs_have():
     cycle = ls.sweep(scene(torque=lambda theta2: np.sin(np.radians(theta2))), 8, of=["omega3", "T12"])
     batch = ls.sweep(scene(torque=xr.DataArray(np.ones((3, 8)), dims=("case", "theta2"))), 8, of=["omega3", "T12"])
     assert cycle.T12.dims == cycle.omega3.dims == batch.omega3.dims == ("theta2",)
@@ -91,15 +91,15 @@ def test_design_dims_and_theta2_together_in_any_order():
     angles = np.arange(4) * 90.0
     values = np.array([[1.0, -2.0, 3.0, 0.5], [4.0, 4.0, -1.0, 2.0]])
     torque = xr.DataArray(values, {"case": ["a", "b"], "theta2": angles}, ("case", "theta2"))
-    for given in (torque, torque.T, torque[:, ::-1]):
-        cycle = ls.sweep(scene(torque=given), 12, of=["T12"])
+    for inputs in (torque, torque.T, torque[:, ::-1]):
+        cycle = ls.sweep(scene(torque=inputs), 12, of=["T12"])
         for k, case in enumerate(["a", "b"]):
             alone = ls.sweep(scene(torque=over_angles(values[k], angles)), 12, of=["T12"])
             np.testing.assert_array_equal(cycle.T12.sel(case=case).values, alone.T12.values)
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
-def test_peaks_of_what_changes_are_those_of_the_sweep():
+def test_peaks_of_varying_parameters_equal_those_of_the_sweep():
     load = over_angles([0.0, -50.0, 20.0, 5.0], [0.0, 90.0, 180.0, 270.0])
     moving = scene(torque=load, omega2=lambda theta2: 30.0 + np.cos(np.radians(theta2)))
     cycle, peaks = ls.sweep(moving, 3600), ls.peaks(moving, of=["T12"])
@@ -116,35 +116,37 @@ def ripple(theta2):
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
-def test_sampled_angles_are_reproduced_to_the_bit_wherever_they_stand():
+def test_known_angles_are_reproduced_to_the_bit():
     rng = np.random.default_rng(1)
     for first in (0.0, 0.1, -200.0, 33.3):
         known = first + np.sort(rng.uniform(0.0, 359.0, 20))
         values = rng.normal(size=20)
         for order in (np.arange(20), rng.permutation(20)):
-            given = over_angles(values[order], known[order])
-            assert brought(given, known).tolist() == values.tolist()
+            inputs = over_angles(values[order], known[order])
+            assert sampled_torque(inputs, known).tolist() == values.tolist()
             with_others = np.append(known, known[0] + 0.123456)  # so that it is interpolated
-            assert brought(given, with_others)[:-1].tolist() == values.tolist()
+            assert sampled_torque(inputs, with_others)[:-1].tolist() == values.tolist()
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # rough data, through a spline all the same
 def test_the_spline_is_periodic_and_smooth_over_the_join():
     known = np.array([10.0, 60.0, 130.0, 200.0, 280.0, 340.0])
-    given = over_angles(ripple(known), known)
-    asked = np.array([-350.0, 0.0, 5.0, 45.0, 359.9, 123.4])
-    np.testing.assert_allclose(brought(given, asked), brought(given, asked + 720.0), rtol=0, atol=1e-12)
+    inputs = over_angles(ripple(known), known)
+    requested = np.array([-350.0, 0.0, 5.0, 45.0, 359.9, 123.4])
+    np.testing.assert_allclose(
+        sampled_torque(inputs, requested), sampled_torque(inputs, requested + 720.0), rtol=0, atol=1e-12
+    )
     step = 1e-3
-    around = brought(given, 10.0 + step * np.arange(-2, 3))  # the join of the knots
+    around = sampled_torque(inputs, 10.0 + step * np.arange(-2, 3))  # the join of the knots
     first, second = np.diff(around) / step, np.diff(around, 2) / step**2
     assert np.ptp(first) < 1e-4
     assert np.ptp(second) < 1e-2 * np.abs(second).max() + 1e-5
 
 
-def test_the_spline_converges_as_a_cubic_does():
-    asked = np.linspace(0.0, 360.0, 997)
+def test_the_spline_converges_with_the_fourth_power():
+    requested = np.linspace(0.0, 360.0, 997)
     errors = [
-        np.abs(brought(over_angles(ripple(known), known), asked) - ripple(asked)).max()
+        np.abs(sampled_torque(over_angles(ripple(known), known), requested) - ripple(requested)).max()
         for known in (np.arange(n) * (360 / n) for n in (24, 48, 96))
     ]
     assert errors[0] / errors[1] > 12
@@ -157,10 +159,10 @@ def test_a_closing_point_at_360_changes_nothing(closed):
     known = np.arange(0.0, 360.0, 30.0)
     closing = np.append(known, 360.0)
     values = ripple(known)
-    given = over_angles(np.append(values, values[0]), closing) if closed else over_angles(values, known)
-    expected = brought(over_angles(values, known), 50)
-    assert brought(given, 50).tolist() == expected.tolist()
-    assert brought(given, closing).tolist() == [*values, values[0]]
+    inputs = over_angles(np.append(values, values[0]), closing) if closed else over_angles(values, known)
+    expected = sampled_torque(over_angles(values, known), 50)
+    assert sampled_torque(inputs, 50).tolist() == expected.tolist()
+    assert sampled_torque(inputs, closing).tolist() == [*values, values[0]]
 
 
 def test_angles_beyond_one_revolution_mean_a_period_of_two():
@@ -169,10 +171,10 @@ def test_angles_beyond_one_revolution_mean_a_period_of_two():
     def four_stroke(theta2):
         return np.cos(np.radians(theta2 / 2))
 
-    given = over_angles(four_stroke(known), known)
-    asked = np.arange(0.0, 1440.0, 7.0)
-    np.testing.assert_allclose(brought(given, asked), four_stroke(asked), atol=1e-5)
-    cycle = ls.sweep(scene(torque=given), [90.0, 450.0, 810.0], of=["T12"]).T12.values
+    inputs = over_angles(four_stroke(known), known)
+    requested = np.arange(0.0, 1440.0, 7.0)
+    np.testing.assert_allclose(sampled_torque(inputs, requested), four_stroke(requested), atol=1e-5)
+    cycle = ls.sweep(scene(torque=inputs), [90.0, 450.0, 810.0], of=["T12"]).T12.values
     assert cycle[0] == cycle[2] != cycle[1]
 
 
@@ -180,10 +182,10 @@ def test_angles_beyond_one_revolution_mean_a_period_of_two():
 def test_other_dims_are_interpolated_side_by_side():
     known = np.arange(0.0, 360.0, 45.0)
     both = xr.DataArray([ripple(known), 2.0 - ripple(known)], {"case": [5, 7], "theta2": known}, ("case", "theta2"))
-    found = brought(both, 100)
-    assert found.shape == (100, 2)
-    np.testing.assert_array_equal(found[:, 0], brought(over_angles(ripple(known), known), 100))
-    np.testing.assert_allclose(found.sum(axis=1), 2.0, atol=1e-12)
+    result = sampled_torque(both, 100)
+    assert result.shape == (100, 2)
+    np.testing.assert_array_equal(result[:, 0], sampled_torque(over_angles(ripple(known), known), 100))
+    np.testing.assert_allclose(result.sum(axis=1), 2.0, atol=1e-12)
 
 
 def test_a_function_gets_its_own_copy_of_the_angles():
@@ -191,7 +193,7 @@ def test_a_function_gets_its_own_copy_of_the_angles():
         theta2 *= 0.0
         return theta2 + 1.0
 
-    assert brought(careless, 8).tolist() == [1.0] * 8
+    assert sampled_torque(careless, 8).tolist() == [1.0] * 8
     assert crank_grid(8, 360.0).angles.tolist() == [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]
 
 
@@ -253,9 +255,9 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("value", "message"), REFUSED)
-def test_what_cannot_be_brought_to_the_angles_says_why(value, message):
+def test_functions_and_arrays_that_cannot_be_sampled_are_refused(value, message):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
-        brought(value, 8)
+        sampled_torque(value, 8)
     assert str(refused.value).startswith(message)
     assert "\n" not in str(refused.value)
 
@@ -277,9 +279,9 @@ def test_messages_of_a_scene_name_the_parameter(parameter, path, job):
     assert str(refused.value).startswith(f"{path}: the function failed on an array of theta2")
 
 
-def test_angles_that_are_held_need_no_spline():
+def test_known_angles_need_no_spline():
     held = over_angles([1.0, 2.0], [30.0, 70.0])
-    assert brought(held, [70.0, 30.0, 70.0]).tolist() == [2.0, 1.0, 2.0]
+    assert sampled_torque(held, [70.0, 30.0, 70.0]).tolist() == [2.0, 1.0, 2.0]
 
 
 @pytest.mark.parametrize(
@@ -297,7 +299,7 @@ def test_angles_that_are_held_need_no_spline():
         (CubicSpline([0.0, 200.0, 360.0, 600.0, 720.0], [1.0, 5.0, 4.0, 2.0, 1.0]), 720.0),
     ],
 )
-def test_a_function_that_takes_two_turns_makes_the_cycle_four_stroke(function, period):
+def test_a_function_with_a_period_of_two_turns_sets_the_cycle(function, period):
     scene = replace(ls.example("press"), loads=[ls.Load("rocker", torque=function)])
     assert scene.period == period
     cycle = ls.sweep(scene, 8)
@@ -307,7 +309,7 @@ def test_a_function_that_takes_two_turns_makes_the_cycle_four_stroke(function, p
 
 @pytest.mark.parametrize("function", [lambda theta2: 10.0 * np.sin(theta2), np.cos, lambda theta2: 0.1 * theta2])
 @pytest.mark.parametrize("parameter", ["omega2", "torque"])
-def test_a_function_that_does_not_come_round_is_refused(function, parameter):
+def test_a_function_that_is_not_periodic_is_refused(function, parameter):
     (line,) = refusal(scene, **{parameter: function})
     path = {"torque": "loads[2].torque"}.get(parameter, parameter)
     first, turned, twice = (f"{function(angle):.6g}" for angle in (0.0, 360.0, 720.0))
@@ -320,12 +322,12 @@ def test_a_function_that_does_not_come_round_is_refused(function, parameter):
 @pytest.mark.parametrize(
     "name", ["theta", "Theta2", "theta_2", "THETA", "θ", "θ₂", "theta2 [deg]", "theta-2", "theta2_degrees"]
 )
-def test_names_like_that_of_the_index_are_asked_about(name):
+def test_dims_named_almost_like_theta2_are_refused(name):
     (line,) = refusal(scene, torque=xr.DataArray([1.0, 2.0], dims=name))
     assert line == f'loads[2].torque has a dimension "{name}": rename it; did you mean "theta2"?'
 
 
-def test_names_like_that_of_the_position_on_a_loop_are_asked_about():
+def test_dims_named_almost_like_theta_of_a_loop_are_refused():
     (line,) = refusal(replace, ls.example("loop"), thrust=xr.DataArray([1.0, 2.0], dims="theta_2"))
     assert line == 'thrust has a dimension "theta_2": rename it; did you mean "theta"?'
 

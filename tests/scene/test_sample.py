@@ -1,4 +1,4 @@
-"""sample: what is drawn is as even, as normal and as repeatable as it says; scene_at: one design is that design."""
+"""sample draws even, normal and repeatable designs; scene_at selects one of them."""
 
 import math
 import re
@@ -20,8 +20,8 @@ RANGE = {"coupler.length": (0.2, 0.24)}
 EVEN = [method for method in METHODS if method != "random"]
 
 
-def drawn(given, n=4096, path="coupler.length", scene=PRESS, **options) -> np.ndarray:
-    return ls.sample(scene, {path: given}, n=n, **options).arrays[path].values
+def drawn(distribution, n=4096, path="coupler.length", scene=PRESS, **options) -> np.ndarray:
+    return ls.sample(scene, {path: distribution}, n=n, **options).arrays[path].values
 
 
 def refused(*arguments, **options) -> list[str]:
@@ -39,9 +39,9 @@ def test_every_number_can_be_replaced_by_its_path_and_nothing_else_changes(name)
     for path, value, kind in numbers(scene):
         if isinstance(value, float) and kind:
             other = replaced(scene, {path: value * 1.001 + 1e-9})
-            found = {at: number for at, number, _ in numbers(other)}
-            assert found.pop(path) == value * 1.001 + 1e-9
-            assert found == {at: number for at, number, _ in numbers(scene) if at != path}
+            result = {at: number for at, number, _ in numbers(other)}
+            assert result.pop(path) == value * 1.001 + 1e-9
+            assert result == {at: number for at, number, _ in numbers(scene) if at != path}
     assert replaced(scene, {}) is scene
 
 
@@ -56,8 +56,8 @@ def test_paths_reach_links_loads_springs_and_cycles():
     assert engine.loads[0].pressure.compression_ratio == 9.0
 
 
-def test_numbers_are_put_in_together():
-    """One after the other they would not close: 0.08 and 0.2 with a coupler of 2 m, or a ground of 2 m."""
+def test_several_numbers_are_replaced_together():
+    """One at a time, a coupler of 2 m or a ground of 2 m would not close with links of 0.08 and 0.2 m."""
     assert replaced(PRESS, {"coupler.length": 2.0, "ground": 2.0}).mechanism.ground == 2.0
     with pytest.raises(ValueError, match="longer"):
         replaced(PRESS, {"coupler.length": 2.0})
@@ -106,11 +106,11 @@ def test_a_normal_has_its_mean_deviation_and_tails(method):
         assert np.mean(abs(away) < most) == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / 8192))
 
 
-def test_a_normal_without_a_mean_is_around_the_scenes_own_value():
+def test_a_normal_without_a_mean_uses_the_scenes_own_value():
     assert drawn(ls.Normal(deviation="0.2 mm")) == pytest.approx(drawn(ls.Normal("22 cm", 2e-4)), rel=1e-15)
 
 
-def test_a_normal_within_so_many_deviations():
+def test_a_normal_truncated_by_within():
     values = drawn(ls.Normal(0.22, 0.001, within=2))
     assert abs(values - 0.22).max() <= 0.002
     # the variance of a normal cut at ±2: 1 − 2·2φ(2)/(2Φ(2) − 1)
@@ -119,13 +119,13 @@ def test_a_normal_within_so_many_deviations():
     assert values.std() == pytest.approx(0.001 * math.sqrt(variance), rel=0.01)
 
 
-def test_a_tolerance_is_even_between_its_limits_around_the_own_value():
+def test_a_tolerance_is_uniform_around_the_scenes_own_value():
     values = drawn(ls.Tolerance("-0.1 mm", "0.3 mm"))
     assert 0.2199 < values.min() < 0.21991 and 0.22029 < values.max() < 0.2203
     assert values.mean() == pytest.approx(0.2201, abs=1e-6)
 
 
-def test_around_a_value_with_dims_each_has_its_own_tolerance():
+def test_a_tolerance_around_a_value_with_dims():
     lengths = xr.DataArray([0.2, 0.22, 0.24], dims="variant")
     made = ls.sample(replaced(PRESS, {"coupler.length": lengths}), {"coupler.length": ls.Tolerance(-1e-4, 1e-4)}, n=64)
     length = made.mechanism.coupler.length
@@ -135,10 +135,10 @@ def test_around_a_value_with_dims_each_has_its_own_tolerance():
 
 @pytest.mark.parametrize("values", [[100, 150], ["1000 rpm", 100, 150.0], np.array([1.0, 2.0, 3.0, 4.0, 5.0])])
 def test_values_of_a_list_are_equally_likely(values):
-    found, counts = np.unique(
+    levels, counts = np.unique(
         drawn(values if isinstance(values, np.ndarray) else list(values), path="omega2"), return_counts=True
     )
-    assert len(found) == len(values)
+    assert len(levels) == len(values)
     assert counts.max() - counts.min() <= 2  # of 4096, by Sobol
 
 
@@ -166,7 +166,7 @@ def test_the_same_seed_gives_the_same_designs():
 
 
 @pytest.mark.parametrize("n", [1, 3, 1000, 100_000])
-def test_any_number_of_designs_is_quiet(n):
+def test_any_number_of_designs_gives_no_warning(n):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         made = ls.sample(PRESS, {**RANGE, "omega2": ls.Normal(30, 1)}, n=n)
@@ -174,7 +174,7 @@ def test_any_number_of_designs_is_quiet(n):
     assert made.omega2.design.values.tolist() == list(range(n))
 
 
-def test_a_hundred_thousand_of_three_kinds():
+def test_a_hundred_thousand_designs_of_three_distributions():
     coupler, rocker = ls.Link(0.22, 0.7, 3e-3, 0.11), ls.Link(0.18, 0.5, 2e-3, 0.09)
     scene = ls.Scene(ls.FourBar(ls.Link(0.08, 0.2, 1e-4), coupler, rocker, 0.2), omega2=100.0)
     may_be = {"coupler.length": (0.1, 0.3), "rocker.cg_angle": ls.Normal(0, 2), "omega2": [100, 150]}
@@ -185,7 +185,7 @@ def test_a_hundred_thousand_of_three_kinds():
     assert (made.omega2 == 150.0).mean() == pytest.approx(0.5, abs=1e-3)
 
 
-def test_chance_may_draw_0(monkeypatch):
+def test_a_normal_is_finite_where_the_uniform_draw_is_0(monkeypatch):
     """Where a normal would be −∞; it stays within the finest step of Sobol points, 6.2 deviations."""
     zeros = SimpleNamespace(random=np.zeros)
     monkeypatch.setattr(np.random, "default_rng", lambda seed: zeros)
@@ -211,17 +211,18 @@ def test_derived_numbers_of_a_bar_follow():
         ("loop", {"speed": ("90 km/h", "400 km/h"), "radius": (20, 30), "thrust": [1e4, 2e4]}),
     ],
 )
-def test_every_machine(name, may_be):
+def test_samples_of_every_machine(name, may_be):
     scene = ls.example(name)
     made = ls.sample(scene, may_be, n=4)
-    found = ls.peaks(made, theta2=12)
-    assert found.status.sizes == {"design": 4} or not found.status.dims
-    assert set(found.coords) >= {"design", *may_be}
-    assert equal(ls.peaks(ls.scene_at(found, design=3), theta2=12), found.isel(design=3))
+    grid = {scene.mechanism.index: 12}
+    peaks = ls.peaks(made, **grid)
+    assert peaks.status.sizes == {"design": 4} or not peaks.status.dims
+    assert set(peaks.coords) >= {"design", *may_be}
+    assert equal(ls.peaks(ls.scene_at(peaks, design=3), **grid), peaks.isel(design=3))
 
 
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")  # few angles, through a spline all the same
-def test_around_a_load_over_the_revolution():
+def test_a_tolerance_around_a_load_over_the_angle():
     torque = xr.DataArray([1.0, 2.0, 3.0], {"theta2": [0.0, 120.0, 240.0]}, "theta2")
     scene = replaced(PRESS, {"loads[2].torque": torque})
     made = ls.sample(scene, {"loads[2].torque": ls.Tolerance(-0.5, 0.5)}, n=4)
@@ -241,7 +242,7 @@ def test_dims_of_the_scene_stay_and_another_dim_may_be_named():
 
 
 @pytest.mark.parametrize(
-    ("parameters", "said"),
+    ("parameters", "message"),
     [
         ({"coupler.lenght": (1, 2)}, 'parameters: nothing is named \'coupler.lenght\'; did you mean "coupler.length"?'),
         ({"loads[0].torque": (1, 2)}, "parameters: nothing is named 'loads[0].torque'; did you mean \"loads"),
@@ -262,9 +263,9 @@ def test_dims_of_the_scene_stay_and_another_dim_may_be_named():
         ({"speed": (1, 2)}, "parameters: nothing is named 'speed'"),
     ],
 )  # fmt: skip
-def test_a_parameter_that_is_none(parameters, said):
+def test_refused_parameters(parameters, message):
     (line,) = refused(PRESS, parameters, n=8)
-    assert line.startswith(said), line
+    assert line.startswith(message), line
 
 
 def test_all_problems_at_once():
@@ -274,7 +275,7 @@ def test_all_problems_at_once():
     assert 'did you mean "sobol"' in lines[2]
 
 
-def test_a_dimension_that_the_scene_has_already():
+def test_an_existing_dimension_is_refused():
     made = ls.sample(PRESS, RANGE, n=8)
     (line,) = refused(made, {"omega2": (1, 2)}, n=8)
     assert line.startswith("dim = 'design': the scene has this dimension already; give another name")
@@ -308,7 +309,7 @@ def equal(one: xr.Dataset, other: xr.Dataset) -> bool:
     return all(one[name].values.tobytes() == other[name].values.tobytes() for name in one.data_vars)
 
 
-def test_a_design_as_a_scene_of_its_own_gives_the_same_bits():
+def test_scene_at_gives_equal_bits():
     made = ls.sample(PRESS, MANY, n=32)
     study, worst = ls.sweep(made, theta2=36), ls.peaks(made, theta2=36)
     for k in (0, 17, 31):
@@ -350,11 +351,11 @@ def test_several_dims_by_label_by_number_and_by_position():
         assert scene.mechanism.rocker.density == 8000.0
         assert scene.loads[1].torque == 3.0
         assert scene.loads[0].force[0].values == pytest.approx(3.0, rel=1e-14)
-        found = ls.peaks(scene, of=["F32"], theta2=36).F32_peak
-        assert float(found) == float(study.F32_peak.sel(branch="crossed", steel="heavy").isel(crank_length=1, case=2))
+        result = ls.peaks(scene, of=["F32"], theta2=36).F32_peak
+        assert float(result) == float(study.F32_peak.sel(branch="crossed", steel="heavy").isel(crank_length=1, case=2))
 
 
-def test_dims_that_are_not_named_stay():
+def test_dims_not_selected_are_kept():
     scene = ls.scene_at(ls.peaks(grid(), of=["F32"], theta2=8), steel="light")
     assert {dim for array in scene.arrays.values() for dim in array.dims} == {"crank_length", "case", "theta2"}
     assert scene.mechanism.branch == "both"
@@ -370,7 +371,7 @@ def test_a_design_chosen_by_xarray():
 
 
 @pytest.mark.parametrize(
-    ("where", "said"),
+    ("where", "message"),
     [
         ({"desing": 1}, 'desing: no dimension of the designs is named so; did you mean "design"?'),
         ({"theta2": 90.0}, "theta2: no dimension of the designs is named so; there are design"),
@@ -381,16 +382,16 @@ def test_a_design_chosen_by_xarray():
         ({"design": "best"}, "design = 'best': must be one of its 8 labels, of which the first is 0"),
     ],
 )
-def test_labels_that_are_not_there(where, said):
+def test_missing_labels_are_refused(where, message):
     made = ls.sample(PRESS, RANGE, n=8)
     for study in (made, ls.sweep(made, theta2=8, outputs=["theta4"])):
         with pytest.raises(ValueError) as error:  # noqa: PT011
             ls.scene_at(study, **where)
-        assert str(error.value).startswith(said)
+        assert str(error.value).startswith(message)
 
 
-def test_a_design_of_what_is_no_study():
-    with pytest.raises(ValueError, match="study = 3: must be a Dataset of linksweep, or a Scene"):
+def test_scene_at_refuses_results_without_designs():
+    with pytest.raises(ValueError, match="ds = 3: must be a Dataset of linksweep, or a Scene"):
         ls.scene_at(3, design=1)
     with pytest.raises(ValueError, match="holds no scene"):
         ls.scene_at(xr.Dataset(), design=1)

@@ -1,4 +1,4 @@
-"""Scene files: what is written is what is read, to the bit, and one reading names all that is wrong, by line."""
+"""Scene files round-trip to the bit, and one reading reports all errors with their lines."""
 
 import dataclasses
 import re
@@ -73,14 +73,14 @@ LABELLED = xr.DataArray([[0.1 + 0.2, 0.3]], {"case": ["a [1,]"], "b": [1, 2]}, (
 OVER_ANGLE = xr.DataArray([1.0, 2.0, 1 / 3], {"theta2": [0, 90, 180]}, "theta2")
 
 
-def test_a_file_is_the_scene_of_the_constructors(tmp_path):
+def test_a_file_equals_the_scene_of_the_constructors(tmp_path):
     path = tmp_path / "press.toml"
     path.write_text(PRESS)
     assert read_scene(path) == SCENE
     assert read_scene(str(path)) == SCENE
 
 
-def test_a_file_of_an_editor_that_marks_utf8(tmp_path):
+def test_a_file_with_a_byte_order_mark(tmp_path):
     path = tmp_path / "press.toml"
     path.write_bytes(b"\xef\xbb\xbf" + PRESS.replace("\n", "\r\n").encode())
     assert read_scene(path) == SCENE
@@ -105,7 +105,7 @@ def test_a_file_of_an_editor_that_marks_utf8(tmp_path):
         ),
     ],
 )
-def test_what_is_written_is_read_to_the_bit(scene):
+def test_scenes_round_trip_to_the_bit(scene):
     assert parse_scene(write_scene(scene)) == scene
     text = write_scene(scene, elsewhere=scene.arrays)
     assert parse_scene(text, arrays=scene.arrays) == scene
@@ -123,7 +123,7 @@ def test_arrays_are_referred_to_by_their_paths():
         parse_scene(text, "saved.nc", arrays={})
 
 
-def test_a_function_is_written_as_samples_that_a_spline_joins_to_it():
+def test_a_function_is_written_as_samples_of_a_spline():
     def pushed(theta2):  # a half sine: two kinks
         return 500.0 * np.maximum(0.0, np.sin(np.radians(theta2 - 77.7)))
 
@@ -133,7 +133,7 @@ def test_a_function_is_written_as_samples_that_a_spline_joins_to_it():
     np.testing.assert_allclose(again.values, pushed(grid.angles), rtol=0.0, atol=500.0 * ACCURACY)
 
 
-def test_the_text_says_where_no_samples_stand_for_a_function():
+def test_the_text_notes_functions_that_samples_do_not_represent():
     step = Load("rocker", torque=lambda theta2: np.where(np.mod(theta2, 360.0) < 180.0, 0.0, 5.0))
     scene = Scene(FOUR_BAR, omega2=1.0, loads=[step])
     with pytest.raises(
@@ -142,7 +142,7 @@ def test_the_text_says_where_no_samples_stand_for_a_function():
         parse_scene(write_scene(scene), "file")
 
 
-def test_written_text_is_for_people():
+def test_written_text_is_readable():
     text = write_scene(SCENE)
     assert "gravity = [0.0, -9.81]\n" in text
     assert '[mechanism.coupler]\ntype = "Link"\nlength = 0.22\nmass = 0.68\n' in text
@@ -265,7 +265,7 @@ def test_an_error_names_line_path_and_remedy(old, new, line):
     assert old in PRESS
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         parse_scene(PRESS.replace(old, new, 1), "scene.toml")
-    reported = [found for found in str(refused.value).splitlines() if "elsewhere" not in found]
+    reported = [result for result in str(refused.value).splitlines() if "elsewhere" not in result]
     assert len(reported) == 1
     assert reported[0].startswith("scene.toml" + line)
 
@@ -286,7 +286,7 @@ def test_an_error_names_line_path_and_remedy(old, new, line):
         ("mechanism = 3", r":1: mechanism = 3: write a table \[mechanism\]"),
     ],
 )
-def test_text_that_is_no_scene_at_all(text, message):
+def test_text_that_is_not_a_scene(text, message):
     with pytest.raises(ValueError, match="(?m)^scene.toml" + message):
         parse_scene(text, "scene.toml")
 
@@ -302,7 +302,7 @@ def test_files_that_cannot_be_read(tmp_path):
         read_scene(tmp_path)
 
 
-def test_lines_are_found_however_the_toml_is_laid_out():
+def test_line_numbers_in_every_layout_of_toml():
     text = '''\
 # [mechanism.crank]
 "omega2" = 3  # omega2 = 4
@@ -336,8 +336,8 @@ values = [1,
 '''
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         parse_scene(text, "f")
-    found = [re.match(r"f:(\d+): ([\w.\[\]]*\w\]?)", line).groups() for line in str(refused.value).splitlines()]
-    assert found == [
+    result = [re.match(r"f:(\d+): ([\w.\[\]]*\w\]?)", line).groups() for line in str(refused.value).splitlines()]
+    assert result == [
         ("3", "gravity[2]"),
         ("8", "ground"),
         ("11", "crank.length"),
@@ -358,7 +358,7 @@ true; 1; -1; 0; nan; ""; "5 N"; "8 cm"; "crank"; []; [1]; [1, 2]; [[1], [2, 3]];
 
 
 @pytest.mark.parametrize("number", range(1, PRESS.count("\n") + 1))
-def test_whatever_stands_in_a_line_gives_a_scene_or_messages(number):
+def test_a_changed_line_gives_a_scene_or_messages(number):
     lines = PRESS.splitlines()
     key = lines[number - 1].partition(" =")[0]
     for junk in re.split(r"; |\n", JUNK.strip()):

@@ -1,4 +1,4 @@
-"""Springs and dampers: hand numbers, 60-digit arithmetic, energy, bits."""
+"""Springs and dampers: numbers by hand, 60-digit arithmetic, energy, bits."""
 
 import re
 from dataclasses import replace
@@ -27,7 +27,7 @@ MECHANISMS = {"four-bar": FOUR_BAR, "slider-crank": SLIDER_CRANK, "inverted": IN
 
 
 def all_kinds(mechanism):
-    """A spring, a damper and their like for turning between all sorts of links."""
+    """Return springs and dampers, linear and torsional, between several pairs of links."""
     crank, middle, last = mechanism.links
     return [
         ls.Spring(("ground", 0.3, 0.1), (middle, 0.1, 15.0), rate=2000.0, free_length=0.05),
@@ -86,8 +86,8 @@ BY_HAND = [
 @pytest.mark.parametrize(("action", "expected"), BY_HAND)
 def test_by_hand(action, expected):
     still = ls.Scene(PARALLELOGRAM, omega2=2.0, loads=action)
-    found = ls.sweep(still, theta2=[90.0], outputs=list(expected))
-    assert {name: float(found[name].squeeze()) for name in expected} == pytest.approx(expected, abs=1e-13)
+    cycle = ls.sweep(still, theta2=[90.0], outputs=list(expected))
+    assert {name: float(cycle[name].squeeze()) for name in expected} == pytest.approx(expected, abs=1e-13)
 
 
 def test_a_spring_of_no_length_has_no_force():
@@ -99,11 +99,11 @@ def test_a_spring_of_no_length_has_no_force():
     assert one.status == 0
 
 
-# ---- the judge: springs and dampers as loads that it is told at each angle, in 60 digits -----
+# ---- the reference: springs and dampers as loads evaluated at each angle, in 60 digits -----
 
 
-def place(judge, move, end):
-    """Where an end is and how fast it goes."""
+def place(reference, move, end):
+    """Return the position and velocity of an end."""
     if end[0] == "ground":
         return mp.mpc(*end[1:]), mp.mpc(0)
     link = end[0]
@@ -111,10 +111,10 @@ def place(judge, move, end):
     return point, move.vG[link] + 1j * move.omega[link] * (point - move.G[link])
 
 
-def as_loads(judge, move, action):
-    """What an action comes to at this position: loads on its moving links."""
+def as_loads(reference, move, action):
+    """Return the loads of an action on its moving links."""
     if isinstance(action, ls.Spring | ls.Damper):
-        (p, vp), (q, vq) = (place(judge, move, end) for end in (action.from_, action.to))
+        (p, vp), (q, vq) = (place(reference, move, end) for end in (action.from_, action.to))
         unit = (q - p) / abs(q - p)
         if isinstance(action, ls.Spring):
             pull = mp.mpf(action.rate) * (abs(q - p) - mp.mpf(action.free_length)) * unit
@@ -132,11 +132,11 @@ def as_loads(judge, move, action):
     return [references.LoadData(link, torque=M) for link, M in ends if link != "ground"]
 
 
-def random_actions(rng, judge, data):
-    """Forces and torques on the scale of the inertial ones, between any two links."""
+def random_actions(rng, reference, data):
+    """Draw actions between any two links, with forces and torques on the scale of the inertial ones."""
     crank, scale = data.crank, data.crank.length
     force = crank.mass * data.omega2**2 * scale
-    links = ["ground", *judge.LINKS]
+    links = ["ground", *reference.LINKS]
 
     def end(link):
         x, y, r = (float(rng.uniform(-2, 2)) * scale for _ in "xyr")
@@ -160,52 +160,52 @@ def random_actions(rng, judge, data):
 
 @cache
 def cases():
-    """Random scenes of both kinds with all four kinds of action, and a few angles of each."""
+    """Draw scenes of two machines with all four kinds of action, and a few angles of each."""
     rng = np.random.default_rng(11)
-    found = []
+    result = []
     for k in range(80):
-        judge, given, free = oracle, {}, {}
+        reference, inputs, free = oracle, {}, {}
         if k % 2:
-            judge, given, free = oracle_slider_crank, {"friction": float(rng.uniform(0, 0.3))}, {"jammed": False}
-        data = judge.random_data(rng, loads=1, **given)
-        angles = [judge.random_theta2(rng, data, **free) for _ in range(3)]
-        found.append((judge, data, random_actions(rng, judge, data), angles))
-    return found
+            reference, inputs, free = oracle_slider_crank, {"friction": float(rng.uniform(0, 0.3))}, {"jammed": False}
+        data = reference.random_data(rng, loads=1, **inputs)
+        angles = [reference.random_theta2(rng, data, **free) for _ in range(3)]
+        result.append((reference, data, random_actions(rng, reference, data), angles))
+    return result
 
 
-def with_actions(judge, data, actions):
-    plain = judge.to_scene(data)
+def with_actions(reference, data, actions):
+    plain = reference.to_scene(data)
     return replace(plain, loads=(*plain.loads, *actions))
 
 
-def unknowns(judge, data):
-    return (*(force + axis for force in references.FORCES for axis in "xy"), judge.torque_name(data))
+def unknowns(reference, data):
+    return (*(force + axis for force in references.FORCES for axis in "xy"), reference.torque_name(data))
 
 
-def judged(judge, data, actions, theta2):
-    """The judge's results with the actions as loads."""
-    move = judge.motion(data, theta2)
-    loads = [load for action in actions for load in as_loads(judge, move, action)]
-    return judge.solve(replace(data, loads=(*data.loads, *loads)), theta2)
+def reference_solution(reference, data, actions, theta2):
+    """Return the reference solution with the actions as loads."""
+    move = reference.motion(data, theta2)
+    loads = [load for action in actions for load in as_loads(reference, move, action)]
+    return reference.solve(replace(data, loads=(*data.loads, *loads)), theta2)
 
 
-def test_agrees_with_the_judge():
+def test_agrees_with_the_reference():
     """Every unknown to 1e-11 of the largest force, or of that times the longest link."""
-    for judge, data, actions, angles in cases():
-        names = unknowns(judge, data)
-        cycle = ls.sweep(with_actions(judge, data, actions), theta2=angles, outputs=names)
+    for reference, data, actions, angles in cases():
+        names = unknowns(reference, data)
+        cycle = ls.sweep(with_actions(reference, data, actions), theta2=angles, outputs=names)
         assert not cycle.status.any()
         for k, theta2 in enumerate(angles):
-            result = judged(judge, data, actions, theta2)
-            force, torque = largest_force(result), judge.largest_torque(result, data)
+            result = reference_solution(reference, data, actions, theta2)
+            force, torque = largest_force(result), reference.largest_torque(result, data)
             for name in names:
                 error = abs(float(cycle[name][k]) - result[name]) / (torque if name[0] == "T" else force)
                 assert error < 1e-11, (name, theta2, data, actions)
 
 
 def test_dense_path_agrees_and_power_balances():
-    for judge, data, actions, angles in cases()[:40]:
-        loaded, names = with_actions(judge, data, actions), unknowns(judge, data)
+    for reference, data, actions, angles in cases()[:40]:
+        loaded, names = with_actions(reference, data, actions), unknowns(reference, data)
         fast = ls.sweep(loaded, theta2=angles, outputs=[*names, "power_residual"])
         dense = ls.sweep(loaded, theta2=angles, outputs=names, solver="dense")
         assert abs(fast.power_residual).max() < 1e-12
@@ -215,7 +215,7 @@ def test_dense_path_agrees_and_power_balances():
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS)
-def test_any_mechanism_takes_them(mechanism):
+def test_springs_and_dampers_on_any_mechanism(mechanism):
     loaded = scene(mechanism, all_kinds(mechanism))
     cycle = ls.sweep(loaded, 90)
     dense = ls.sweep(loaded, 90, solver="dense")
@@ -228,8 +228,8 @@ def test_any_mechanism_takes_them(mechanism):
 
 
 @pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS)
-def test_a_spring_gives_back_what_it_takes(mechanism):
-    """Over a closed cycle: by its own power, and by what the drive does with and without it."""
+def test_a_spring_does_no_work_in_a_cycle(mechanism):
+    """Over a closed cycle, by its own power, and by the drive's work with and without it."""
     frictionless = replace(mechanism, friction=0.0) if mechanism.friction else mechanism
     springs = [load for load in all_kinds(mechanism) if isinstance(load, ls.Spring)]
     springs.append(ls.TorsionSpring("ground", mechanism.links[2], rate=5.0, free_angle=150.0))
@@ -242,8 +242,8 @@ def test_a_spring_gives_back_what_it_takes(mechanism):
         np.testing.assert_allclose(bare.power - own.power, own.load1_power, rtol=0, atol=1e-11 * float(peak))
 
 
-def test_a_damper_only_takes():
-    """Its tension goes as the length changes, and the drive makes up for what it takes."""
+def test_a_damper_dissipates():
+    """Its tension is proportional to the rate of length, and the drive supplies its loss."""
     damper = ls.Damper(("ground", 0.3, 0.1), ("coupler", 0.1, 15.0), coefficient=20.0)
     own = ls.sweep(scene(loads=damper), outputs=["load1_power", "load1_tension", "load1_length", "power"])
     harmonics = np.fft.fftfreq(720, 1 / 720)
@@ -254,7 +254,7 @@ def test_a_damper_only_takes():
     assert float((own.power - bare.power).mean()) == pytest.approx(-float(own.load1_power.mean()), rel=1e-10)
 
 
-def test_it_does_not_matter_which_end_comes_first():
+def test_swapped_ends_give_equal_results():
     def turned(load):
         other = {"free_angle": -load.free_angle} if isinstance(load, ls.TorsionSpring) else {}
         return replace(load, from_=load.to, to=load.from_, **other)
@@ -265,13 +265,13 @@ def test_it_does_not_matter_which_end_comes_first():
         np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-13 * float(abs(one[name]).max()))
 
 
-def test_the_peak_beside_the_fold_of_a_torsion_spring():
+def test_the_peak_beside_the_jump_of_a_torsion_spring():
     """Weightless links: the torque rises to rate·180 degrees at 250 degrees and falls to minus that."""
     spring = ls.TorsionSpring("ground", "crank", rate=2.0, free_angle=70.0)
-    found = ls.peaks(ls.Scene(PARALLELOGRAM, omega2=1.0, loads=spring), of=["T12"])
-    assert float(found.T12_max) == pytest.approx(2.0 * np.pi, rel=1e-8) and found.T12_max <= 2.0 * np.pi
-    assert float(found.T12_min) == pytest.approx(-2.0 * np.pi, rel=1e-8)
-    assert float(found.T12_max_at) == pytest.approx(250.0) and float(found.T12_min_at) == pytest.approx(250.0)
+    peaks = ls.peaks(ls.Scene(PARALLELOGRAM, omega2=1.0, loads=spring), of=["T12"])
+    assert float(peaks.T12_max) == pytest.approx(2.0 * np.pi, rel=1e-8) and peaks.T12_max <= 2.0 * np.pi
+    assert float(peaks.T12_min) == pytest.approx(-2.0 * np.pi, rel=1e-8)
+    assert float(peaks.T12_max_at) == pytest.approx(250.0) and float(peaks.T12_min_at) == pytest.approx(250.0)
 
 
 # ---- numbers, bits, plans -----
@@ -284,8 +284,8 @@ def test_arctangent_to_two_units_in_the_last_place():
     y[:5000], x[:5000] = rng.choice([-1.0, 1.0], (2, 5000))
     y[:5000] *= np.tan(np.pi / 8) * (1 + rng.uniform(-1, 1, 5000) * 1e-3)  # where one series takes over from the other
     exact = [mp.atan2(mp.mpf(b), mp.mpf(a)) for b, a in zip(y, x, strict=True)]
-    found = [arctangent(float(b), float(a)) for b, a in zip(y, x, strict=True)]
-    errors = [abs(value - z) / np.spacing(abs(float(z))) for value, z in zip(found, exact, strict=True)]
+    result = [arctangent(float(b), float(a)) for b, a in zip(y, x, strict=True)]
+    errors = [abs(value - z) / np.spacing(abs(float(z))) for value, z in zip(result, exact, strict=True)]
     assert max(errors) < 2.0
 
 
@@ -310,7 +310,7 @@ def planned(loaded, *names):
     return " ".join(plan(loaded.table, names, loaded.inputs.forms).functions)
 
 
-def test_no_spring_plans_no_spring():
+def test_a_scene_without_springs_plans_no_spring():
     bare, sprung = scene(loads=ls.Load("rocker", torque=1.0)), scene(loads=all_kinds(FOUR_BAR))
     made = re.compile("line_direction|spring_tension|twist|turning|load")
     assert set(made.findall(planned(bare, *FOUR_BAR.unknowns("crank")))) == set()
@@ -335,7 +335,7 @@ def test_design_dims():
 
 
 @pytest.mark.parametrize("name", ["tension", "length", "twist", "to_torque", "power"])
-def test_scales_as_its_unit_says(name):
+def test_results_scale_with_the_units(name):
     """Other units of length, mass and time by powers of two: the same numbers to the bit."""
     long, heavy, slow = 4.0, 8.0, 0.5
     torque = heavy * long**2 / slow**2

@@ -41,7 +41,7 @@ def force_of(scene, theta2) -> np.ndarray:
 
 
 def position(theta2, offset=0.01, sign=1.0):
-    """Of the slider along its guide, by the closed form of an offset slider-crank."""
+    """Return the slider's position along its guide, by the closed form of an offset slider-crank."""
     turned = np.radians(np.asarray(theta2) - 20.0)
     return A * np.cos(turned) + sign * np.sqrt(B**2 - (offset - A * np.sin(turned)) ** 2)
 
@@ -67,12 +67,12 @@ def test_a_press_pushes_over_the_last_12_mm_whatever_the_offset(offset, branch, 
     step = np.radians(1e-4)
     rate = (position(theta2 + 1e-4, offset, sign) - position(theta2 - 1e-4, offset, sign)) / (2 * step) * omega2
     expected = np.where((end - sign * x < 0.012) & (sign * rate > 0.0), -PUSH, 0.0)
-    found = force_of(press(machine(offset, branch), omega2=omega2), theta2)
-    np.testing.assert_array_equal(found, expected)
+    force = force_of(press(machine(offset, branch), omega2=omega2), theta2)
+    np.testing.assert_array_equal(force, expected)
     assert 0.02 < np.mean(expected != 0.0) < 0.3
 
 
-def test_opening_is_the_other_way_and_none_is_both():
+def test_stroke_opening_closing_and_both():
     theta2 = np.arange(360) + 0.5
     closing, opening, both = (force_of(press(while_=way), theta2) for way in ("closing", "opening", None))
     np.testing.assert_array_equal(closing + opening, both)
@@ -82,41 +82,41 @@ def test_opening_is_the_other_way_and_none_is_both():
 
 
 @pytest.mark.parametrize("kind", ["linear", "pchip", None])
-def test_a_table_over_the_position_goes_on_as_it_says_and_holds_beyond_its_ends(kind):
+def test_a_table_over_the_position_interpolates_and_holds_its_end_values(kind):
     theta2 = np.arange(0.0, 360.0, 3.7)
     positions, values = [0.11, 0.13, 0.15, 0.17], [0.0, 100.0, 100.0, -50.0]
-    found = force_of(
+    force = force_of(
         press(force=table(values, positions), over="slider.position", while_=None, interpolation=kind), theta2
     )
     x = position(theta2)
     if kind == "pchip":
-        assert found.min() >= -50.0 - 1e-9
-        assert found.max() <= 100.0 + 1e-9
+        assert force.min() >= -50.0 - 1e-9
+        assert force.max() <= 100.0 + 1e-9
         at_125 = force_of(
             press(force=table(values, positions), over="slider.position", while_=None), [angle_at(0.13, 0.01, 1)]
         )
         np.testing.assert_allclose(at_125, 100.0, atol=1e-6)
     else:
-        np.testing.assert_allclose(found, np.interp(x, positions, values), atol=1e-9)
-    np.testing.assert_allclose(found[x < 0.11], 0.0, atol=1e-9)
-    np.testing.assert_allclose(found[x > 0.17], -50.0, atol=1e-9)
+        np.testing.assert_allclose(force, np.interp(x, positions, values), atol=1e-9)
+    np.testing.assert_allclose(force[x < 0.11], 0.0, atol=1e-9)
+    np.testing.assert_allclose(force[x > 0.17], -50.0, atol=1e-9)
 
 
-def test_a_function_of_the_position_is_the_table_of_its_values():
+def test_a_function_of_the_position_equals_the_table_of_its_values():
     jump = lambda left: np.where(left < 0.012, -PUSH, 0.0)  # noqa: E731
     by_function = press(force=jump, interpolation=None, breaks=[0.012])
     theta2 = np.arange(0.0, 360.0, 0.3)
     np.testing.assert_array_equal(force_of(by_function, theta2), force_of(press(), theta2))
-    found, expected = (ls.peaks(scene, OF) for scene in (by_function, press()))
+    peaks, expected = (ls.peaks(scene, OF) for scene in (by_function, press()))
     for name in expected.data_vars:
-        assert float(found[name]) == pytest.approx(float(expected[name]), rel=1e-12)
+        assert float(peaks[name]) == pytest.approx(float(expected[name]), rel=1e-12)
 
 
-def test_a_constant_force_acts_on_its_way_alone():
+def test_a_constant_force_acts_on_one_stroke():
     theta2 = np.arange(0.0, 360.0, 0.7)
     v = ls.sweep(press(), theta2, of=["v_slider"]).v_slider.values
-    found = force_of(press(force=-300.0, over="slider.position", interpolation=None), theta2)
-    np.testing.assert_array_equal(found, np.where(v > 0.0, -300.0, 0.0))
+    force = force_of(press(force=-300.0, over="slider.position", interpolation=None), theta2)
+    np.testing.assert_array_equal(force, np.where(v > 0.0, -300.0, 0.0))
 
 
 def test_a_torque_follows_the_rocker():
@@ -131,7 +131,7 @@ def test_a_torque_follows_the_rocker():
     np.testing.assert_allclose(cycle["loads[1].torque"].values, expected, atol=1e-9)
 
 
-def test_a_cylinder_works_while_it_extends():
+def test_a_cylinder_pushes_while_it_extends():
     arm = ls.example("quick-return").mechanism
     load = ls.Load("block", force=(-700.0, 0.0), frame="link", over="block.position", while_="extending")
     cycle = ls.sweep(ls.Scene(arm, omega2=5.0, loads=[load]), 360, of=["slide_velocity", "T12"])
@@ -143,27 +143,27 @@ def test_a_cylinder_works_while_it_extends():
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.01, -0.03])
-def test_peaks_are_those_of_the_same_load_over_the_angle_with_its_breaks(offset):
+def test_peaks_equal_those_of_a_load_over_the_angle_with_breaks(offset):
     """The push begins where 12 mm are left and ends at the dead centre, both in closed form."""
     first = angle_at(math.sqrt((A + B) ** 2 - offset**2) - 0.012, offset, -1)
     last = 20.0 + math.degrees(math.asin(offset / (A + B)))
     over_angle = lambda t: np.where(np.mod(t - first, 360.0) < np.mod(last - first, 360.0), -PUSH, 0.0)  # noqa: E731
     by_hand = ls.Scene(machine(offset), 10.0, loads=[ls.Load("slider", force=over_angle, breaks=[first, last])])
-    found, expected = ls.peaks(press(machine(offset)), OF), ls.peaks(by_hand, OF)
+    peaks, expected = ls.peaks(press(machine(offset)), OF), ls.peaks(by_hand, OF)
     for name in ("F32_peak", "T12_max", "T12_min", "T12_mean"):
-        assert float(found[name]) == pytest.approx(float(expected[name]), rel=1e-9), name
-    apart = abs(float(found.T12_max_at) - first % 360.0)
+        assert float(peaks[name]) == pytest.approx(float(expected[name]), rel=1e-9), name
+    apart = abs(float(peaks.T12_max_at) - first % 360.0)
     assert min(apart, 360.0 - apart) < 1e-6
 
 
 def test_the_mean_torque_does_the_work_of_the_push():
     """F·12 mm a turn, and nothing else does work: virtual work."""
     for branch, sign in (("open", 1.0), ("crossed", -1.0)):
-        found = ls.peaks(press(machine(0.02, branch), force=sign * LAST_12_MM), ["T12_mean"])
-        assert float(found.T12_mean) == pytest.approx(PUSH * 0.012 / (2.0 * np.pi), rel=1e-9)
+        peaks = ls.peaks(press(machine(0.02, branch), force=sign * LAST_12_MM), ["T12_mean"])
+        assert float(peaks.T12_mean) == pytest.approx(PUSH * 0.012 / (2.0 * np.pi), rel=1e-9)
     ramp = table([-PUSH, 0.0], [0.0, 0.012])  # falls in a straight line: half the work
-    found = ls.peaks(press(force=ramp, interpolation="linear"), ["T12_mean"])
-    assert float(found.T12_mean) == pytest.approx(0.5 * PUSH * 0.012 / (2.0 * np.pi), rel=1e-9)
+    peaks = ls.peaks(press(force=ramp, interpolation="linear"), ["T12_mean"])
+    assert float(peaks.T12_mean) == pytest.approx(0.5 * PUSH * 0.012 / (2.0 * np.pi), rel=1e-9)
 
 
 def test_power_balances():
@@ -179,8 +179,8 @@ def test_power_balances():
         ("quick-return", {"over": "block.position", "while_": "retracting"}, ("slide", 300.0)),
     ],
 )
-def test_every_corner_is_looked_at(name, words, drawn):
-    """Of other machines, too: both sides of each crank angle at which the load jumps, found here by bisection."""
+def test_exact_peaks_include_the_corners_of_stroke_loads(name, words, drawn):
+    """Evaluate other machines on both sides of each crank angle at which the load jumps, located by bisection."""
     quantity, force = drawn
     example = replace(ls.example(name), loads=[])
     fine = ls.sweep(example, 3600, of=[quantity])[quantity]
@@ -202,26 +202,26 @@ def test_a_study_of_offsets_is_each_design_by_itself():
     offsets = xr.DataArray([-0.03, 0.0, 0.02], dims="design")
     rods = xr.DataArray([0.12, 0.16], dims="rod")
     many = ls.SliderCrank(ls.Link(A, 1.0, 1e-3), ls.Link(rods, 0.5, 1e-3), slider_mass=0.5, offset=offsets)
-    found = ls.peaks(press(many), [*OF, "F12_rms"])
+    peaks = ls.peaks(press(many), [*OF, "F12_rms"])
     cycle = ls.sweep(press(many), 90, of=["T12"])
     for i, j in np.ndindex(3, 2):
         mechanism = replace(many, offset=float(offsets[i]), rod=replace(many.rod, length=float(rods[j])))
         alone = ls.peaks(press(mechanism), [*OF, "F12_rms"])
         for name in alone.data_vars:
-            assert float(found[name].isel(design=i, rod=j)) == float(alone[name]), name
+            assert float(peaks[name].isel(design=i, rod=j)) == float(alone[name]), name
         np.testing.assert_array_equal(cycle.T12.isel(design=i, rod=j), ls.sweep(press(mechanism), 90, of=["T12"]).T12)
 
 
 def test_a_machine_that_moves_over_part_of_a_turn():
     short = machine(offset=0.11)
-    found = ls.peaks(press(short, force=table([-100.0, 0.0], [0.0, 0.005])), ["F14"])
-    assert int(found.status) in (1, 3)
+    peaks = ls.peaks(press(short, force=table([-100.0, 0.0], [0.0, 0.005])), ["F14"])
+    assert int(peaks.status) in (1, 3)
     cycle = ls.sweep(press(short), 360, of=["status", "F14"])
     assert set(cycle.status.values.tolist()) == {0, 1}
     np.testing.assert_array_equal(np.isnan(cycle.F14), cycle.status != 0)
 
 
-def test_shares_of_a_breakdown_add_up():
+def test_contributions_of_a_breakdown_add_up():
     shares = ls.breakdown(press(), "T12", theta2=[10.0, 100.0])
     whole = ls.sweep(press(), [10.0, 100.0], of=["T12"]).T12
     np.testing.assert_allclose(shares.T12.sum("source"), whole, rtol=1e-9)
@@ -252,7 +252,7 @@ interpolation = "step"
         'force = {csv = "p.csv", unit = "kN"}',
     ],
 )
-def test_a_scene_file_says_the_same(tmp_path, force):
+def test_stroke_loads_round_trip_through_scene_files(tmp_path, force):
     (tmp_path / "p.csv").write_text("position,P\n0,-50\n0.012,0\n")
     (tmp_path / "scene.toml").write_text(FILE + force + "\n")
     made = read_scene(tmp_path / "scene.toml")
@@ -261,16 +261,16 @@ def test_a_scene_file_says_the_same(tmp_path, force):
     assert parse_scene(write_scene(made)) == made
 
 
-def test_results_and_studies_hold_the_whole_load(tmp_path):
+def test_results_and_studies_store_the_whole_load(tmp_path):
     many = press(machine(xr.DataArray([0.0, 0.01, 0.02], dims="design")))
-    found = ls.study(many, tmp_path / "study.nc", of=["T12"])
+    study = ls.study(many, tmp_path / "study.nc", of=["T12"])
     assert ls.load_scene(tmp_path / "study.nc") == many
-    np.testing.assert_array_equal(found.T12_max, ls.peaks(many, ["T12"]).T12_max)
-    second = ls.scene_at(found, design=1)
-    assert float(ls.peaks(second, ["T12"]).T12_max) == float(found.T12_max[1])
+    np.testing.assert_array_equal(study.T12_max, ls.peaks(many, ["T12"]).T12_max)
+    second = ls.scene_at(study, design=1)
+    assert float(ls.peaks(second, ["T12"]).T12_max) == float(study.T12_max[1])
 
 
-def test_loads_are_told_apart():
+def test_different_stroke_loads_are_not_equal():
     made = [
         press(),
         press(while_="opening"),
@@ -282,7 +282,7 @@ def test_loads_are_told_apart():
     assert len({*made}) == len({scene_digest(one) for one in made}) == len(made)
 
 
-def test_a_function_of_a_position_cannot_be_kept_and_says_so(tmp_path):
+def test_a_function_of_the_position_cannot_be_stored(tmp_path):
     made = [press(force=lambda x, f=f: f * x, interpolation=None) for f in (1.0, 2.0)]
     assert scene_digest(made[0]) != scene_digest(made[1])
     with pytest.raises(ValueError, match=r"^loads\[1\] has a function of a position: give it as a DataArray"):
@@ -294,7 +294,7 @@ def test_a_function_of_a_position_cannot_be_kept_and_says_so(tmp_path):
         ls.load_scene(tmp_path / "peaks.nc")
 
 
-def test_the_report_says_what_it_follows():
+def test_the_report_names_the_position():
     assert "over slider.to_end, while closing" in page(press())
 
 
@@ -329,20 +329,20 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("words", "message"), REFUSED)
-def test_what_is_wrong_is_said(words, message):
+def test_refusals_of_stroke_loads(words, message):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         press(**words)
     assert str(refused.value).startswith(message)
 
 
-def test_a_position_is_that_of_one_branch():
+def test_a_position_needs_one_branch():
     with pytest.raises(
         ValueError, match=r"^loads\[1\].over = 'slider.to_end': is a position of one branch; give branch="
     ):
         press(machine(branch="both"))
 
 
-def test_a_function_that_fails_says_so():
+def test_a_function_that_fails_is_refused():
     with pytest.raises(ValueError, match=r"^loads\[1\].force\[1\]: the function failed on an array of positions"):
         ls.sweep(press(force=lambda x: 1.0 if x > 0.1 else 0.0, interpolation=None), 8)
     with pytest.raises(ValueError, match=r"^loads\[1\].force\[1\] = nan N .* must be finite"):

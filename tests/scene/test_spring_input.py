@@ -1,4 +1,4 @@
-"""Springs and dampers at the door: scene files, and what is refused."""
+"""Springs and dampers in scene files, and refused input."""
 
 import re
 from dataclasses import replace
@@ -78,7 +78,7 @@ def test_reads_from_a_file(table, expected):
         ('type = "TorsionDamper"\nfrom_ = "ground"\nto = "rocker"', 8, "loads[1].coefficient: missing"),
     ],
 )
-def test_a_file_with_a_slip_says_where(table, line, expected):
+def test_a_slip_in_a_file_is_refused_with_its_line(table, line, expected):
     with pytest.raises(ValueError, match=re.escape(f"scene:{line}: {expected}")):
         parse_scene(FILE + table)
 
@@ -108,11 +108,11 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("action", "expected"), REFUSED)
-def test_refuses(action, expected):
+def test_refusals_of_springs_and_dampers(action, expected):
     (line,) = refusal(scene, loads=action)
     assert line.startswith(expected)
 
 
-def test_a_free_length_is_no_point_to_be_turned():
+def test_a_free_length_is_not_rotated_as_a_point():
     (line,) = refusal(scene, loads=replace(SPRING, free_length=-0.1))
     assert "angle" not in line
