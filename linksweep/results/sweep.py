@@ -58,7 +58,7 @@ def sweep(
         The positions of a car in a loop, 0 at the bottom.
     of : str or iterable of str, optional
         Names of quantities, as `linksweep.quantities` lists them: only what they need is computed. By default the
-        kinematics and the unknown forces and torque.
+        kinematics, the unknown forces and torque, and the magnitudes of the pin forces.
     outputs : str or iterable of str, optional
         Another name of `of`.
     solver : {"fast", "superposed", "dense"}
@@ -114,8 +114,10 @@ def sweep(
 
 
 def default_names(scene: Scene) -> tuple[str, ...]:
-    """Return the names of the quantities that a sweep computes where none are given."""
-    return scene.mechanism.kinematics() + scene.mechanism.dynamics(scene.drive)
+    """Return the names of the quantities that a sweep computes by default: magnitudes of pin forces, too."""
+    mechanism = scene.mechanism
+    magnitudes = tuple(f"F{i}{j}" for i, j in mechanism.pins.values())
+    return mechanism.kinematics() + mechanism.dynamics(scene.drive) + magnitudes
 
 
 def _names(scene: Scene, word: str, names: list[str]) -> tuple[str, ...]:

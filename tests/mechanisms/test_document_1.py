@@ -101,11 +101,15 @@ EXACT_TO_FOUR_DECIMALS = {  # from the lengths, by others' exact arithmetic
 }
 
 
-def test_default_sweep_has_the_kinematics_and_the_nine_unknowns():
+def test_default_sweep_has_kinematics_the_nine_unknowns_and_magnitudes_of_pin_forces():
     at_45 = ls.sweep(scene(), theta2=[45.0]).isel(theta2=0)
-    assert list(at_45.data_vars) == [*(name for alike in ALIKE[:3] for name in alike), *UNKNOWNS, "status"]
+    kinematics = [name for alike in ALIKE[:3] for name in alike]
+    assert list(at_45.data_vars) == [*kinematics, *UNKNOWNS, "F12", "F32", "F43", "F14", "status"]
     for name, value in EXACT_TO_FOUR_DECIMALS.items():
         assert at_45[name].item() == pytest.approx(value, abs=0.5e-4), name
+    for pin in ("F12", "F32", "F43", "F14"):
+        x, y = (EXACT_TO_FOUR_DECIMALS[f"{pin}{axis}"] for axis in "xy")
+        assert at_45[pin].item() == pytest.approx(np.hypot(x, y), abs=0.5e-4 * np.sqrt(2)), pin
 
 
 # ---- the 9×9 beside the page -----

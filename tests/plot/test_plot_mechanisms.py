@@ -143,7 +143,8 @@ def test_forces_are_those_of_the_joints(cycles, name):
     for force in ("F12", "F32", "F43", "F14"):
         sizes = size_of(ds, force)
         (angle,), (value,) = line(ax, f"_peak {force}").get_data()
-        assert value == sizes.max() == sizes[ds.theta2.values == angle]
+        assert value == pytest.approx(sizes.max(), rel=4.5e-16, abs=0.0)
+        assert value == pytest.approx(sizes[ds.theta2.values == angle].item(), rel=4.5e-16, abs=0.0)
         said = next(row for text in texts(ax) for row in text.split("\n") if f"_{{{force[1:]}}}" in row)
         assert f"{np.format_float_positional(value, 4, unique=False, fractional=False).rstrip('.')} N" in said
 

@@ -342,7 +342,7 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
         ),
         (
             lambda: ls.plot.heat_map(grid(VALUES, np.full((3, 4), 2)), "F32_peak"),
-            "no design is ok and has a finite F32_peak (status: 12 cannot_assemble); to see what is finite",
+            "no design is ok and has a finite F32_peak (status: 12 cannot_assemble); to plot all that is finite",
         ),
         (
             lambda: ls.plot.heat_map(GRID.assign(word=GRID.F32_peak.astype(str)), "word"),
