@@ -208,7 +208,7 @@ def test_main_bearings_live_as_their_loads_let_them():
     [
         (lambda: ls.bearings(FOUR, {"A": ls.Bearing()}), "pins: nothing is named 'A'; there are main1, main2"),
         (lambda: ls.bearings(FOUR, theta2=[0.0, 90.0]), "theta2 = [0.0, 90.0]: must be a whole number"),
-        (lambda: ls.bearings(ls.MultiCylinder(ENGINE, [0])), "main_positions: nothing says where"),
+        (lambda: ls.bearings(ls.MultiCylinder(ENGINE, [0])), "main_positions: places of the main bearings are unknown"),
     ],
 )
 def test_refusals_of_main_bearings(call, message):
