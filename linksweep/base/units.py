@@ -3,11 +3,11 @@
 The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then its
 divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors, ``²``, ``**2`` for ``^2``.
 
-pint knows what the units are worth, but it does not get to see the text: alone it reads "Nm" as number/m,
-"1 1/2 in" as half an inch and "2,5 mm" as 25 mm. So a short list says which spellings each kind of quantity
-takes; all else is an error that tells what to write. The arithmetic is in fractions: where a unit is defined
-exactly the result is the correctly rounded float ("8 cm" is 0.08, to the bit). pint is slow to wake, so
-what it says of the units on the list is kept in the user's cache folder.
+pint defines the units, but never reads the text: alone it takes "Nm" for number/m, "1 1/2 in" for half an inch
+and "2,5 mm" for 25 mm. So a short list has the spellings that each kind of quantity may use; any other is an error
+that states what to write. The arithmetic is in fractions: where a unit is defined exactly the result is the
+correctly rounded float ("8 cm" is 0.08, to the bit). pint is slow to import, so its factors for the units on the
+list are stored in the user's cache folder.
 """
 
 from __future__ import annotations
@@ -67,10 +67,10 @@ LONGEST_TEXT, LONGEST_UNIT = 1000, 60
 """Characters that a number with its unit, and a unit, may have."""
 FINITE = "must be a finite number, at most 1.8e308"
 
-# What pint lacks. A blob is the inch's slug: 1 lbf gives it 1 in/s^2.
+# Units that pint lacks. A blob is the inch's slug: 1 lbf gives it 1 in/s^2.
 _NOT_IN_PINT = ("blob = lbf * s^2 / in", "rev = revolution")
 
-# What is often written for a unit of another kind, or of none: "ft lb" for a torque, "1/s" for rad/s.
+# Common slips for a unit of another kind, or of none: "ft lb" for a torque, "1/s" for rad/s.
 _MEANT = {r"\blbm?\b": "lbf", r"\bHz\b": "rev/s", r"^1/s\b": "rad/s", r"^[gG]$": "g0"}
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -91,7 +91,7 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
         A number passes through: it is in SI units already; a quantity of pint is converted. A text is one decimal
         number, a space, one unit.
     kind : str
-        What is measured: a key of `KINDS`.
+        Kind of the quantity: a key of `KINDS`.
     unit : str, optional
         The unit of plain numbers, in place of the SI unit.
 
@@ -103,7 +103,7 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
     Raises
     ------
     ValueError
-        When the text is not that, or the unit not one of this kind. The message says what to write.
+        For any other text, and for a unit of another kind. The message states what to write.
 
     Examples
     --------
@@ -244,7 +244,7 @@ def _meant(unit: str, spellings: Iterable[str]) -> str:
 
 
 def _factors(unit: str) -> frozenset[tuple[str, int]] | str:
-    """Take a unit apart, so that order does not matter: "ft lbf" is "lbf ft"; what is none stays as it is."""
+    """Return a unit's factors, so that order does not matter: "ft lbf" is "lbf ft"; a text that is no unit itself."""
     for symbol, plain in _SYMBOLS.items():
         unit = unit.replace(symbol, plain)
     unit = re.sub(r"\s*([/^])\s*", r"\1", unit.strip())
@@ -287,12 +287,12 @@ def _finite(number: Any) -> float:
 
 
 def _factor(spelling: str, kind: str) -> Fraction:
-    """Return what one such unit is in SI; pint's pi has 50 digits, all else is exact."""
-    return _factors_kept()[f"{spelling} in {KINDS[kind].unit}"]
+    """Return one such unit in SI; pint's pi has 50 digits, all else is exact."""
+    return _all_factors()[f"{spelling} in {KINDS[kind].unit}"]
 
 
 @cache
-def _factors_kept() -> dict[str, Fraction]:
+def _all_factors() -> dict[str, Fraction]:
     """Return all factors by unit, as pint defines them; they are cached for later processes."""
     name = f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}"
     if kept := recall(name):
@@ -314,7 +314,7 @@ def _converted(spelling: str, si: str) -> Fraction:
 
 @cache
 def _pint() -> Any:
-    import pint  # here, because it takes long and most scenes have plain numbers, or units that are kept
+    import pint  # here, because it takes long and most scenes have plain numbers, or units that are cached
 
     registry: Any = pint.UnitRegistry(non_int_type=Fraction)
     for definition in _NOT_IN_PINT:

@@ -129,12 +129,7 @@ class FourBar(Mechanism):
         dict of str to float or DataArray
             Lengths [m] by role.
         """
-        return {
-            "crank": self.crank.length,
-            "coupler": self.coupler.length,
-            "rocker": self.rocker.length,
-            "ground": self.ground,
-        }
+        return {role: link.length for role, link in self.parts().items()} | {"ground": self.ground}
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: its longest link is longer than the others together."""
@@ -169,8 +164,8 @@ class FourBar(Mechanism):
     @property
     def strokes(self) -> dict[str, Stroke]:
         """Angle of the rocker, as a position that a load may follow."""
-        lengths = self.crank.length, self.coupler.length, self.rocker.length, self.ground
-        return {"rocker.angle": rocker_stroke(*lengths, self.ground_angle, BRANCH_SIGN[self.branch])}
+        a, b, c, d = self.lengths().values()
+        return {"rocker.angle": rocker_stroke(a, b, c, d, self.ground_angle, BRANCH_SIGN[self.branch])}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         return _table(drive, loads, turned(self.ground_angle), self._goes_through)

@@ -147,7 +147,7 @@ class Scene(ByContent):
         kind, values = type(self.mechanism), {name: getattr(self, name) for name in MOTION}
         own, required = ", ".join((*kind.motion, "gravity")), kind.motion[0]
         problems = [
-            f"{name} = {quote(value)}: is no word of {kind.__name__}; give its own: {own}"
+            f"{name} = {quote(value)}: is no parameter of {kind.__name__}; give its own: {own}"
             for name, value in values.items()
             if name not in kind.motion and not left_out(value)
         ]

@@ -267,11 +267,11 @@ def test_design_axis_reports_all_problems(table, problems):
 def folder(tmp_path, monkeypatch):
     """Return a cache folder with the factors of all units, not yet read by this process."""
     monkeypatch.setenv("LINKSWEEP_CACHE_DIR", str(tmp_path / "cache"))
-    units._factors_kept.cache_clear()
+    units._all_factors.cache_clear()
     quantity("8 cm", "length")
-    units._factors_kept.cache_clear()
+    units._all_factors.cache_clear()
     yield tmp_path / "cache"
-    units._factors_kept.cache_clear()
+    units._all_factors.cache_clear()
 
 
 def pint_is_called(monkeypatch):

@@ -232,14 +232,14 @@ def test_each_mechanism_takes_its_own_words():
     bar = ls.Bar(0.1, 0.02, 0.02, 7800.0)
     four_bar = ls.FourBar(bar, bar, bar, 0.1)
     assert refusal(ls.Scene, CAR, omega2=30.0, drive="crank", loads=[ls.Load("crank", torque=1.0)]) == [
-        "omega2 = 30.0: is no word of LoopTrack; give its own: speed, thrust, profile, gravity",
-        "drive = 'crank': is no word of LoopTrack; give its own: speed, thrust, profile, gravity",
-        "loads = (Load(link='crank', force=None, at=(0.0, 0.0), frame='gro...: is no word of LoopTrack; "
+        "omega2 = 30.0: is no parameter of LoopTrack; give its own: speed, thrust, profile, gravity",
+        "drive = 'crank': is no parameter of LoopTrack; give its own: speed, thrust, profile, gravity",
+        "loads = (Load(link='crank', torque=1.0),): is no parameter of LoopTrack; "
         "give its own: speed, thrust, profile, gravity",
         "speed: missing; give LoopTrack a number in m/s",
     ]
     assert refusal(ls.Scene, four_bar, speed=3.0) == [
-        "speed = 3.0: is no word of FourBar; give its own: omega2, alpha2, drive, loads, gravity",
+        "speed = 3.0: is no parameter of FourBar; give its own: omega2, alpha2, drive, loads, gravity",
         "omega2: missing; give FourBar a number in rad/s",
     ]
     assert refusal(ls.Scene, CAR, speed=3.0, profile="energie") == [

@@ -31,9 +31,9 @@ WIDEST = 7.25
 """First step [degree]; no small order of a turn is 0 at it and at its half, which would look like convergence."""
 STEPS = WIDEST * 0.5 ** np.arange(14)
 ROUNDING = 2.0**-51
-"""Of ω², relative to the largest in reach."""
+"""Rounding of ω², relative to the largest in reach."""
 JUMP = 1e-6
-"""Of the largest ω²: what still changes so much over the least step (0.001 degree), and faster the nearer, jumps."""
+"""Least change of ω² over the least step (0.001 degree) at a jump, relative to the largest ω²."""
 
 
 def acceleration(

@@ -1,4 +1,4 @@
-"""Bring functions and DataArrays of theta2, which change over the revolution, to the angles of a sweep."""
+"""Evaluate functions and DataArrays of theta2, which change over the revolution, at the angles of a sweep."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
 def turns_of_function(function: Any, turn: float) -> int | None:
     """Return after how many turns of the crank a function of theta2 comes round; None where after none of `TURNS`.
 
-    Then it repeats; or keeps its first value, as np.interp does beyond its data; or has its first value there. One that
-    fails, or is not finite, passes for a turn: what is wrong with it is said when it is swept.
+    Then it repeats; or keeps its first value, as np.interp does beyond its data; or has its first value there. A
+    function that fails, or is not finite, counts as 1: its problem is reported when it is swept.
     """
     angles = turn * (np.arange(2 * max(TURNS))[:, None] + WITHIN)
     try:
@@ -54,7 +54,7 @@ def turns_of_function(function: Any, turn: float) -> int | None:
 
 
 def turning_problems(path: str, function: Any, turn: float) -> list[str]:
-    """Return what is wrong with a function of theta2 that does not come round, such as one of radians."""
+    """Return the problem of a function of theta2 that does not come round, such as one of radians."""
     if turns_of_function(function, turn):
         return []
     angles = turn * np.arange(3)
@@ -87,7 +87,7 @@ def at_angles(path: str, value: Any, rule: Rule, grid: Grid, curve: ArrayCurve |
     Raises
     ------
     ValueError
-        For values of the wrong shape or not finite, and for an array that cannot be brought to these angles.
+        For values of the wrong shape or not finite, and for an array that cannot be interpolated at these angles.
 
     Warns
     -----
@@ -142,15 +142,6 @@ def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
     return value
 
 
-def curve_of(path: str, value: xr.DataArray, period: float, interpolation: str | None = None) -> PeriodicCurve:
-    """Return the curve through an array over theta2. Raises ValueError where its angles do not go all the way round."""
-    known, values = knots(value)
-    period, interpolation = period_of(value, period), interpolation or CUBIC
-    refuse(_slope_problems(path, known, values) or period_problems(path, known, values, period, interpolation))
-    last = -1 if known[-1] - known[0] == period else None  # repeats the first
-    return PeriodicCurve(known[:last], values[:last], period, interpolation)
-
-
 def _slope_problems(path: str, known: np.ndarray, values: np.ndarray) -> list[str]:
     """Return why the slopes between values at angles in order would not be numbers."""
     largest, closest = float(np.max(np.abs(values))), float(np.min(np.diff(known), initial=np.inf))
@@ -174,8 +165,16 @@ class ArrayCurve:
 
     @cached_property
     def unwarned(self) -> PeriodicCurve:
-        """The curve, without a warning where it leaves the range of the array."""
-        return curve_of(self.path, self.array, self.turn, self.interpolation)
+        """The curve, without a warning where it leaves the range of the array.
+
+        Raises ValueError where its angles do not go all the way round.
+        """
+        known, values = knots(self.array)
+        period, interpolation = period_of(self.array, self.turn), self.interpolation or CUBIC
+        problems = _slope_problems(self.path, known, values)
+        refuse(problems or period_problems(self.path, known, values, period, interpolation))
+        last = -1 if known[-1] - known[0] == period else None  # repeats the first
+        return PeriodicCurve(known[:last], values[:last], period, interpolation)
 
     @cached_property
     def periodic(self) -> PeriodicCurve:

@@ -1,4 +1,4 @@
-"""Loads over the position of a link: tables over `position`, and functions of it, brought to positions.
+"""Loads over the position of a link: tables over `position`, and functions of it, evaluated at positions.
 
 Between its positions a table goes straight, or as the load's interpolation says; before the first and after the last
 one their values hold.
@@ -28,7 +28,7 @@ def is_function(value: Any) -> bool:
 
 
 def table_problems(path: str, value: Any) -> list[str]:
-    """Return what is wrong with a number of a load that follows a position."""
+    """Return the problems of a number of a load that follows a position."""
     if is_array(value) and "theta2" in value.dims:
         return [f'{path} depends on theta2, but the load on a position: give it dims="{POSITION}", or leave out over']
     if not is_table(value):

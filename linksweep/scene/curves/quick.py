@@ -1,9 +1,10 @@
 """Locate the crank angles at which functions and data over the revolution change quickly.
 
-A function is looked at every 0.02 degrees between its breaks. An interval is smooth where the polynomial through eight
-even samples, some of them beyond its ends, tells its middle; at a kink, one of two that end there does, and they cross
-within; at a jump, one does and they do not cross. All others are halved until they are one of these: their ends and
-middles are quick. A jump is halved down to its two sides.
+A function is sampled every 0.02 degrees between its breaks. An interval between samples is smooth where the polynomial
+through eight even samples, some of them beyond its ends, predicts its middle. It has a kink where one of two cubics,
+each through four samples on one side, predicts the middle and the two cross within; a jump where they do not cross. All
+other intervals are halved until they are one of these: their ends and middles are quick. A jump is halved down to its
+two sides.
 
 Values at known angles, joined by a spline, are as quick as their angles are close.
 """
@@ -26,23 +27,23 @@ Function = Callable[[Array], Array]
 STEP = 0.5
 """Distance of samples between which a smooth function is not quick [degree]."""
 LEVELS = 4
-"""Halvings of this step down to that at which a function is looked at everywhere."""
+"""Halvings of this step down to that of the samples taken everywhere."""
 FEWEST = 16
 """Steps between breaks, however close they are."""
 ASIDE = 1e-9
 """How far beside a break its sides are, and those of a jump at most [degree]."""
 TOLERANCE = 1e-9
-"""Of the middle of a smooth interval, relative to the range of the function."""
+"""Largest error of a smooth interval's middle, relative to the range of the function."""
 ROUNDING = 64.0
-"""Last digits of a function's values that say nothing."""
+"""Rounding of a function's values, in units of their last digit."""
 LAST_DIGIT = 2.0**-40
-"""Of an angle, as it may be rounded on the way through a function [degree]."""
+"""Rounding of an angle inside a function [degree]."""
 MOST = 20_000
-"""Intervals to be halved; of a function with more it is not known where it is quick."""
+"""Most intervals that are halved; of a function with more it is not known where it is quick."""
 
 
 class Quick(NamedTuple):
-    """Angles [degree] at which something over the revolution is quick, and whether there are surely no others."""
+    """Angles [degree] at which a function or an array is quick; `all` is True where there are surely no others."""
 
     angles: Array
     all: bool
@@ -86,7 +87,7 @@ def of_function(function: Function, breaks: Iterable[float], period: float) -> Q
     cuts = np.unique([0.0, *(angle % period for angle in breaks), period])
     ends = zip(cuts[:-1] + ASIDE, cuts[1:] - ASIDE, strict=True)
     pieces = [_Piece(function, start, end) for start, end in ends if start < end]
-    tolerance = _tolerance([piece.looked_at for piece in pieces])
+    tolerance = _tolerance([piece.everywhere for piece in pieces])
     return joined(piece.quick(tolerance) for piece in pieces)
 
 
@@ -106,8 +107,8 @@ class _Piece:
     end: float
 
     @cached_property
-    def looked_at(self) -> Array:
-        """Its values at all places of the level below the last that is looked at everywhere."""
+    def everywhere(self) -> Array:
+        """Its values at all samples of the level below the last that is sampled everywhere."""
         return self._called(LEVELS + 1, np.arange(self.count(LEVELS + 1) + 1))
 
     def count(self, level: int) -> int:
@@ -118,7 +119,7 @@ class _Piece:
 
     def values(self, level: int, k: Array) -> Array:
         if level <= LEVELS + 1:
-            return self.looked_at[k << (LEVELS + 1 - level)]
+            return self.everywhere[k << (LEVELS + 1 - level)]
         different, place = np.unique(k, return_inverse=True)
         return self._called(level, different)[place.reshape(k.shape)]
 
@@ -142,7 +143,7 @@ class _Piece:
         return Quick(np.concatenate(angles), not len(rest) or (last and not len(rough)))
 
     def _classified(self, level: int, k: Array, tolerance: float) -> tuple[Array, Array]:
-        """Return which intervals are smooth or have a kink, and which have a jump, as their neighbours tell."""
+        """Return which intervals are smooth or have a kink, and which have a jump, by the samples around them."""
         smooth = np.abs(self._by_eight(level, k, 3) - self._middle(level, k)) <= tolerance
         jumps, others = np.zeros(k.shape, dtype=bool), np.flatnonzero(~smooth)
         smooth[others], jumps[others] = self._classified_by_sides(level, k[others], tolerance)
@@ -170,13 +171,13 @@ class _Piece:
         return np.where(inside, self.values(level, np.clip(places, 0, self.count(level))), np.nan)
 
     def _by_eight(self, level: int, k: Array, reach: int) -> Array:
-        """Return middles as eight samples tell them that begin so many steps before each interval."""
+        """Predict the middles of intervals by eight samples, of which the first lies `reach` steps before each."""
         first = np.clip(k - reach, 0, self.count(level) - 7)
         return (self.values(level, first[:, None] + np.arange(8)) * MIDDLES[k - first]).sum(axis=-1)
 
 
 def _weights(nodes: int, at: float) -> Array:
-    """Return what the values at 0, 1, 2, … weigh in the polynomial through them at a place."""
+    """Return the weights of values at 0, 1, 2, … in the polynomial through them, evaluated at a place."""
     every = range(nodes)
     return np.array([np.prod([(at - j) / (i - j) for j in every if j != i]) for i in every])
 

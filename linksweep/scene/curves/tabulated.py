@@ -21,11 +21,11 @@ STEP = 0.5
 ACCURACY = 1e-9
 """How far a function may be from its samples' spline, in parts of its largest value."""
 CLOSEST = 1e-9
-"""Degrees between samples at which what is still rough is a jump."""
+"""Degrees between samples below which a rough place is a jump."""
 MOST = 20_000
 """Samples of a turn that a file holds at most."""
-LOOKED_AT = np.arange(0.05, 1.0, 0.1)
-"""Places between two samples where function and spline are compared, in parts of their distance."""
+BETWEEN = np.arange(0.05, 1.0, 0.1)
+"""Places between two samples where function and spline are compared, as fractions of their distance."""
 
 Function = Callable[[np.ndarray], np.ndarray]
 
@@ -67,7 +67,7 @@ def _tabulated(function: Any, period: float, turn: float, first_values: bytes) -
     angles = np.arange(0.0, period, STEP)
     while len(angles) <= MOST * period / turn:
         values, steps = values_at(function, angles), np.diff(angles, append=period)
-        between = angles[:, None] + steps[:, None] * LOOKED_AT
+        between = angles[:, None] + steps[:, None] * BETWEEN
         error = np.abs(_spline(angles, values, period)(between) - values_at(function, between)).max(axis=1)
         rough = error > ACCURACY * np.abs(values).max()
         if not rough.any():

@@ -8,24 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from linksweep.base.units import quantity
 from linksweep.base.validate import as_float, is_quantity, quote
-
-
-class Spread(Protocol):
-    """The values that a parameter may take."""
-
-    @property
-    def around(self) -> bool:
-        """True where they are measured from the scene's own value."""
-        ...
-
-    def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
-        """Return the values [SI] below which these fractions, in (0, 1), of all values lie."""
 
 
 @dataclass(frozen=True)
@@ -133,62 +121,32 @@ class Tolerance:
         return _between("Tolerance", self.lower, self.upper, levels, kind)
 
 
-@dataclass(frozen=True)
-class _Range:
-    """Evenly anywhere between two ends."""
-
-    ends: tuple
-
-    around = False
-
-    def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
-        if len(self.ends) != 2:
-            raise ValueError(f"{quote(self.ends)}: must be a range (low, high); a list [...] is a choice among values")
-        return _between("", *self.ends, levels, kind)
+def around_own(choice: Any) -> bool:
+    """Return whether values are measured from the scene's own one."""
+    return isinstance(choice, Normal | Tolerance) and choice.around
 
 
-@dataclass(frozen=True)
-class _Choice:
-    """One of a few values, each as likely as the others."""
-
-    values: list
-
-    around = False
-
-    def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
-        if not self.values:
+def quantiles(choice: Any, levels: np.ndarray, kind: str) -> np.ndarray:
+    """Return the values [SI] below which these fractions, in (0, 1), of all values lie: of a range, a list of values,
+    or a distribution."""
+    if isinstance(choice, Normal | Tolerance):
+        return choice.at(levels, kind)
+    if isinstance(choice, tuple):
+        if len(choice) != 2:
+            raise ValueError(f"{quote(choice)}: must be a range (low, high); a list [...] is a choice among values")
+        return _between("", *choice, levels, kind)
+    if isinstance(choice, list) or ((isinstance(choice, np.ndarray) or is_quantity(choice)) and np.ndim(choice) == 1):
+        values = np.array([_value(f"[{k}]", value, kind) for k, value in enumerate(choice, 1)])
+        if not values.size:
             raise ValueError("[]: must be a list of one value or more")
-        values = np.array([_value(f"[{k}]", value, kind) for k, value in enumerate(self.values, 1)])
         return values[(levels * len(values)).astype(int)]
-
-
-@dataclass(frozen=True)
-class _Scipy:
-    """A frozen distribution of scipy.stats."""
-
-    quantiles: Any
-
-    around = False
-
-    def at(self, levels: np.ndarray, kind: str) -> np.ndarray:
-        return np.asarray(self.quantiles(levels), dtype=float)
-
-
-def spread_of(values: Any) -> Spread:
-    """Return the spread that a range, a list, or a distribution stands for."""
-    if isinstance(values, Normal | Tolerance):
-        return values
-    if isinstance(values, tuple):
-        return _Range(values)
-    if isinstance(values, list) or ((isinstance(values, np.ndarray) or is_quantity(values)) and np.ndim(values) == 1):
-        return _Choice(list(values))
-    quantiles = getattr(values, "ppf", None) or getattr(values, "icdf", None)
-    if quantiles is None or isinstance(values, type):
+    of_scipy = getattr(choice, "ppf", None) or getattr(choice, "icdf", None)
+    if of_scipy is None or isinstance(choice, type):
         raise ValueError(
-            f"{quote(values)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
+            f"{quote(choice)}: must be a range (low, high), a list of values, ls.Normal, ls.Tolerance, or a frozen "
             "distribution of scipy.stats"
         )
-    return _Scipy(quantiles)
+    return np.asarray(of_scipy(levels), dtype=float)
 
 
 def _between(name: str, low: Any, high: Any, levels: np.ndarray, kind: str) -> np.ndarray:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
-from linksweep.scene.designs.distributions import spread_of
+from linksweep.scene.designs.distributions import around_own, quantiles
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
 
@@ -87,11 +87,11 @@ def sample(
 
 
 def _drawn(choice: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
-    spread = spread_of(choice)
-    if spread.around and (own is None or (callable(own) and not hasattr(own, "dims"))):
+    around = around_own(choice)
+    if around and (own is None or (callable(own) and not hasattr(own, "dims"))):
         raise ValueError(f"{quote(choice)} is around the scene's own value, {quote(own)}: give it a number")
-    drawn = xr.DataArray(spread.at(levels, kind), {dim: np.arange(len(levels))}, dim)
-    return own + drawn if spread.around else drawn
+    drawn = xr.DataArray(quantiles(choice, levels, kind), {dim: np.arange(len(levels))}, dim)
+    return own + drawn if around else drawn
 
 
 def _problems(scene: Scene, parameters: Any, n: Any, method: Any, seed: Any, dim: Any, own: Mapping) -> list[str]:

@@ -31,9 +31,9 @@ def design_axis(table: dict[str, Any], kind: str, alone: bool = True) -> xr.Data
         numbers; `coords`, a list for each dim with labels; `theta2` and `position`, short for angles [degree] and
         positions [m] in `coords`; `interpolation` over them.
     kind : str
-        What is measured: a key of `KINDS`.
+        Kind of the quantity: a key of `KINDS`.
     alone : bool
-        Whether no other number has this one dim: without `coords` the values are then its labels.
+        True where no other number has this one dim: without `coords` the values are then its labels.
 
     Returns
     -------

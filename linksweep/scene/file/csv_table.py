@@ -56,9 +56,9 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     table : dict
         `csv`, the file; `column`, its name in the first line; `unit` of its values; their `interpolation`.
     kind : str
-        What is measured: a key of `KINDS`.
+        Kind of the quantity: a key of `KINDS`.
     folder : Path
-        What the file's place is relative to.
+        Folder to which the file's place is relative.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def _in_si(name: str, sample: Sample, kind: str, unit: str | None) -> float:
 
 
 def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
-    """Return whether the angles, or positions, rise."""
+    """Return the problem of angles, or positions, that do not rise."""
     rises = np.diff([sample.angle for sample in samples])
     if len(rises) < 1:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 2"]
@@ -182,7 +182,7 @@ def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
 
 
 def _angle_problems(name: str, samples: list[Sample], steps: bool) -> list[str]:
-    """Return whether angles go all the way round, in one turn or several; steps hold as long as they like."""
+    """Return the problem of angles that do not go all the way round, in one turn or several; a step holds for any."""
     if len(samples) < 4 and not steps:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 4, all the way round"]
     angles = np.array([sample.angle for sample in samples])

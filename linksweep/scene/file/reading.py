@@ -45,7 +45,7 @@ def parse_scene(
     arrays : mapping of str to DataArray, optional
         The arrays that ``{variable = "coupler.length"}`` in the text refers to, as `write_scene` puts it there.
     whole : bool
-        Whether a function without samples that represent it is refused; else its samples in `arrays` are taken.
+        True to refuse a function without samples that represent it; else its samples in `arrays` are taken.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Reading a text file, with what is wrong in words."""
+"""Read a text file; a file that cannot be read is refused with the reason."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ KINDS = {
 def text_of(path: Path, name: str, ending: str, where: str = "", advice: str = "") -> str:
     """Return the text of a file that messages call `name`. Raises ValueError where it cannot be read.
 
-    Of one that is not there is said `where`, which file of that `ending` may be meant, and the `advice`.
+    The message about a missing file states `where`, a file of that `ending` with a similar name, and the `advice`.
     """
     try:
         if kind := kind_of(path):
