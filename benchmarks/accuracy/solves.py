@@ -114,12 +114,10 @@ def _error(q: Design, theta2: Array, values: Array) -> float:
 # ------------------------------------------------------------------------------------------------ methods
 
 
-def _sweep(q: Design, theta2: Array, outputs: tuple[str, ...] = NINE, **how) -> Bound:
+def _sweep(q: Design, theta2: Array, of: tuple[str, ...] = NINE, **how) -> Bound:
     even = np.array_equal(theta2, peers.grid(len(theta2)))
     angles = len(theta2) if even else theta2
-    return Bound(
-        partial(ls.sweep, scene(q), angles, of=outputs, threads=1, **how), lambda cycle: stacked(cycle, outputs)
-    )
+    return Bound(partial(ls.sweep, scene(q), angles, of=of, threads=1, **how), lambda cycle: stacked(cycle, of))
 
 
 def _kernel(q: Design, theta2: Array) -> Bound:
@@ -172,7 +170,7 @@ NINE_BY = {
     "KinePy, 720 samples": Method(_rival("kinepy_nine"), 2e-2, False, 720),
 }
 RATES_BY = {
-    RATES: Method(partial(_sweep, outputs=truth.RATES)),
+    RATES: Method(partial(_sweep, of=truth.RATES)),
     "pylinkage, 720 steps": Method(_rival("pylinkage_rates"), 1e-8, False, 720),
     "mechanism": Method(_rival("mechanism_rates"), 1e-6, False, 72),
 }

@@ -206,7 +206,7 @@ def _balance(options: argparse.Namespace) -> None:
 def _orders(options: argparse.Namespace) -> None:
     from linksweep import plot
 
-    ds = orders(sweep(one_design(options.scene), outputs=options.of), options.of, n=options.n)
+    ds = orders(sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
     _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
     print(summaries.order_table(ds, options.of))
     show(options, lambda: plot.orders(ds))

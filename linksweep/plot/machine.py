@@ -145,7 +145,7 @@ def _meaning(cycle: xr.Dataset) -> str:
 def _joint_forces(scene: Scene, drawing: Drawing, angle: float) -> dict[str, np.ndarray]:
     """Return the components (x, y) of the force in each joint at the angle [N]. Raises ValueError where there are
     none."""
-    sample = sweep(scene, theta2=[angle], outputs=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
+    sample = sweep(scene, theta2=[angle], of=[f"{force}{axis}" for force in drawing.forces for axis in "xy"])
     signals.require_one_design(sample.values())
     if sample.status.any():
         raise ValueError(f"theta2 = {angle:.6g} degree: no pin forces there, the mechanism {_meaning(sample)}")

@@ -34,7 +34,7 @@ OUTPUTS = ["F12x", "F32y", "F43x", "F14y", "T12", "Fsx", "Ms", "power", "F32x_li
 def test_coefficients_times_parameters_are_the_sweep(scene):
     names = [name.replace("T12", scene.mechanism.drives[scene.drive]) for name in OUTPUTS] + ["T14", "T43"]
     names = [name for name in names if name in scene.table.quantity]
-    found, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, outputs=names)
+    found, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, of=names)
     for name in names:
         again = (found[name] * found.value).sum("parameter", skipna=False) + found[f"{name}_of_loads"]
         near = 1e-12 * float(np.abs(cycle[name]).max())
@@ -50,7 +50,7 @@ def test_coefficients_foretell_other_masses():
     for word, number in {"m": m, "mx": h.real, "my": h.imag, "J": inertia + m * d**2}.items():
         values.loc[{"parameter": f"coupler.{word}"}] = number
     other = replace(SKEW.mechanism, coupler=ls.Link(0.22, m, inertia, d, angle))
-    cycle = ls.sweep(replace(SKEW, mechanism=other), theta2=36, outputs=OUTPUTS)
+    cycle = ls.sweep(replace(SKEW, mechanism=other), theta2=36, of=OUTPUTS)
     for name in OUTPUTS:
         again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
         np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
@@ -68,7 +68,7 @@ def test_coefficients_foretell_a_slider_and_a_block_of_other_centres_of_gravity(
             numbers["J"] = scene.mechanism.block_inertia + mass * 0.03**2
         for word, number in numbers.items():
             values.loc[{"parameter": f"{role}.{word}"}] = number
-        cycle = ls.sweep(replace(scene, mechanism=replace(scene.mechanism, **moved)), theta2=36, outputs=names)
+        cycle = ls.sweep(replace(scene, mechanism=replace(scene.mechanism, **moved)), theta2=36, of=names)
         for name in names:
             again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
             np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
@@ -86,7 +86,7 @@ def test_designs_go_along():
         PRESS, mechanism=replace(PRESS.mechanism, ground=lengths), omega2=xr.DataArray([5.0, 9.0], dims="s")
     )
     found = ls.regressor(several, ["F32x"], theta2=12)
-    cycle = ls.sweep(several, theta2=12, outputs=["F32x"]).F32x
+    cycle = ls.sweep(several, theta2=12, of=["F32x"]).F32x
     again = (found.F32x * found.value).sum("parameter") + found.F32x_of_loads
     np.testing.assert_allclose(again.transpose(*cycle.dims), cycle, rtol=1e-10, atol=1e-10)
 
@@ -95,7 +95,7 @@ def test_designs_go_along():
 
 
 def shaking(scene, **options):
-    return ls.sweep(scene, outputs=["Fsx", "Fsy", "Fs", "Ms"], **options)
+    return ls.sweep(scene, of=["Fsx", "Fsy", "Fs", "Ms"], **options)
 
 
 @pytest.mark.parametrize(
@@ -252,7 +252,7 @@ def test_sizes_are_what_their_names_say():
     other = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slider_mass=0.6))
     table = ls.compare(ENGINE, other, of=["T12_peak", "T12_rms", "T12_ripple", "F43_rms"])
     for scene, when in ((ENGINE, "before"), (other, "after")):
-        cycle = ls.sweep(scene, outputs=["T12", "F43x", "F43y"])
+        cycle = ls.sweep(scene, of=["T12", "F43x", "F43y"])
         torque, squares = cycle.T12.values, cycle.F43x.values**2 + cycle.F43y.values**2
         found = table.sel(balance=when)
         assert float(found.T12_peak) == max(torque.max(), -torque.min())
@@ -329,6 +329,6 @@ def test_the_plot_shows_both():
     for ax, names in ((hodograph, ("Fsx", "Fsy")), (moment, ("Ms",)), (torque, ("T12",)), (pin, ("F43",))):
         lines = [line for line in ax.get_lines() if line.get_label().startswith(("before", "after"))]
         for line, scene in zip(lines, (PRESS, balanced), strict=True):
-            cycle = ls.sweep(scene, theta2=90, outputs=list(names))
+            cycle = ls.sweep(scene, theta2=90, of=list(names))
             np.testing.assert_array_equal(line.get_ydata()[:-1], cycle[names[-1]])
     plt.close(figure)

@@ -77,7 +77,7 @@ def test_a_swing_to_and_fro_is_that_part_of_a_revolution():
 def test_the_life_of_a_swinging_pin():
     """By the damage rule alone: each small turn under F uses up |Δψ|/360 of (C/F)^p million revolutions."""
     found = ls.bearings(PRESS, {"C": ls.Bearing(capacity=2e4, kind="roller")}).sel(pin="C")
-    cycle = ls.sweep(PRESS, theta2=72_000, outputs=["F43", "omega3", "omega4"])
+    cycle = ls.sweep(PRESS, theta2=72_000, of=["F43", "omega3", "omega4"])
     turns = np.abs(cycle.omega4 - cycle.omega3) / PRESS.omega2 / 72_000.0
     damage = float((turns / (1e6 * (2e4 / cycle.F43) ** (10.0 / 3.0))).sum())
     hours = 1.0 / damage * (2.0 * np.pi / PRESS.omega2) / 3600.0
@@ -158,7 +158,7 @@ def test_rotation_and_components_are_quantities_like_others():
 def test_pressure_and_friction():
     found = ls.bearings(PRESS, {"B": ls.Bearing(diameter=0.02, length=0.03, friction=0.1)}, theta2=36)
     b = found.sel(pin="B")
-    cycle = ls.sweep(PRESS, theta2=36, outputs=["F32", "omega2", "omega3"])
+    cycle = ls.sweep(PRESS, theta2=36, of=["F32", "omega2", "omega3"])
     speed = cycle.omega2 - cycle.omega3
     np.testing.assert_allclose(b.rotation_speed, speed, rtol=1e-12)
     np.testing.assert_allclose(b.pressure, cycle.F32 / 6e-4, rtol=1e-12)

@@ -40,7 +40,7 @@ SCENES = [
 def test_shares_add_up_to_the_whole(scene):
     drive = scene.mechanism.drives[scene.drive]
     names = ["F12", "F32", "F43x", "F14", "F14y", drive, *(["T14"] if scene.mechanism == SLIDER_CRANK else [])]
-    shares, whole = ls.breakdown(scene, names, theta2=72), ls.sweep(scene, 72, outputs=names)
+    shares, whole = ls.breakdown(scene, names, theta2=72), ls.sweep(scene, 72, of=names)
     np.testing.assert_array_equal(shares.status, whole.status)
     for name in names:
         largest = abs(shares[name]).max("source")
@@ -50,7 +50,7 @@ def test_shares_add_up_to_the_whole(scene):
 
 
 def alone(scene, **changes):
-    return ls.sweep(replace(scene, **changes), 72, outputs=["F32x", "F14y", "T12"])
+    return ls.sweep(replace(scene, **changes), 72, of=["F32x", "F14y", "T12"])
 
 
 def test_each_share_is_the_machine_with_that_source_alone():
@@ -75,11 +75,11 @@ def test_each_share_is_the_machine_with_that_source_alone():
 
 def test_frictions_share_is_what_its_force_does_on_a_slider_without_friction():
     scene = SCENES[2]
-    force = ls.sweep(scene, 72, outputs=["friction_force"]).friction_force
+    force = ls.sweep(scene, 72, of=["friction_force"]).friction_force
     smooth = replace(SLIDER_CRANK, friction=0.0, crank=replace(CRANK, mass=0.0, inertia=0.0), slider_mass=0.0)
     smooth = replace(smooth, rod=replace(ROD, mass=0.0, inertia=0.0))
     rubbing = ls.Scene(smooth, 30.0, loads=[ls.Load("slider", force=(force.reset_coords(drop=True), 0.0))])
-    expected = ls.sweep(rubbing, 72, outputs=["F32x", "F32y", "T12", "F14y"])
+    expected = ls.sweep(rubbing, 72, of=["F32x", "F32y", "T12", "F14y"])
     found = ls.breakdown(scene, ["F32x", "F32y", "T12", "F14y"], theta2=72).sel(source="friction")
     for name in ("F32x", "F32y", "T12", "F14y"):
         np.testing.assert_allclose(found[name], expected[name], atol=1e-11 * float(abs(expected.F32x).max()))
@@ -89,7 +89,7 @@ def test_frictions_share_is_what_its_force_does_on_a_slider_without_friction():
 def test_a_magnitudes_share_is_the_part_along_the_force():
     scene = SCENES[0]
     found = ls.breakdown(scene, ["F32", "F32x", "F32y"], theta2=36)
-    whole = ls.sweep(scene, 36, outputs=["F32x", "F32y"])
+    whole = ls.sweep(scene, 36, of=["F32x", "F32y"])
     angle = np.arctan2(whole.F32y, whole.F32x)
     np.testing.assert_allclose(found.F32, found.F32x * np.cos(angle) + found.F32y * np.sin(angle), atol=1e-11)
 
@@ -128,7 +128,7 @@ def test_the_three_terms_give_every_speed(scene):
     parts = ls.speed_separation(scene, theta2=72)
     names = [name for name in scene.mechanism.unknowns("crank") if name != "T14"]
     for omega2, alpha2 in ((30.0, 70.0), (-112.0, 0.0), (0.0, -900.0)):
-        ds = ls.sweep(replace(scene, omega2=omega2, alpha2=alpha2), 72, outputs=names)
+        ds = ls.sweep(replace(scene, omega2=omega2, alpha2=alpha2), 72, of=names)
         for name in names:
             A, B, C = (parts[f"{name}_{term}"] for term in ("per_omega2_squared", "per_alpha2", "static"))
             whole = A * omega2**2 + B * alpha2 + C

@@ -33,7 +33,7 @@ def along(count):
 
 
 def test_one_cylinder_is_the_sweep():
-    one, cycle = ls.MultiCylinder(ENGINE, [0.0]).sweep(), ls.sweep(ENGINE, outputs=["T12", "Fsx", "Fsy", "Fs", "Ms"])
+    one, cycle = ls.MultiCylinder(ENGINE, [0.0]).sweep(), ls.sweep(ENGINE, of=["T12", "Fsx", "Fsy", "Fs", "Ms"])
     for name in ("T12", "Fsx", "Fsy", "Ms"):
         np.testing.assert_array_equal(one[name], cycle[name])
     np.testing.assert_allclose(one.Fs, cycle.Fs, rtol=1e-15)
@@ -60,7 +60,7 @@ def test_four_strokes_of_four_cylinders_pull_twice_a_turn():
     """Evenly fired: the torque repeats every 180 degrees, as that of one cylinder does every 720."""
     torque = ls.MultiCylinder(ENGINE, [0, 540, 180, 360]).sweep().T12
     np.testing.assert_allclose(torque, np.roll(torque, 180), rtol=1e-9, atol=1e-9 * float(abs(torque).max()))
-    one = ls.sweep(ENGINE, outputs=["T12"]).T12
+    one = ls.sweep(ENGINE, of=["T12"]).T12
     assert float(torque.mean()) == pytest.approx(4.0 * float(one.mean()), rel=1e-12)
 
 
@@ -98,7 +98,7 @@ def test_a_bank_is_a_turned_guide(bank):
     """Gas, weights and friction included: only the gravity keeps its direction."""
     turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
     one = ls.MultiCylinder(ENGINE, [0.0], bank_angles=[bank]).sweep(theta2=48)
-    cycle = ls.sweep(turned, theta2=48, outputs=["T12", "Fsx", "Fsy", "Ms"])
+    cycle = ls.sweep(turned, theta2=48, of=["T12", "Fsx", "Fsy", "Ms"])
     for name in ("T12", "Fsx", "Fsy", "Ms"):
         largest = float(abs(cycle[name]).max())
         smooth = np.asarray(cycle.theta2) % 180.0 != (90.0 + bank) % 180.0  # the pressure jumps at dead centres

@@ -60,7 +60,7 @@ def test_a_constant_torque_on_the_crank_by_hand():
 
 def test_it_is_what_a_fine_grid_gives():
     scene = ls.Scene(FOUR_BAR, 30.0, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=-5.0)])
-    found, cycle = ls.duty(scene), ls.sweep(scene, 7200, outputs=["T12", "power"])
+    found, cycle = ls.duty(scene), ls.sweep(scene, 7200, of=["T12", "power"])
     np.testing.assert_allclose(found.effort_rms, np.sqrt((cycle.T12**2).mean()), rtol=1e-9)
     np.testing.assert_allclose(found.work_fed, cycle.power.clip(min=0.0).mean() * 2.0 * np.pi / 30.0, rtol=1e-6)
     np.testing.assert_allclose(found.power_min, cycle.power.min(), rtol=1e-6)
@@ -94,7 +94,7 @@ def test_a_cycle_takes_a_crank_that_comes_round(scene, said):
 @MACHINES
 def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_inertia(mechanism):
     names = ["reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "inertia_power"]
-    ds = ls.sweep(ls.Scene(mechanism, 30.0, 70.0), outputs=names)
+    ds = ls.sweep(ls.Scene(mechanism, 30.0, 70.0), of=names)
     J, slope = ds.reduced_inertia, ds.reduced_inertia_slope
     np.testing.assert_allclose(ds.kinetic_energy, 0.5 * J * 900.0, rtol=1e-14)
     power = 0.5 * slope * 30.0**3 + J * 30.0 * 70.0
@@ -127,7 +127,7 @@ def test_of_the_four_bar_by_60_digits(theta2):
         return total
 
     names = ["reduced_inertia", "reduced_inertia_slope"]
-    ds = ls.sweep(ls.Scene(FOUR_BAR, 0.0), [theta2], outputs=names).isel(theta2=0)
+    ds = ls.sweep(ls.Scene(FOUR_BAR, 0.0), [theta2], of=names).isel(theta2=0)
     step = mp.mpf("1e-6")
     slope = (J(theta2 + step) - J(theta2 - step)) / (2 * step) * 180 / mp.pi
     np.testing.assert_allclose(ds.reduced_inertia, float(J(mp.mpf(theta2))), rtol=1e-13)
@@ -142,24 +142,20 @@ def test_of_the_four_bar_by_60_digits(theta2):
 )
 def test_a_torque_on_the_rocker_takes_its_share_on_the_crank(mechanism):
     scene = ls.Scene(mechanism, 5.0, loads=[ls.Load("rocker", torque=-2.0)])
-    ds = ls.sweep(scene, 90, outputs=["T12", "torque_ratio", "velocity_ratio", "omega4"])
+    ds = ls.sweep(scene, 90, of=["T12", "torque_ratio", "velocity_ratio", "omega4"])
     np.testing.assert_allclose(ds.T12 * ds.torque_ratio, 2.0, rtol=1e-12)
     np.testing.assert_allclose(ds.velocity_ratio, ds.omega4 / 5.0, rtol=1e-14)
 
 
 def test_a_force_square_to_the_rocker_at_c_takes_its_share_at_b():
     push = ls.Load("rocker", force=(0.0, -10.0), at=(0.18, 0.0), frame="link")
-    ds = ls.sweep(
-        ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 5.0, loads=[push]), 90, outputs=["T12", "mechanical_advantage"]
-    )
+    ds = ls.sweep(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 5.0, loads=[push]), 90, of=["T12", "mechanical_advantage"])
     np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
 
 
 def test_a_force_on_a_slider_takes_its_share_at_b():
     scene = ls.Scene(ls.SliderCrank(*LIGHT[:2], 0.0, offset=0.02), 5.0, loads=[ls.Load("slider", force=-10.0)])
-    ds = ls.sweep(
-        scene, np.arange(5.0, 360.0, 10.0), outputs=["T12", "mechanical_advantage", "velocity_ratio", "v_slider"]
-    )
+    ds = ls.sweep(scene, np.arange(5.0, 360.0, 10.0), of=["T12", "mechanical_advantage", "velocity_ratio", "v_slider"])
     np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
     np.testing.assert_allclose(ds.velocity_ratio, ds.v_slider / 5.0, rtol=1e-14)
 
@@ -167,7 +163,7 @@ def test_a_force_on_a_slider_takes_its_share_at_b():
 def test_the_reduced_torque_is_the_drives_power_per_crank_speed_whatever_drives():
     for drive in ("crank", "coupler", "rocker"):
         scene = ls.Scene(FOUR_BAR, -30.0, 70.0, (1.0, -9.81), [ls.Load("coupler", torque=3.0)], drive)
-        ds = ls.sweep(scene, 91, outputs=["reduced_torque", "power", "power_fed", "power_regenerated"])
+        ds = ls.sweep(scene, 91, of=["reduced_torque", "power", "power_fed", "power_regenerated"])
         np.testing.assert_allclose(ds.reduced_torque * -30.0, ds.power, rtol=1e-9)
         np.testing.assert_array_equal(ds.power_fed - ds.power_regenerated, ds.power)
         assert float(ds.power_fed.min()) == float(ds.power_regenerated.min()) == 0.0
@@ -195,9 +191,7 @@ def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
     np.testing.assert_allclose(0.5 * (speed.max() + speed.min()), omega2, rtol=1e-12)
 
     angles = np.append(found.theta2.values, 360.0)
-    static = ls.sweep(
-        replace(scene, omega2=0.0, alpha2=0.0), outputs=["T12", "reduced_inertia", "reduced_inertia_slope"]
-    )
+    static = ls.sweep(replace(scene, omega2=0.0, alpha2=0.0), of=["T12", "reduced_inertia", "reduced_inertia_slope"])
     T, J, slope = (CubicSpline(angles, np.append(row, row[0]), bc_type="periodic") for row in
                    (static.T12.values, static.reduced_inertia.values, static.reduced_inertia_slope.values))  # fmt: skip
     drive = float(found.drive_torque)
@@ -296,7 +290,7 @@ def test_a_motor_on_the_rocker_and_ratios_as_a_design():
     ratio = xr.DataArray([5.0, 10.0], dims="ratio")
     scene = ls.Scene(FOUR_BAR, 20.0, drive="rocker")
     found = ls.motor_load(scene, DC, ratio=ratio, theta2=[100.0, 200.0])
-    ds = ls.sweep(scene, [100.0, 200.0], outputs=["T14", "omega4", "alpha4"])
+    ds = ls.sweep(scene, [100.0, 200.0], of=["T14", "omega4", "alpha4"])
     np.testing.assert_allclose(found.motor_torque, ds.T14 / ratio + 1e-4 * ratio * ds.alpha4)
     np.testing.assert_allclose(found.motor_speed, ratio * ds.omega4)
 

@@ -26,7 +26,7 @@ def slider(a, b, **more):
 @pytest.mark.parametrize("lengths", [(0.08, 0.22, 0.18, 0.2), (0.02, 0.07, 0.05, 0.06), (0.05, 0.3, 0.31, 0.12)])
 def test_the_rocker_swings_between_its_extremes(lengths, branch):
     scene = four_bar(*lengths, branch=branch, ground_angle=20.0)
-    found, theta4 = ls.geometry(scene), ls.sweep(scene, theta2=36000, outputs=["theta4"]).theta4
+    found, theta4 = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["theta4"]).theta4
     turned = np.unwrap(theta4, period=360.0)
     assert float(found.swing) == pytest.approx(np.ptp(turned), abs=1e-5)
     at = np.sort(found.reversal_angle.values)
@@ -34,7 +34,7 @@ def test_the_rocker_swings_between_its_extremes(lengths, branch):
     np.testing.assert_allclose(at, seen, atol=0.02)
     way = at[1] - at[0]
     assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
-    standing = ls.sweep(scene, theta2=found.reversal_angle.values, outputs=["omega4"]).omega4
+    standing = ls.sweep(scene, theta2=found.reversal_angle.values, of=["omega4"]).omega4
     np.testing.assert_allclose(standing, 0.0, atol=1e-12)
 
 
@@ -53,9 +53,9 @@ def test_a_double_crank_has_no_swing():
 @pytest.mark.parametrize("offset", [0.0, 0.02, -0.03])
 def test_the_slider_travels_between_its_extremes(offset, branch):
     scene = slider(0.05, 0.15, offset=offset, slide_angle=30.0, branch=branch)
-    found, x = ls.geometry(scene), ls.sweep(scene, theta2=36000, outputs=["x_slider"]).x_slider
+    found, x = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["x_slider"]).x_slider
     assert float(found.stroke) == pytest.approx(np.ptp(x.values), abs=1e-9)
-    standing = ls.sweep(scene, theta2=found.reversal_angle.values, outputs=["v_slider"]).v_slider
+    standing = ls.sweep(scene, theta2=found.reversal_angle.values, of=["v_slider"]).v_slider
     np.testing.assert_allclose(standing, 0.0, atol=1e-14)
     way = float(abs(found.reversal_angle.diff("limit")).item())
     assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
@@ -121,7 +121,7 @@ def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
 
 
 def test_points_that_are_known():
-    cycle = ls.sweep(PRESS, theta2=36, outputs=["Bx", "By", "Cx", "Cy", "aG3x", "aG3y"])
+    cycle = ls.sweep(PRESS, theta2=36, of=["Bx", "By", "Cx", "Cy", "aG3x", "aG3y"])
     pin_b, pin_c = (ls.coupler_curve(PRESS, (r, 0.0), theta2=36) for r in (0.0, 0.22))
     np.testing.assert_allclose(pin_b.Px, cycle.Bx, atol=1e-15)
     np.testing.assert_allclose(pin_c.Py, cycle.Cy, atol=1e-14)

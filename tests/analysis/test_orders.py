@@ -31,7 +31,7 @@ def test_amplitudes_and_phases_come_back():
 
 
 def test_they_add_up_to_the_signal_again():
-    ds = ls.sweep(ls.Scene(PUMP, 100.0), 180, outputs=["a_slider"])
+    ds = ls.sweep(ls.Scene(PUMP, 100.0), 180, of=["a_slider"])
     found = ls.orders(ds, "a_slider", n=40)
     waves = np.radians(found.order * ds.theta2)
     again = (found.a_slider_cos * np.cos(waves) + found.a_slider_sin * np.sin(waves)).sum("order")
@@ -39,15 +39,15 @@ def test_they_add_up_to_the_signal_again():
 
 
 def test_a_grid_that_starts_elsewhere_and_in_any_order_has_the_same_orders():
-    ds = ls.sweep(ls.Scene(PUMP, 100.0), 72, outputs=["Fsx"])
-    shuffled = ls.sweep(ls.Scene(PUMP, 100.0), (np.arange(72) * 5.0 + 2.0)[::-1], outputs=["Fsx"])
+    ds = ls.sweep(ls.Scene(PUMP, 100.0), 72, of=["Fsx"])
+    shuffled = ls.sweep(ls.Scene(PUMP, 100.0), (np.arange(72) * 5.0 + 2.0)[::-1], of=["Fsx"])
     one, other = (ls.orders(each, "Fsx", n=6).Fsx_amplitude for each in (ds, shuffled))
     np.testing.assert_allclose(other, one, atol=1e-12 * float(one.max()))
 
 
 def test_a_pistons_shaking_has_the_known_series():
     """Fx = m r ω² (cos θ + A2 cos 2θ − A4 cos 4θ + …), A2 = λ + λ³/4 + 15λ⁵/128, A4 = λ³/4 + 3λ⁵/16 (C. F. Taylor)."""
-    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), outputs=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
+    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
     unit, L = 0.5 * 0.05 * 100.0**2, 0.25
     expected = [0.0, unit, unit * (L + L**3 / 4 + 15 * L**5 / 128), 0.0, -unit * (L**3 / 4 + 3 * L**5 / 16), 0.0]
     np.testing.assert_allclose(found.Fsx_cos.values[:6], expected, atol=2.0 * unit * L**7)
@@ -56,7 +56,7 @@ def test_a_pistons_shaking_has_the_known_series():
 
 
 def test_a_four_stroke_cycle_has_half_orders():
-    found = ls.orders(ls.sweep(ls.example("engine"), outputs=["T12", "Fsy"]), ["T12", "Fsy"], n=2)
+    found = ls.orders(ls.sweep(ls.example("engine"), of=["T12", "Fsy"]), ["T12", "Fsy"], n=2)
     assert found.order.values.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
     assert float(found.T12_amplitude.sel(order=0.5)) > 10.0
     assert float(found.Fsy_amplitude.sel(order=0.5)) < 1e-9 * float(found.Fsy_amplitude.max())
@@ -64,7 +64,7 @@ def test_a_four_stroke_cycle_has_half_orders():
 
 def test_designs_keep_their_dims_and_a_broken_one_spoils_itself_alone():
     rods = xr.DataArray([0.02, 0.2, 0.3], dims="rod")
-    ds = ls.sweep(ls.Scene(ls.SliderCrank(CRANK, ls.Link(rods, 1.0, 0.0), 0.5), 100.0), 36, outputs=["Fsx"])
+    ds = ls.sweep(ls.Scene(ls.SliderCrank(CRANK, ls.Link(rods, 1.0, 0.0), 0.5), 100.0), 36, of=["Fsx"])
     found = ls.orders(ds, "Fsx", n=3)
     assert found.Fsx_amplitude.dims == ("rod", "order")
     assert np.isnan(found.Fsx_amplitude.values).all(axis=1).tolist() == [True, False, False]
@@ -88,7 +88,7 @@ def test_what_it_refuses(angles, of, n, said):
 
 
 def test_bars_are_the_amplitudes():
-    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), outputs=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=4)
+    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=4)
     ax = ls.plot.orders(found)
     heights = [bar.get_height() for bar in ax.patches]
     assert heights == [*found.Fsx_amplitude.values, *found.Fsy_amplitude.values]

@@ -159,7 +159,7 @@ def test_what_is_no_study():
         ls.pareto(ls.peaks(PRESS, of=["F32"], theta2=8), minimize=["F32_peak"])
     with pytest.raises(ValueError, match="ds = 3: must be a Dataset over designs"):
         ls.pareto(3, minimize=["F32_peak"])
-    cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=4), theta2=8, outputs=["F32"])
+    cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=4), theta2=8, of=["F32"])
     with pytest.raises(ValueError, match=r"minimize: F32 depends on theta2, and must not; ls\.peaks"):
         ls.pareto(cycle, minimize=["F32"])
     both = ls.peaks(ls.Scene(ls.FourBar(*(ls.Link(x, 1.0, 0.0) for x in (1, 3, 3)), 3.0, branch="both"), 1.0))

@@ -56,7 +56,7 @@ def test_energy_in_is_energy_out_and_friction(scene):
     """Friction takes just what the drive gives more than without it; at a steady speed, over a cycle."""
     pins = dict.fromkeys(scene.mechanism.pins, RUBBING)
     with_friction = ls.pin_friction(scene, pins, theta2=360, of=["power"])
-    without = ls.sweep(scene, theta2=360, outputs=["power"])
+    without = ls.sweep(scene, theta2=360, of=["power"])
     ok = (without.status == 0) & (with_friction.convergence == 0)
     more = (with_friction.power - without.power).where(ok)
     np.testing.assert_allclose(more, with_friction.friction_loss.sum("pin").where(ok), rtol=1e-9, atol=1e-9)
@@ -68,7 +68,7 @@ def test_efficiency_of_the_engine():
     """An engine feeds its drive: efficiency is what arrives over what the gas gives."""
     pins = dict.fromkeys("ABC", ls.Bearing(diameter=0.05, friction=0.01))
     ideal = replace(ENGINE, mechanism=replace(ENGINE.mechanism, friction=0.0))
-    gas = -float(ls.sweep(ideal, outputs=["power"]).power.mean())
+    gas = -float(ls.sweep(ideal, of=["power"]).power.mean())
     for scene in (ideal, ENGINE):
         arrives = -float(ls.pin_friction(scene, pins, of=["power"]).power.mean())
         assert float(ls.pin_friction(scene, pins).efficiency) == pytest.approx(arrives / gas, rel=1e-9)

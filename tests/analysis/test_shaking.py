@@ -30,7 +30,7 @@ def turned(link, first, direction):
 
 def bodies(mechanism, theta2):
     """Mass, moment of inertia, centre of gravity and angle [rad] of each moving link, from positions alone."""
-    ds = ls.sweep(ls.Scene(mechanism, 0.0), theta2, outputs=positions(mechanism))
+    ds = ls.sweep(ls.Scene(mechanism, 0.0), theta2, of=positions(mechanism))
     B = ds.Bx.values, ds.By.values
     theta3 = ds.theta3.values
     found = [(CRANK, turned(CRANK, (0.0, 0.0), theta2), theta2)]
@@ -73,7 +73,7 @@ def test_it_is_minus_the_rate_of_momentum_by_finite_differences_of_positions(mec
         x, y = G[:, 3]
         moment -= mass * (x * a[1] - y * a[0]) + inertia * second_derivative(np.unwrap(angle), step)
     loaded = ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-5.0)])
-    found = ls.sweep(loaded, [theta2], outputs=[*SHAKING, "Fs"]).isel(theta2=0)
+    found = ls.sweep(loaded, [theta2], of=[*SHAKING, "Fs"]).isel(theta2=0)
     np.testing.assert_allclose([found.Fsx, found.Fsy], force, rtol=1e-6, atol=1e-6 * np.hypot(*force))
     np.testing.assert_allclose(found.Ms, moment, rtol=1e-5)
     np.testing.assert_allclose(found.Fs, np.hypot(*force), rtol=1e-6)
@@ -84,7 +84,7 @@ def test_it_is_minus_the_sum_of_mass_times_acceleration(mechanism):
     """Of the centres of gravity, whose accelerations a sweep gives by name."""
     numbers = [2, 3, 4][: len(bodies(mechanism, np.array([0.0])))]
     named = [f"aG{k}{axis}" for k in numbers for axis in "xy"]
-    ds = ls.sweep(ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81)), outputs=[*named, *SHAKING])
+    ds = ls.sweep(ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81)), of=[*named, *SHAKING])
     masses = [mass for mass, *_ in bodies(mechanism, np.array([0.0]))]
     for axis in "xy":
         expected = -sum(mass * ds[f"aG{k}{axis}"] for mass, k in zip(masses, numbers, strict=True))
@@ -95,7 +95,7 @@ def test_it_is_minus_the_sum_of_mass_times_acceleration(mechanism):
 def test_the_ground_bears_it_and_weights_and_loads(mechanism):
     push = ls.Load("crank", force=(30.0, -80.0), at=(0.05, 10.0))
     scene = ls.Scene(mechanism, OMEGA, ALPHA, gravity=(1.0, -9.81), loads=[push])
-    ds = ls.sweep(scene, outputs=["F21x", "F21y", "F41x", "F41y", *SHAKING])
+    ds = ls.sweep(scene, of=["F21x", "F21y", "F41x", "F41y", *SHAKING])
     mass = sum(mass for mass, *_ in bodies(mechanism, np.array([0.0])))
     for axis, gravity, load in (("x", 1.0, 30.0), ("y", -9.81, -80.0)):
         ground = ds[f"F21{axis}"] + ds[f"F41{axis}"]
@@ -103,7 +103,7 @@ def test_the_ground_bears_it_and_weights_and_loads(mechanism):
 
 
 def test_without_weights_and_loads_pins_and_torque_hold_its_moment():
-    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), outputs=["F14x", "F14y", "T12", *SHAKING])
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), of=["F14x", "F14y", "T12", *SHAKING])
     angle = np.radians(12.0)
     x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
     held = ds.T12 + x * ds.F14y - y * ds.F14x
@@ -112,14 +112,14 @@ def test_without_weights_and_loads_pins_and_torque_hold_its_moment():
 
 def test_of_a_slider_crank_the_guide_holds_its_part_by_a_moment():
     """T14 about C, where the slider's centre of gravity is not: without it nothing would hold m4·a4 off C."""
-    ds = ls.sweep(ls.Scene(SLIDER_CRANK, OMEGA, ALPHA), outputs=["F14x", "F14y", "Cx", "Cy", "T12", "T14", *SHAKING])
+    ds = ls.sweep(ls.Scene(SLIDER_CRANK, OMEGA, ALPHA), of=["F14x", "F14y", "Cx", "Cy", "T12", "T14", *SHAKING])
     held = ds.T12 + ds.Cx * ds.F14y - ds.Cy * ds.F14x + ds.T14
     np.testing.assert_allclose(held, -ds.Ms, rtol=0, atol=1e-12 * float(abs(ds.Ms).max()))
     assert abs(ds.T14).max() > 0.01 * abs(ds.Ms).max()
 
 
 def test_the_moment_about_d_has_no_arm_of_the_pin_there():
-    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), outputs=["F12x", "F12y", "T12", *SHAKING])
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA, ALPHA), of=["F12x", "F12y", "T12", *SHAKING])
     angle = np.radians(12.0)
     x, y = 0.2 * np.cos(angle), 0.2 * np.sin(angle)
     held = ds.T12 + (-x) * ds.F12y - (-y) * ds.F12x  # from D to A
@@ -130,7 +130,7 @@ def test_the_moment_about_d_has_no_arm_of_the_pin_there():
 
 
 def test_about_many_points():
-    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 36, outputs=SHAKING)
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 36, of=SHAKING)
     x = xr.DataArray([0.0, 0.1], dims="x")
     about = ls.shaking_moment(ds, about=(x, 0.0))
     np.testing.assert_array_equal(about.isel(x=0), ds.Ms)
@@ -140,7 +140,7 @@ def test_about_many_points():
 def test_it_has_only_the_dims_of_what_moves():
     loads = [ls.Load("rocker", torque=xr.DataArray([1.0, 2.0], dims="load"))]
     heavy = replace(FOUR_BAR, rocker=replace(ROCKER, mass=xr.DataArray([0.5, 0.6, 0.7], dims="m")))
-    ds = ls.sweep(ls.Scene(heavy, OMEGA, gravity=(0.0, -9.81), loads=loads), 12, outputs=["Fsx", "T12"])
+    ds = ls.sweep(ls.Scene(heavy, OMEGA, gravity=(0.0, -9.81), loads=loads), 12, of=["Fsx", "T12"])
     assert ds.Fsx.sizes == {"m": 3, "theta2": 12}
     assert set(ds.T12.dims) == {"load", "m", "theta2"}
 
@@ -148,14 +148,14 @@ def test_it_has_only_the_dims_of_what_moves():
 def test_its_peak_is_that_of_the_continuous_revolution():
     scene = ls.Scene(FOUR_BAR, OMEGA)
     found = ls.peaks(scene, of=["Fs", "Ms"])
-    fine = ls.sweep(scene, np.linspace(0.0, 360.0, 40_001), outputs=["Fs", "Ms"])
+    fine = ls.sweep(scene, np.linspace(0.0, 360.0, 40_001), of=["Fs", "Ms"])
     np.testing.assert_allclose(found.Fs_peak, fine.Fs.max(), rtol=1e-6)
     np.testing.assert_allclose(found.Ms_min, fine.Ms.min(), rtol=1e-6)
     assert found.Fs_peak >= fine.Fs.max()
 
 
 def test_what_it_refuses():
-    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 12, outputs=SHAKING)
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 12, of=SHAKING)
     with pytest.raises(ValueError, match="ds has no Ms: sweep with of="):
         ls.shaking_moment(ds.drop_vars("Ms"))
     with pytest.raises(ValueError, match=r"about = 3.0: must be a pair \(x, y\)"):
@@ -165,7 +165,7 @@ def test_what_it_refuses():
 
 
 def test_the_hodograph_is_its_path():
-    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), outputs=SHAKING)
+    ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), of=SHAKING)
     ax = ls.plot.hodograph(ds)
     drawn = line(ax, "_path Fs").get_xydata()[:-1]
     samples = {*map(tuple, np.stack([ds.Fsx, ds.Fsy], axis=-1).tolist())}

@@ -92,7 +92,7 @@ def test_balance(told):
     balanced = ls.with_counterweights(PRESS, weights)
     assert rows["Fs_peak"][1:] == ["0", "N"]
     for name, key in (("T12_peak", "T12"), ("F43_peak", "F43")):
-        largest = [float(abs(ls.sweep(scene, outputs=[key])[key]).max()) for scene in (PRESS, balanced)]
+        largest = [float(abs(ls.sweep(scene, of=[key])[key]).max()) for scene in (PRESS, balanced)]
         assert [number(text) for text in rows[name][:2]] == pytest.approx(largest, rel=1e-4)
 
 
@@ -105,7 +105,7 @@ def test_a_fraction_of_an_engine_is_balanced(told):
 
 def test_orders(told):
     rows = told("orders", "engine.toml", "-n", "2")
-    found = ls.orders(ls.sweep(ENGINE, outputs=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=2)
+    found = ls.orders(ls.sweep(ENGINE, of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=2)
     assert list(rows) == ["order", "0", "0.5", "1", "1.5", "2"]
     assert rows["order"] == ["Fsx [N]", "Fsy [N]"]
     for order in (1, 2):

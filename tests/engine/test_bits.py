@@ -110,7 +110,7 @@ SCENES = {"plain": plain, "loaded": loaded, "coupler": partial(loaded, drive="co
 )
 def test_compiled_and_interpreted_kernels_agree(sweep, scene, request_name):
     names, scene = REQUESTS[request_name], SCENES[scene]()
-    assert_same_bits(*(sweep(way, scene, 37, outputs=names) for way in ("compiled", "interpreted")))
+    assert_same_bits(*(sweep(way, scene, 37, of=names) for way in ("compiled", "interpreted")))
 
 
 @pytest.mark.parametrize("drive", long_but(["coupler", "rocker"], "rocker"))
@@ -133,9 +133,9 @@ def test_threads_share_the_work(sweep, monkeypatch):
     pools = []
     pool = run.ThreadPoolExecutor
     monkeypatch.setattr(run, "ThreadPoolExecutor", lambda workers: pools.append(workers) or pool(workers))
-    sweep("compiled", designs(), 72, outputs=KINEMATICS, threads=1)
+    sweep("compiled", designs(), 72, of=KINEMATICS, threads=1)
     assert not pools
-    sweep("compiled", designs(), 72, outputs=KINEMATICS, threads=2)
+    sweep("compiled", designs(), 72, of=KINEMATICS, threads=2)
     assert set(pools) == {2}
 
 
@@ -170,16 +170,16 @@ def test_each_output_alone_is_what_it_is_among_all(sweep, name):
     scene = SCENES[name]()
     torque = {"coupler": "T13"}.get(scene.drive, "T12")
     names = (*KINEMATICS, *MAGNITUDES, *UNKNOWNS[:8], torque, *PLACES, *OTHERS)
-    every = sweep("interpreted", scene, 13, outputs=names)
+    every = sweep("interpreted", scene, 13, of=names)
     for name in names:
-        assert_same_bits(sweep("interpreted", scene, 13, outputs=name), every[[name, "status"]])
+        assert_same_bits(sweep("interpreted", scene, 13, of=name), every[[name, "status"]])
 
 
 def test_compiled_subset_is_what_it_is_among_all(sweep):
     """The kernel of one output is another program than the kernel of all."""
     every = sweep("compiled", loaded(), 37)
     for names in (["T12"], ["F14x", "omega4"]):
-        assert_same_bits(sweep("compiled", loaded(), 37, outputs=names), every[[*names, "status"]])
+        assert_same_bits(sweep("compiled", loaded(), 37, of=names), every[[*names, "status"]])
 
 
 @pytest.mark.parametrize("way", ["compiled", "interpreted"])
@@ -208,20 +208,20 @@ def on_grid(length, mass, speed=12.0) -> ls.Scene:
 def test_a_grid_of_designs_is_the_designs_in_a_loop(sweep, way):
     """Also along the last length, which cannot be assembled all round."""
     names = (*KINEMATICS, *MAGNITUDES, *UNKNOWNS, "Cx", "aG3y", "aG4x", *OTHERS)
-    grid = sweep(way, on_grid(LENGTHS, MASSES), 24, outputs=names)
+    grid = sweep(way, on_grid(LENGTHS, MASSES), 24, of=names)
     assert set(grid.status.values.flat) == {0, 1}
     for i, length in enumerate(LENGTHS.values):
         for k, mass in enumerate(MASSES.values):
-            single = sweep("interpreted", on_grid(float(length), float(mass)), 24, outputs=names)
+            single = sweep("interpreted", on_grid(float(length), float(mass)), 24, of=names)
             assert_same_bits(grid.isel(length=i, mass=k, missing_dims="ignore"), single)
 
 
 def test_a_shared_value_is_nan_only_where_no_design_is_ok(sweep):
     """Pin B does not know the coupler's length; where no length can be assembled, nobody may rely on it."""
-    grid = sweep("interpreted", on_grid(LENGTHS[2:], MASSES), 24, outputs=["Bx", "aG2y"])
+    grid = sweep("interpreted", on_grid(LENGTHS[2:], MASSES), 24, of=["Bx", "aG2y"])
     assert (grid.status == 0).any("length").all()
     assert grid.Bx.notnull().all()
-    grid = sweep("interpreted", on_grid(LENGTHS[3:], MASSES), 24, outputs=["Bx", "aG2y"])
+    grid = sweep("interpreted", on_grid(LENGTHS[3:], MASSES), 24, of=["Bx", "aG2y"])
     nobody = (grid.status != 0).all("length")
     assert 0 < nobody.sum() < 24
     for name in ("Bx", "aG2y"):
@@ -232,7 +232,7 @@ def test_a_shared_value_is_nan_only_where_no_design_is_ok(sweep):
 def test_variables_carry_only_the_dims_they_depend_on(sweep, way):
     speed = xr.DataArray([10.0, 20.0], dims="speed")
     names = ("theta3", "omega3", "F14y", "F43x", "T12", "Bx", "aG2x", "omega2", "transmission_angle")
-    grid = sweep(way, on_grid(LENGTHS, MASSES, speed), 24, outputs=names)
+    grid = sweep(way, on_grid(LENGTHS, MASSES, speed), 24, of=names)
     dims = {name: set(array.dims) for name, array in grid.data_vars.items()}
     assert dims == {
         "theta3": {"length", "theta2"},

@@ -165,7 +165,7 @@ def test_leaving_nothing_out_changes_no_number(nothing):
 def test_massless_machine_at_rest_has_nothing_to_do():
     still = scene(crank=ls.Link(0.04, 0, 0), coupler=ls.Link(0.12, 0, 0), rocker=ls.Link(0.09, 0, 0), alpha2=0.0)
     assert cost(still, *UNKNOWNS) == 0
-    assert not any(ls.sweep(still, 8, outputs=UNKNOWNS)[name].any() for name in UNKNOWNS)
+    assert not any(ls.sweep(still, 8, of=UNKNOWNS)[name].any() for name in UNKNOWNS)
 
 
 def test_operations_of_a_design_are_done_once():
@@ -186,12 +186,12 @@ def test_operations_of_a_design_are_done_once():
 )
 def test_unknown_output_is_refused_with_what_was_meant(name, meant):
     with pytest.raises(ValueError, match=rf'{name}.*did you mean "{meant}"'):
-        ls.sweep(scene(), outputs=["theta3", name])
+        ls.sweep(scene(), of=["theta3", name])
 
 
-def test_all_unknown_outputs_are_named_at_once():
-    with pytest.raises(ValueError, match="outputs") as caught:
-        ls.sweep(scene(), outputs=["omega_3", "theta3", "zzz"])
+def test_all_unknown_names_are_named_at_once():
+    with pytest.raises(ValueError, match="of") as caught:
+        ls.sweep(scene(), of=["omega_3", "theta3", "zzz"])
     first, second = str(caught.value).splitlines()
     assert "omega_3" in first
     assert "zzz" in second
@@ -200,4 +200,4 @@ def test_all_unknown_outputs_are_named_at_once():
 
 def test_torque_of_another_drive_is_no_output():
     with pytest.raises(ValueError, match="T13"):
-        ls.sweep(scene(), outputs="T13")
+        ls.sweep(scene(), of="T13")

@@ -31,7 +31,7 @@ def test_a_row_for_each_design():
 
 
 def test_a_row_for_each_design_and_angle_angles_innermost():
-    cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=3), theta2=4, outputs=["theta4", "T12"])
+    cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=3), theta2=4, of=["theta4", "T12"])
     table = cycle.linksweep.to_pandas()
     assert list(table.columns) == [
         "design",

@@ -33,7 +33,7 @@ def random_case(branch: str, drive: str, seed: int, **parameters) -> tuple[FourB
 def swept(data: FourBarData, theta2, names=EVERYTHING) -> xr.Dataset:
     """Return all quantities, by position along theta2 instead of by angle; the drive's torque is called T."""
     torque = torque_name(data)
-    cycle = ls.sweep(to_scene(data), theta2, outputs=(*names, torque))
+    cycle = ls.sweep(to_scene(data), theta2, of=(*names, torque))
     assert not cycle.status.any()
     return cycle.rename({torque: "T"}).drop_vars(["status", "theta2"])
 

@@ -45,7 +45,7 @@ def stacked_load(loads: list[LoadData]) -> ls.Load:
 def assert_each_is_as_alone(batch: xr.Dataset, designs: list, to_scene, names: tuple[str, ...]) -> None:
     """Assert that every design on either branch has the bits in the batch that it has alone."""
     for (k, design), branch in product(enumerate(designs), BRANCHES):
-        single = ls.sweep(to_scene(replace(design, branch=branch)), batch.theta2, outputs=names)
+        single = ls.sweep(to_scene(replace(design, branch=branch)), batch.theta2, of=names)
         for name in (*names, "status"):
             chosen = batch[name].isel(design=k, drop=True) if "design" in batch[name].dims else batch[name]
             chosen = chosen.sel(branch=branch, drop=True) if "branch" in chosen.dims else chosen

@@ -24,7 +24,7 @@ def four_bar(lengths, **frame) -> ls.FourBar:
 
 
 def swept(lengths, theta2, *outputs, **frame):
-    cycle = ls.sweep(ls.Scene(four_bar(lengths, **frame), omega2=3.0), theta2, outputs=outputs)
+    cycle = ls.sweep(ls.Scene(four_bar(lengths, **frame), omega2=3.0), theta2, of=outputs)
     return [cycle[name].broadcast_like(cycle.theta2).values for name in outputs], cycle.status.values
 
 
@@ -148,7 +148,7 @@ def test_forces_beside_a_fold_keep_their_digits(shape, ground_angle, drive):
     for fold in folds:
         for angle in beside(fold, [1e-1, 1e-3, 1e-5, 1e-6, 4e-7]):
             theta2 = ground_angle + angle
-            cycle, exact = ls.sweep(to_scene(data), [theta2], outputs=(*FORCES, "error_bound")), solve(data, theta2)
+            cycle, exact = ls.sweep(to_scene(data), [theta2], of=(*FORCES, "error_bound")), solve(data, theta2)
             assert not cycle.status.any()
             error = max(abs(mp.mpf(cycle[name].item()) - exact[name]) for name in FORCES) / largest_force(exact)
             assert error < min(1e-13, cycle.error_bound.item()), (angle, float(error))
@@ -159,7 +159,7 @@ def test_accelerations_beside_a_fold_keep_their_digits(shape):
     lengths, folds = FLAT_AT[shape]
     data, names = flat(lengths), ("alpha3", "alpha4", "omega3", "omega4")
     for angle in [angle for fold in folds for angle in beside(fold, [1e-1, 1e-3, 1e-6])]:
-        cycle, exact = ls.sweep(to_scene(data), [angle], outputs=names), solve(data, angle)
+        cycle, exact = ls.sweep(to_scene(data), [angle], of=names), solve(data, angle)
         size = max(1, *(abs(exact[name]) for name in names))
         for name in names:
             assert abs(mp.mpf(cycle[name].item()) - exact[name]) < 1e-14 * size, (angle, name)
@@ -182,7 +182,7 @@ def test_a_batch_of_both_kinds_has_the_bits_of_single_designs():
 
     def result(lengths):
         links = (ls.Link(lengths[name], 1.0, 0.1, 0.07) for name in LENGTHS[:3])
-        return ls.sweep(ls.Scene(ls.FourBar(*links, ground=lengths["ground"]), omega2=3.0), 36, outputs=names)
+        return ls.sweep(ls.Scene(ls.FourBar(*links, ground=lengths["ground"]), omega2=3.0), 36, of=names)
 
     batch = result(arrays)
     for k in range(2):
@@ -192,6 +192,6 @@ def test_a_batch_of_both_kinds_has_the_bits_of_single_designs():
 
 
 def test_energy_balances_through_both_folds():
-    cycle = ls.sweep(heavy_parallelogram(0.2, 0.5), np.arange(0.5, 360.0, 1.0), outputs=["power_residual"])
+    cycle = ls.sweep(heavy_parallelogram(0.2, 0.5), np.arange(0.5, 360.0, 1.0), of=["power_residual"])
     assert not cycle.status.any()
     assert abs(cycle.power_residual).max() < 1e-10

@@ -73,7 +73,7 @@ def test_holds_a_torque_on_the_crank(offset, cylinder, normal):
     """Massless, barrel and rod are a strut from D to B: on the arm 2.4 m about A it bears 12 N m with 5 N. Beside that
     line the cylinder gives its part along its own, and the bushes the rest. Its power is the torque's."""
     data = pythagoras(offset=offset, loads=(LoadData("crank", torque=12.0),))
-    cycle = ls.sweep(to_scene(data), [90.0], outputs=["cylinder_force", "F43n", "T43", *PINS, "power"])
+    cycle = ls.sweep(to_scene(data), [90.0], of=["cylinder_force", "F43n", "T43", *PINS, "power"])
     strut = {f"F{ij}{axis}": F for ij in ("43", "32", "14") for axis, F in (("x", 4.0), ("y", 3.0))}
     expected = {"cylinder_force": cylinder, "F43n": normal, "T43": 0.0, "F12x": -4.0, "F12y": -3.0, "power": -12.0}
     for name, value in (expected | strut).items():
@@ -192,7 +192,7 @@ def test_all_digits_close_to_a_dead_centre(dead_centre, beside):
     bars = LinkData(0.4, 1.3, 0.02, 0.1, 20.0), LinkData(1.0, 0.7, 0.05, 0.3)
     data = InvertedSliderCrankData(*bars, 1.1, 0.5, 0.01, 0.2, omega2=1.5, drive="cylinder", loads=(load,))
     result = solve(data, dead_centre + beside)
-    cycle = ls.sweep(to_scene(data), [dead_centre + beside], outputs=["slide_velocity", "cylinder_force", "F43n"])
+    cycle = ls.sweep(to_scene(data), [dead_centre + beside], of=["slide_velocity", "cylinder_force", "F43n"])
     for name in ("slide_velocity", "cylinder_force", "F43n"):
         assert abs(cycle[name].item() / float(result[name]) - 1.0) < 1e-13, name
 
@@ -277,7 +277,7 @@ def test_refused_at_the_door(tipper, changes, message):
 
 
 def test_names_of_other_drives_are_not_there(tipper):
-    with pytest.raises(ValueError, match='outputs: T12 belongs to drive="crank"; with drive="cylinder" give cyl'):
-        ls.sweep(tipper, 4, outputs=["T12"])
+    with pytest.raises(ValueError, match='of: T12 belongs to drive="crank"; with drive="cylinder" give cyl'):
+        ls.sweep(tipper, 4, of=["T12"])
     with pytest.raises(ValueError, match='of: cylinder_force belongs to drive="cylinder"; with drive="crank" give T12'):
         ls.peaks(replace(tipper, drive="crank"), of=["cylinder_force"])

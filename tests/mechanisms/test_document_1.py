@@ -51,7 +51,7 @@ def exact() -> dict:
 @pytest.mark.parametrize("solver", ["fast", "dense"])
 def test_all_values_agree_with_exact_arithmetic_from_the_lengths(solver):
     """To 1e-13 of the largest force; reached: 1e-15."""
-    at_45 = ls.sweep(scene(), theta2=[45.0], outputs=OUTPUTS, solver=solver).isel(theta2=0)
+    at_45 = ls.sweep(scene(), theta2=[45.0], of=OUTPUTS, solver=solver).isel(theta2=0)
     scale = dict.fromkeys(UNKNOWNS + FORCES, largest_force(exact()))
     scale["T12"] = exact()["largest_torque"]
     for alike in ALIKE:
@@ -79,7 +79,7 @@ PRINTED = [  # values, half of the last digit, the largest alike; F23 and F34 tu
 
 @pytest.mark.parametrize(("printed", "half_digit", "largest"), PRINTED)
 def test_printed_values_to_their_rounding(printed, half_digit, largest):
-    at_45 = ls.sweep(scene(), theta2=[45.0], outputs=list(printed)).isel(theta2=0)
+    at_45 = ls.sweep(scene(), theta2=[45.0], of=list(printed)).isel(theta2=0)
     for name, value in printed.items():
         assert at_45[name].item() == pytest.approx(value, abs=half_digit + HALF_STEP * largest), name
 
@@ -167,7 +167,7 @@ def limit() -> float:
 @pytest.mark.parametrize("count", [720, 3600])
 def test_full_circle_has_nan_outside_its_limits(count):
     assert limit() == pytest.approx(86.906, abs=5e-4)
-    cycle = ls.sweep(scene(), theta2=count, outputs=[*OUTPUTS, "transmission_angle", "power", "cond", "Cx"])
+    cycle = ls.sweep(scene(), theta2=count, of=[*OUTPUTS, "transmission_angle", "power", "cond", "Cx"])
     closes = (cycle.theta2.values < limit()) | (cycle.theta2.values > 360.0 - limit())
     meanings = cycle.status.attrs["flag_meanings"].split()
     assert [meanings[k] for k in cycle.status.values] == ["ok" if ok else "cannot_assemble" for ok in closes]
@@ -178,5 +178,5 @@ def test_full_circle_has_nan_outside_its_limits(count):
 def test_first_and_last_nan_bracket_the_limits():
     """Also a millionth of a degree apart, where rounding alone could decide."""
     near = limit() + np.array([-1e-6, 1e-6])
-    status = ls.sweep(scene(), theta2=[*near, *(-near), *(360.0 - near)], outputs=["T12"]).status
+    status = ls.sweep(scene(), theta2=[*near, *(-near), *(360.0 - near)], of=["T12"]).status
     assert status.values.tolist() == [0, 1] * 3

@@ -31,7 +31,7 @@ def test_it_holds_and_is_not_far_off(machine, count):
     for _ in range(count):
         data = reference.random_data(rng)
         theta2 = reference.random_theta2(rng, data)
-        cycle = ls.sweep(reference.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
+        cycle = ls.sweep(reference.to_scene(data), theta2=[theta2], of=[*COMPONENTS, "error_bound"])
         if int(cycle.status.values.flat[0]) == 0:
             error, bound = true_error(reference, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
             assert error <= bound
@@ -50,7 +50,7 @@ def test_it_holds_near_toggles():
             toggle = toggle[np.isfinite(toggle)]
             for side in (-1.0, 1.0) if len(toggle) else ():
                 theta2 = float(toggle[0] + side * np.degrees(margin))
-                cycle = ls.sweep(oracle.to_scene(data), theta2=[theta2], outputs=[*COMPONENTS, "error_bound"])
+                cycle = ls.sweep(oracle.to_scene(data), theta2=[theta2], of=[*COMPONENTS, "error_bound"])
                 if int(cycle.status.values.flat[0]) == 0:
                     error, bound = true_error(oracle, data, theta2, cycle), float(cycle.error_bound.values.flat[0])
                     assert error <= bound
@@ -67,7 +67,7 @@ def test_a_frame_at_right_angles_is_as_good(name, angle):
     scene = ls.example(name)
     turned = "slide_angle" if name == "engine" else "ground_angle"
     scene = replace(scene, mechanism=replace(scene.mechanism, **{turned: angle}))
-    bound = ls.sweep(scene, theta2=36, outputs=["error_bound"]).error_bound
+    bound = ls.sweep(scene, theta2=36, of=["error_bound"]).error_bound
     assert float(bound.min()) > 0.0 and float(bound.max()) < 1e-12
 
 

@@ -93,7 +93,7 @@ def worst_error(cycle: xr.Dataset, case: Case, name: str) -> float:
 
 def test_every_number_against_60_digits():
     for case in cases():
-        cycle = ls.sweep(to_scene(case.data), case.theta2, outputs=names(case.data))
+        cycle = ls.sweep(to_scene(case.data), case.theta2, of=names(case.data))
         assert not cycle.status.any()
         wrong = {name: error for name in names(case.data) if (error := worst_error(cycle, case, name)) > 1e-11}
         assert not wrong, case.data
@@ -103,7 +103,7 @@ def test_dense_solution_against_60_digits():
     for case in few_cases():
         scene = to_scene(case.data)
         expected = (*(name for name in COMPONENTS if name[0] == "F"), "F43n", "T43", UNKNOWN[case.data.drive])
-        cycle = ls.sweep(scene, case.theta2, outputs=(*expected, "cond"), solver="dense")
+        cycle = ls.sweep(scene, case.theta2, of=(*expected, "cond"), solver="dense")
         assert max(worst_error(cycle, case, name) for name in expected) < 1e-11
         page = ls.system(scene, case.theta2)
         assert page.matrix.shape == (4, 9, 9)
@@ -115,7 +115,7 @@ def test_dense_solution_against_60_digits():
 
 def test_sweep_balances_power():
     for case in cases():
-        cycle = ls.sweep(to_scene(case.data), case.theta2, outputs=["power_residual"])
+        cycle = ls.sweep(to_scene(case.data), case.theta2, of=["power_residual"])
         assert np.all(np.abs(cycle.power_residual) < 1e-12)
 
 
@@ -124,7 +124,7 @@ def test_close_to_a_toggle():
     for gap, angle in product((1e-4, 1e-7), (0.0, 0.003)):
         data = InvertedSliderCrankData(LinkData(1.0 - gap, 0.0, 0.0), LinkData(1.0, 0.0, 0.0), 1.0, 1.0, omega2=1.0)
         result = solve(data, angle)
-        cycle = ls.sweep(to_scene(data), [angle], outputs=["slide", "omega4", "slide_velocity"])
+        cycle = ls.sweep(to_scene(data), [angle], of=["slide", "omega4", "slide_velocity"])
         for name in ("slide", "omega4", "slide_velocity"):
             assert abs(cycle[name].item() - float(result[name])) <= 1e-14 * max(abs(float(result[name])), gap)
 
@@ -183,7 +183,7 @@ def test_kinematics_by_hand():
     """Line (4, 3)/5 through D: omega4 = v.n/5 with v = (-3, 0)."""
     expected = {"omega4": 0.36, "alpha4": -0.1344, "slide": 5.0, "slide_velocity": -2.4, "slide_acceleration": -1.152}
     expected |= {"theta4": np.degrees(np.arctan2(3, 4)), "transmission_angle": 90.0, "aG4x": 0.0, "Bx": 0.0, "By": 3.0}
-    cycle = ls.sweep(to_scene(pythagoras()), [90.0], outputs=tuple(expected))
+    cycle = ls.sweep(to_scene(pythagoras()), [90.0], of=tuple(expected))
     for name, value in expected.items():
         assert abs(cycle[name].item() - value) <= 1e-15 * max(1.0, abs(value)), name
         assert abs(float(solve(pythagoras(), 90.0)[name]) - value) <= 1e-15 * max(1.0, abs(value)), name
@@ -241,7 +241,7 @@ def test_compiled_and_interpreted_agree_to_the_bit(drive, monkeypatch):
     cycles = []
     for after in (-1, np.inf):
         monkeypatch.setattr(run, "COMPILE_AFTER", after)
-        cycles.append(ls.sweep(scene, 48, outputs=(*EVERYTHING, "power_residual")))
+        cycles.append(ls.sweep(scene, 48, of=(*EVERYTHING, "power_residual")))
     compiled, interpreted = cycles
     assert set(np.unique(compiled.status)) >= {0, 1}
     for name in compiled.data_vars:
@@ -250,7 +250,7 @@ def test_compiled_and_interpreted_agree_to_the_bit(drive, monkeypatch):
 
 def swept(data: InvertedSliderCrankData, theta2) -> xr.Dataset:
     """Everything by position along theta2."""
-    return ls.sweep(to_scene(data), theta2, outputs=names(data)).drop_vars("theta2")
+    return ls.sweep(to_scene(data), theta2, of=names(data)).drop_vars("theta2")
 
 
 def assert_bits(result: xr.Dataset, expected: xr.Dataset) -> None:

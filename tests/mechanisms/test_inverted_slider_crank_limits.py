@@ -33,12 +33,12 @@ def test_reversals_swing_and_time_ratio(offset, branch, ground_angle):
     scene = machine(0.2, 0.4, offset, branch=branch, ground_angle=ground_angle)
     limits = ls.check(scene)
     greatest, least = (limits.reversal_angle.sel(reversal=f"{branch}_{end}").item() for end in ("greatest", "least"))
-    ends = ls.sweep(scene, [greatest, least], outputs=["theta4", "omega4"])
+    ends = ls.sweep(scene, [greatest, least], of=["theta4", "omega4"])
     assert np.all(np.abs(ends.omega4) < 1e-14)
     assert abs((ends.theta4[0] - ends.theta4[1]).item() % 360.0 - limits.swing.item()) < 1e-12
     rising = (greatest - least) % 360.0
     assert abs(max(rising, 360.0 - rising) / min(rising, 360.0 - rising) - limits.time_ratio.item()) < 1e-12
-    middle = ls.sweep(scene, [least + 0.5 * rising], outputs=["omega4"])
+    middle = ls.sweep(scene, [least + 0.5 * rising], of=["omega4"])
     assert middle.omega4.item() > 0.0
 
 
@@ -47,7 +47,7 @@ def test_time_ratio_of_a_rocker_that_turns_fully(offset):
     """Half a turn of the rocker, from square to the frame line to square, as the sweep shows it."""
     scene = machine(0.4, 0.2, offset)
     grid = np.arange(3600) / 10.0
-    theta4 = ls.sweep(scene, grid, outputs=["theta4"]).theta4.values
+    theta4 = ls.sweep(scene, grid, of=["theta4"]).theta4.values
     slow = np.count_nonzero(np.cos(np.radians(theta4)) < 0.0) / len(grid)
     assert abs(slow / (1.0 - slow) - ls.check(scene).time_ratio.item()) < 5e-3
     assert np.isnan(ls.check(scene).reversal_angle).all()
@@ -71,7 +71,7 @@ def test_arc_that_can_be_assembled(offset, ground_angle):
 
 def test_least_transmission_angle():
     scene = machine(0.2, 0.5, 0.1)
-    least = ls.sweep(scene, 720, outputs=["transmission_angle"]).transmission_angle.min().item()
+    least = ls.sweep(scene, 720, of=["transmission_angle"]).transmission_angle.min().item()
     assert abs(least - ls.check(scene).transmission_angle_min.item()) < 1e-12
     assert abs(least - np.degrees(np.arccos(1 / 3))) < 1e-12
 
@@ -88,7 +88,7 @@ def test_studies_hold_every_kind():
 
 def test_peaks_are_those_of_a_fine_sweep():
     scene = ls.example("quick-return")
-    cycle, peaks = ls.sweep(scene, 7200, outputs=["F43", "T12", "T43"]), ls.peaks(scene)
+    cycle, peaks = ls.sweep(scene, 7200, of=["F43", "T12", "T43"]), ls.peaks(scene)
     assert abs(peaks.F43_peak.item() - cycle.F43.max().item()) < 1e-6 * cycle.F43.max().item()
     assert abs(peaks.T12_max.item() - cycle.T12.max().item()) < 1e-6 * cycle.T12.max().item()
 
@@ -101,8 +101,8 @@ def test_example_cuts_on_the_slow_stroke():
     scene = ls.example("quick-return")
     third = np.degrees(np.arcsin(1 / 3))
     assert abs(ls.check(scene).time_ratio.item() - (90 + third) / (90 - third)) < 1e-12
-    cycle = ls.sweep(scene, 1440, outputs=["theta4", "omega4", "T12"])
-    force = ls.sweep(scene, 1440, outputs=["F43n"])  # the same grid, for its coordinate of the force
+    cycle = ls.sweep(scene, 1440, of=["theta4", "omega4", "T12"])
+    force = ls.sweep(scene, 1440, of=["F43n"])  # the same grid, for its coordinate of the force
     cutting = force["loads[1].force[1]"].values
     assert np.all(cycle.omega4.values[cutting > 100.0] > 0.0)
     turn = np.radians(0.25) / scene.omega2

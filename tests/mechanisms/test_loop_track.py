@@ -55,7 +55,7 @@ def test_example_17_4_from_exact_arithmetic():
         "a_total": mp.hypot(a_radial, a_tangential),
         "a_total_angle": 120 - mp.degrees(mp.atan2(a_tangential, a_radial)),
     }
-    cycle = ls.sweep(EXAMPLE, theta=[30.0], outputs=ALL)
+    cycle = ls.sweep(EXAMPLE, theta=[30.0], of=ALL)
     for name, value in expected.items():
         assert float(cycle[name][0]) == pytest.approx(float(value), rel=1e-13), name
     # as printed, with the digits of the page and a few more
@@ -112,7 +112,7 @@ def test_theta_is_a_place_on_one_lap():
 
 def test_constant_speed_is_energy_where_nothing_does_work():
     scenes = (ls.Scene(CAR, speed=12.0, profile=profile) for profile in ("constant", "energy"))
-    constant, by_energy = (ls.sweep(scene, outputs=ALL) for scene in scenes)
+    constant, by_energy = (ls.sweep(scene, of=ALL) for scene in scenes)
     xr.testing.assert_equal(constant.broadcast_like(by_energy), by_energy)
 
 
@@ -178,7 +178,7 @@ def test_the_least_entry_speed_is_the_least():
 
 def test_peaks_are_those_of_the_whole_lap():
     for scene in random_scenes(12, seed=7):
-        fine = ls.sweep(scene, theta=36_000, outputs=["normal_force", "speed", "a_tangential"])
+        fine = ls.sweep(scene, theta=36_000, of=["normal_force", "speed", "a_tangential"])
         coarse = ls.peaks(scene, of=["normal_force", "speed", "a_tangential"])
         for name, samples in fine.data_vars.items():
             if name != "status":
@@ -202,12 +202,12 @@ def study() -> ls.Scene:
 
 def test_a_study_is_its_designs():
     scene = study()
-    cycle, worst, result = ls.sweep(scene, outputs=ALL), ls.peaks(scene), ls.check(scene)
+    cycle, worst, result = ls.sweep(scene, of=ALL), ls.peaks(scene), ls.check(scene)
     assert cycle.a_tangential.sizes == {"entry": 3, "m": 2, "theta": 720}
     for i, speed in enumerate((20.0, 30.0, 45.0)):
         for j, mass in enumerate((600.0, 700.0)):
             one = energy(speed, 200.0, mechanism=ls.LoopTrack(30.0, mass))
-            for batch, single in ((cycle, ls.sweep(one, outputs=ALL)), (worst, ls.peaks(one)), (result, ls.check(one))):
+            for batch, single in ((cycle, ls.sweep(one, of=ALL)), (worst, ls.peaks(one)), (result, ls.check(one))):
                 for name in single.data_vars:
                     np.testing.assert_array_equal(batch[name].isel(entry=i, m=j), single[name], err_msg=str(name))
 

@@ -163,7 +163,7 @@ def almost_slider(rocker: float, theta2: np.ndarray, load: float) -> dict[str, n
     )
     push = ls.Load("rocker", force=(load, 0.0), at=(rocker, 0.0))
     names = ("Cx", "theta3", "omega3", "alpha3", "aG4x", "F43x", "F43y", "F32x", "F14y", "F14x", "T12")
-    cycle = ls.sweep(ls.Scene(bars, omega2=5.0, alpha2=3.0, loads=push), theta2, outputs=names)
+    cycle = ls.sweep(ls.Scene(bars, omega2=5.0, alpha2=3.0, loads=push), theta2, of=names)
     return {name: cycle[name].values for name in names}
 
 

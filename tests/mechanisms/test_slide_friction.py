@@ -46,7 +46,7 @@ def cases() -> list[Case]:
 
 def test_every_force_against_60_digits():
     for case in cases():
-        cycle = ls.sweep(to_scene(case.data), case.theta2, outputs=(*names(case.data), "friction_power"))
+        cycle = ls.sweep(to_scene(case.data), case.theta2, of=(*names(case.data), "friction_power"))
         assert not cycle.status.any()
         wrong = {name: error for name in names(case.data) if (error := worst_error(cycle, case, name)) > 1e-11}
         assert not wrong, case.data
@@ -61,7 +61,7 @@ def test_the_square_system_against_60_digits():
     for case in cases()[::3]:
         scene = to_scene(case.data)
         quantities = (*COMPONENTS, "F43n", "T43", UNKNOWN[case.data.drive])
-        dense = ls.sweep(scene, case.theta2, outputs=quantities, solver="dense")
+        dense = ls.sweep(scene, case.theta2, of=quantities, solver="dense")
         assert max(worst_error(dense, case, name) for name in quantities) < 1e-11
         page = ls.system(scene, case.theta2)
         assert page.matrix.shape == (3, 9, 9)
@@ -73,7 +73,7 @@ def test_the_square_system_against_60_digits():
 
 def test_powers_balance_and_friction_only_takes():
     for case in cases():
-        cycle = ls.sweep(to_scene(case.data), 36, outputs=["power_residual", "friction_power"])
+        cycle = ls.sweep(to_scene(case.data), 36, of=["power_residual", "friction_power"])
         ok = cycle.status == 0
         assert (abs(cycle.power_residual.where(ok, 0.0)) < 1e-11).all()
         assert (cycle.friction_power.where(ok, 0.0) <= 0.0).all()
@@ -93,7 +93,7 @@ def test_the_normal_force_under_a_torque_on_the_rocker(offset, lever, torque, tu
     plain = torque / lever
     normal = plain / (1.0 + np.sign(plain) * mu * v * offset / lever)
     assert cycle.F43n.item() == pytest.approx(normal, rel=1e-14)
-    along = ls.sweep(scene, [90.0], outputs=["friction_force"]).friction_force.item()
+    along = ls.sweep(scene, [90.0], of=["friction_force"]).friction_force.item()
     assert along == pytest.approx(-mu * abs(normal) * v, rel=1e-14)
     assert lever * normal - offset * along == pytest.approx(torque, rel=1e-14)
 
@@ -103,7 +103,7 @@ def test_a_driven_rocker_pulls_the_crank_through_friction(pull):
     """8 N m on the crank (0, 3), line (4, 3)/5: N·9/5 − f·12/5 = −8, T14 as the powers balance."""
     mu = 0.25
     data = pythagoras(friction=mu, drive="rocker", loads=(LoadData("crank", torque=pull),))
-    cycle = ls.sweep(to_scene(data), [90.0], outputs=["F43n", "friction_force", "T14", "omega4", "slide_velocity"])
+    cycle = ls.sweep(to_scene(data), [90.0], of=["F43n", "friction_force", "T14", "omega4", "slide_velocity"])
     normal, along = cycle.F43n.item(), cycle.friction_force.item()
     assert along == pytest.approx(mu * abs(normal), rel=1e-14)  # the block moves towards D
     assert 1.8 * normal - 2.4 * along == pytest.approx(-pull, rel=1e-14)
@@ -115,8 +115,8 @@ def test_a_cylinder_overcomes_friction_and_no_pin_feels_it():
     smooth = replace(cases()[0].data, drive="cylinder", friction=0.0)
     theta2 = cases()[0].theta2
     quantities = (*COMPONENTS, "F43n", "T43")
-    rough = ls.sweep(to_scene(replace(smooth, friction=5.0)), theta2, outputs=(*quantities, "friction_force"))
-    plain = ls.sweep(to_scene(smooth), theta2, outputs=quantities)
+    rough = ls.sweep(to_scene(replace(smooth, friction=5.0)), theta2, of=(*quantities, "friction_force"))
+    plain = ls.sweep(to_scene(smooth), theta2, of=quantities)
     assert not rough.status.any()
     assert_bits(rough, plain)
     force = [ls.sweep(to_scene(replace(smooth, friction=mu)), theta2).cylinder_force for mu in (0.0, 5.0)]
@@ -179,8 +179,7 @@ def test_friction_that_vanishes():
     for case in cases()[::5]:
         quantities = names(case.data)[:-2]
         plain, small, half = (
-            ls.sweep(to_scene(replace(case.data, friction=mu)), case.theta2, outputs=quantities)
-            for mu in (0.0, 1e-6, 5e-7)
+            ls.sweep(to_scene(replace(case.data, friction=mu)), case.theta2, of=quantities) for mu in (0.0, 1e-6, 5e-7)
         )
         for force in ("F43n", "F32x", "F14y"):
             size = float(np.abs(plain.F32).max())
@@ -192,10 +191,8 @@ def test_mirror():
     turned = {"F43n", "T43", "T12", "T14", *(name for name in COMPONENTS if name.endswith("y"))}
     for case in cases():
         quantities = names(case.data)
-        here = ls.sweep(to_scene(case.data), case.theta2, outputs=quantities).drop_vars("theta2")
-        there = ls.sweep(to_scene(mirrored(case.data)), [-x for x in case.theta2], outputs=quantities).drop_vars(
-            "theta2"
-        )
+        here = ls.sweep(to_scene(case.data), case.theta2, of=quantities).drop_vars("theta2")
+        there = ls.sweep(to_scene(mirrored(case.data)), [-x for x in case.theta2], of=quantities).drop_vars("theta2")
         assert_bits(there, here.map(lambda x: -x if x.name in turned else x))
 
 
@@ -204,7 +201,7 @@ def test_turned_backwards_friction_turns_its_sign():
     load = LoadData("rocker", torque=7.0)
     data = pythagoras(offset=2.0, friction=0.3, loads=(load,))
     forwards, backwards = (
-        ls.sweep(to_scene(replace(data, omega2=w)), 24, outputs=["F43n", "friction_force"]) for w in (1.0, -1.0)
+        ls.sweep(to_scene(replace(data, omega2=w)), 24, of=["F43n", "friction_force"]) for w in (1.0, -1.0)
     )
     plain = ls.sweep(to_scene(replace(data, friction=0.0)), 24).F43n
     ok = (forwards.status == 0) & (forwards.friction_force != 0.0)
@@ -234,10 +231,10 @@ def test_batched_and_compiled_bits(drive, monkeypatch):
     together = []
     for after in (-1, np.inf):
         monkeypatch.setattr(run, "COMPILE_AFTER", after)
-        together.append(ls.sweep(working(drive, friction=mu, offset=offset), 24, outputs=quantities))
+        together.append(ls.sweep(working(drive, friction=mu, offset=offset), 24, of=quantities))
     assert_bits(*together)
     for i, k in product(range(4), range(4)):
-        alone = ls.sweep(working(drive, friction=float(mu[i]), offset=float(offset[k])), 24, outputs=quantities)
+        alone = ls.sweep(working(drive, friction=float(mu[i]), offset=float(offset[k])), 24, of=quantities)
         for name in quantities:
             batched = together[0][name]
             at = {dim: index for dim, index in (("mu", i), ("e", k)) if dim in batched.dims}
@@ -251,9 +248,9 @@ def test_batched_and_compiled_bits(drive, monkeypatch):
 def test_exact_peaks_see_both_sides_of_the_jumps(drive, offset):
     scene = working(drive, offset=offset)
     of = ["F43", "F43n", "T12"]
-    exact, fine = ls.peaks(scene, of=of), ls.sweep(scene, 72_000, outputs=of)
+    exact, fine = ls.peaks(scene, of=of), ls.sweep(scene, 72_000, of=of)
     jumps = scene.mechanism.jumps()
-    sides = ls.sweep(scene, [angle + d for angle in jumps for d in (-1e-9, 1e-9)], outputs=of)
+    sides = ls.sweep(scene, [angle + d for angle in jumps for d in (-1e-9, 1e-9)], of=of)
     for name in of:
         sampled = max(float(abs(cycle[name]).max()) for cycle in (fine, sides))
         assert sampled * (1.0 - 1e-9) <= float(exact[f"{name}_peak"]) <= sampled * (1.0 + 1e-6)
@@ -275,7 +272,7 @@ def test_breakdown_has_the_share_of_friction():
 
 def test_work_of_friction_in_a_cycle():
     scene = working()
-    cycle = ls.sweep(scene, 36_000, outputs=["friction_power"])
+    cycle = ls.sweep(scene, 36_000, of=["friction_power"])
     mean = ls.peaks(scene, of=["friction_power_mean"])
     assert float(mean.friction_power_mean) == pytest.approx(float(cycle.friction_power.mean()), rel=1e-3)
     assert float(mean.friction_power_mean) < 0.0
@@ -289,7 +286,7 @@ def test_a_file_keeps_friction(tmp_path):
 
 def test_the_error_bound_holds():
     for case in cases()[::4]:
-        cycle = ls.sweep(to_scene(case.data), case.theta2, outputs=[*COMPONENTS, "error_bound"])
+        cycle = ls.sweep(to_scene(case.data), case.theta2, of=[*COMPONENTS, "error_bound"])
         worst = max(worst_error(cycle, case, name) for name in COMPONENTS)
         assert worst <= float(np.max(cycle.error_bound))
 
@@ -302,7 +299,7 @@ def test_negative_friction_is_refused():
 def test_a_block_on_a_pin_without_offset_feels_friction_in_the_torque_alone():
     """e = 0 leaves the normal force of no friction; T12 rises by what friction takes."""
     rough, smooth = (
-        ls.sweep(working(offset=0.0, friction=mu), 36, outputs=["F43n", "power", "friction_power"]) for mu in (0.3, 0.0)
+        ls.sweep(working(offset=0.0, friction=mu), 36, of=["F43n", "power", "friction_power"]) for mu in (0.3, 0.0)
     )
     np.testing.assert_array_equal(rough.F43n, smooth.F43n)
     np.testing.assert_allclose(rough.power - smooth.power, -rough.friction_power, rtol=1e-9, atol=1e-9)
@@ -310,4 +307,4 @@ def test_a_block_on_a_pin_without_offset_feels_friction_in_the_torque_alone():
 
 def test_a_machine_at_rest_has_no_friction():
     still = pythagoras(friction=0.3, loads=(LoadData("rocker", torque=1.0),), omega2=0.0)
-    assert ls.sweep(to_scene(still), [90.0], outputs=["friction_force"]).friction_force.item() == 0.0
+    assert ls.sweep(to_scene(still), [90.0], of=["friction_force"]).friction_force.item() == 0.0

@@ -120,7 +120,7 @@ def test_fast_path_agrees_with_the_reference():
     result = []
     for case in cases():
         names = all_names(case.data)
-        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=names)
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, of=names)
         assert not cycle.status.any(), case
         result.append(errors(cycle, names, case))
     assert max(worst(result).values()) < 1e-11, worst(result)
@@ -129,7 +129,7 @@ def test_fast_path_agrees_with_the_reference():
 def test_power_balances_at_every_sample():
     """Drive, friction, loads, gravity and inertia, of which none knows of the others."""
     for case in cases():
-        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=["power_residual", "friction_power"])
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, of=["power_residual", "friction_power"])
         assert abs(cycle.power_residual).max() < 1e-12, case
         assert (cycle.friction_power <= 0.0).all()
 
@@ -138,8 +138,8 @@ def test_dense_path_agrees_with_the_reference_and_with_the_fast_path():
     result = []
     for case in cases()[::2]:
         names = unknowns(case.data)
-        dense = ls.sweep(to_scene(case.data), case.theta2, outputs=[*names, "cond"], solver="dense")
-        fast = ls.sweep(to_scene(case.data), case.theta2, outputs=names)
+        dense = ls.sweep(to_scene(case.data), case.theta2, of=[*names, "cond"], solver="dense")
+        fast = ls.sweep(to_scene(case.data), case.theta2, of=names)
         for name in names:
             size = case.results["largest_torque" if name.startswith("T") else "largest_force"]
             assert (abs(dense[name] - fast[name]) / size <= np.minimum(1e-10, EPS * dense.cond)).all(), (name, case)
@@ -170,7 +170,7 @@ def test_errors_near_a_toggle_grow_as_they_must(seed):
         mu = toggle_margin(data, angle)
         assert 0.0 < mu < 0.2
         case = solved(data, [angle])
-        cycle = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, case)
+        cycle = errors(ls.sweep(to_scene(data), [angle], of=names), names, case)
         for name, error in cycle.items():
             allowed = 40.0 * EPS / mu if name in ("theta3", "transmission_angle", "x_slider") else 400.0 * EPS / mu**2
             assert error < allowed, (name, error / EPS, mu)
@@ -185,7 +185,7 @@ def test_near_a_fold_no_digit_is_lost(offset, square, miss, branch):
     data = SliderCrankData(*links, 1.0, offset=offset, branch=branch, omega2=3.0, gravity=(0.0, -9.81))
     names = (*KINEMATICS, *unknowns(data))
     assert 0.0 < toggle_margin(data, square) < 2e-3
-    cycle = errors(ls.sweep(to_scene(data), [square], outputs=names), names, solved(data, [square]))
+    cycle = errors(ls.sweep(to_scene(data), [square], of=names), names, solved(data, [square]))
     assert max(cycle.values()) < 1e-13, cycle
 
 
@@ -240,11 +240,11 @@ BATCH = (ls.SliderCrank, ("crank", "rod"), *FRAME)
 def test_status_is_right_at_every_sample(drive):
     """Alone and in a batch, where a jammed sample spoils no other."""
     designs, theta2 = jamming()[drive], np.random.default_rng(2).uniform(-180, 540, 9)
-    batch = ls.sweep(stacked(designs, *BATCH), theta2, outputs=["F14x", "status"])
+    batch = ls.sweep(stacked(designs, *BATCH), theta2, of=["F14x", "status"])
     seen = set()
     for k, data in enumerate(designs):
         expected = [reference_status(data, angle) for angle in theta2]
-        alone = ls.sweep(to_scene(data), theta2, outputs=["F14x", "status"])
+        alone = ls.sweep(to_scene(data), theta2, of=["F14x", "status"])
         together = batch.isel(design=k).sel(branch=data.branch)
         for result in (alone, together):
             assert meanings(result.status) == expected, data
@@ -259,7 +259,7 @@ def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkey
     designs, theta2 = jamming()[drive][:6], np.random.default_rng(2).uniform(-180, 540, 11)
     names = (*KINEMATICS, *unknowns(designs[0]), *GUIDE, "F32", "Bx", "aG4x", "power_residual")
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
-    batch = ls.sweep(stacked(designs, *BATCH), theta2, outputs=names)
+    batch = ls.sweep(stacked(designs, *BATCH), theta2, of=names)
     monkeypatch.setattr(run, "COMPILE_AFTER", np.inf)
     assert {0, 1, 4} <= set(batch.status.values.flat)
     assert_each_is_as_alone(batch, designs, to_scene, names)
@@ -306,7 +306,7 @@ def test_no_friction_where_the_slider_stands(slide_angle, offset, dead, branch):
     for angle in dead:
         beside = np.array([-1e-9, 0.0, 1e-9]) + angle + slide_angle
         names = ["friction_force", "normal_force", "v_slider", "F14x", "F14y"]
-        before, there, after = ls.sweep(scene, beside, outputs=names).transpose("theta2").to_dataframe().itertuples()
+        before, there, after = ls.sweep(scene, beside, of=names).transpose("theta2").to_dataframe().itertuples()
         assert there.friction_force == 0.0
         assert abs(there.normal_force) == pytest.approx(np.hypot(there.F14x, there.F14y), rel=1e-14)
         assert np.sign(before.friction_force) == -np.sign(after.friction_force) != 0.0
@@ -317,7 +317,7 @@ def test_no_friction_where_the_slider_stands(slide_angle, offset, dead, branch):
 def test_a_crank_that_stands_feels_no_friction():
     """Statics with omega2 = 0: nothing slides, nothing jams, whatever the friction."""
     names = [*unknowns(random_data(np.random.default_rng(0), drive="crank")), "status"]
-    rough, smooth = (ls.sweep(plain(omega2=0.0, friction=mu), 48, outputs=names) for mu in (5.0, 0.0))
+    rough, smooth = (ls.sweep(plain(omega2=0.0, friction=mu), 48, of=names) for mu in (5.0, 0.0))
     assert not rough.status.any()
     for name in names:
         np.testing.assert_array_equal(rough[name], smooth[name])
@@ -328,7 +328,7 @@ def test_friction_at_the_quarter_turn_by_hand():
     bars, mu = (ls.Link(4.0, 0.0, 0.0), ls.Link(5.0, 0.0, 0.0)), 0.25
     for P in (5.0, -5.0):
         scene = ls.Scene(ls.SliderCrank(*bars, 0.0, friction=mu), 2.0, loads=[ls.Load("slider", force=(P, 0.0))])
-        cycle = ls.sweep(scene, [90.0], outputs=["T12", "F14x", "F14y", "T14", "friction_power"]).isel(theta2=0)
+        cycle = ls.sweep(scene, [90.0], of=["T12", "F14x", "F14y", "T14", "friction_power"]).isel(theta2=0)
         pull = P / (1 - np.sign(P) * mu * 4 / 3)
         across = 4 * pull / 3
         expected = {"T12": 4 * pull, "F14y": -across, "F14x": mu * abs(across), "T14": 0.0}
@@ -342,9 +342,9 @@ def test_a_peak_is_that_of_a_sample_that_moves(rod, drive):
     """Nothing is known while friction wedges the slider; the crank's own length is a rod that folds over it."""
     scene = plain(rod=rod, offset=0.25, friction=0.9, drive=drive)
     torque = scene.mechanism.drives[drive]
-    assert {"ok", "jammed"} <= set(meanings(ls.sweep(scene, 360, outputs=["status"]).status))
+    assert {"ok", "jammed"} <= set(meanings(ls.sweep(scene, 360, of=["status"]).status))
     worst = ls.peaks(scene, of=[torque, "F14"], theta2=360)
     for name, quantity in ((f"{torque}_max", torque), (f"{torque}_min", torque), ("F14_peak", "F14")):
-        there = ls.sweep(scene, [worst[f"{name}_at"].item()], outputs=[quantity])
+        there = ls.sweep(scene, [worst[f"{name}_at"].item()], of=[quantity])
         assert meanings(there.status) == ["ok"], name
         assert worst[name].item() == pytest.approx(there[quantity].item(), rel=1e-9), name

@@ -108,7 +108,7 @@ def test_document_1_beside_the_page(theta2, P, friction):
     turned = np.array([1, 1, -1, -1, -1, -1, 1, 1, 1])
     np.testing.assert_allclose(page.matrix, matrix * turned, rtol=1e-14, atol=1e-17)
     np.testing.assert_allclose(page.rhs, rhs, rtol=1e-12, atol=0.0)
-    cycle = ls.sweep(document_1(P, friction), [theta2], outputs=[*PINS, "T12", "T14"]).isel(theta2=0)
+    cycle = ls.sweep(document_1(P, friction), [theta2], of=[*PINS, "T12", "T14"]).isel(theta2=0)
     for name, value in zip([*PINS, "T12"], solution * turned, strict=True):
         assert cycle[name].item() == pytest.approx(value, abs=1e-12 * abs(solution).max()), name
     assert cycle.T14 == 0.0
@@ -167,7 +167,7 @@ def test_document_3_beside_the_page(theta2):
     friction = reduced.isel(equation=8)
     assert friction.matrix.values.tolist() == [0, 0, 0, 0, 0, 0, 1, 0, 0] and friction.rhs == 0.0
     solution = np.linalg.solve(matrix, rhs)
-    cycle = ls.sweep(scene, [theta2], outputs=[*names, "F14x"]).isel(theta2=0)
+    cycle = ls.sweep(scene, [theta2], of=[*names, "F14x"]).isel(theta2=0)
     for name, value in zip(names, solution, strict=True):
         assert cycle[name].item() == pytest.approx(value, abs=1e-12 * abs(solution).max()), name
     assert cycle.F14x == cycle.T14 == 0.0
@@ -209,7 +209,7 @@ def test_the_documents_form_has_the_same_solution(friction, slide_angle, size, d
     assert page.matrix.shape == (4, size, size)
     solution = np.linalg.solve(page.matrix.values, page.rhs.values[..., None])[..., 0]
     names = page.unknown.values.tolist()
-    cycle = ls.sweep(scene, ANGLES, outputs=names, solver="dense")
+    cycle = ls.sweep(scene, ANGLES, of=names, solver="dense")
     for k, name in enumerate(names):
         np.testing.assert_allclose(solution[:, k], cycle[name], rtol=0.0, atol=1e-12 * abs(solution).max())
 
@@ -237,4 +237,4 @@ def test_the_guides_moment_at_the_outer_dead_centre_by_hand():
     for angle, moment in expected.items():
         engine = ls.SliderCrank(crank, rod, MASS4, slider_cg_distance=0.03, slider_cg_angle=angle)
         scene = ls.Scene(engine, OMEGA2, gravity=(0.0, -9.81))
-        assert ls.sweep(scene, [0.0], outputs=["T14"]).T14.item() == pytest.approx(moment, rel=1e-13)
+        assert ls.sweep(scene, [0.0], of=["T14"]).T14.item() == pytest.approx(moment, rel=1e-13)

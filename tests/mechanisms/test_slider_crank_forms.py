@@ -35,7 +35,7 @@ def random_case(branch: str, drive: str, seed: int, **parameters) -> tuple[Slide
 def swept(data: SliderCrankData, theta2: np.ndarray) -> xr.Dataset:
     """Without labels; the drive's torque is named T."""
     torque = torque_name(data)
-    cycle = ls.sweep(to_scene(data), theta2, outputs=(*KINEMATICS, *FORCES, *OTHERS, torque))
+    cycle = ls.sweep(to_scene(data), theta2, of=(*KINEMATICS, *FORCES, *OTHERS, torque))
     assert not cycle.status.any()
     return cycle.drop_vars(("status", "theta2")).rename({torque: "T"}).broadcast_like(cycle.status)
 

@@ -90,9 +90,9 @@ def test_closes_on_its_arcs_and_nowhere_else():
             if np.isfinite(start):
                 assert 0.0 <= start < 360.0 and start < end <= start + 360.0
                 inside = [start + 1e-6, 0.5 * (start + end), end - 1e-6]
-                assert words(ls.sweep(scene, inside, outputs=["status"]).status) == ["ok"] * 3
+                assert words(ls.sweep(scene, inside, of=["status"]).status) == ["ok"] * 3
                 if one.assembly != 0:
-                    outside = ls.sweep(scene, [start - 1e-6, end + 1e-6], outputs=["status"]).status
+                    outside = ls.sweep(scene, [start - 1e-6, end + 1e-6], of=["status"]).status
                     assert words(outside) == ["cannot_assemble"] * 2
 
 
@@ -113,7 +113,7 @@ def test_one_that_never_closes_spoils_no_other():
     assert words(limits.assembly) == ["everywhere", "never", "never"]
     for name in ("arc_start", "arc_end", "toggle_angle", "jam_angle", "transmission_angle_min", "friction_to_jam"):
         assert np.isnan(limits[name].values[1:]).all(), name
-    status = ls.sweep(batch(designs), 90, outputs=["status"]).status
+    status = ls.sweep(batch(designs), 90, of=["status"]).status
     assert [set(words(one)) for one in status] == [{"ok"}, {"cannot_assemble"}, {"cannot_assemble"}]
     with pytest.raises(ValueError, match=r"offset = -3\.5 m is 0\.5 m beyond the reach"):
         bare((1.0, 2.0, -3.5))
@@ -127,7 +127,7 @@ def edges_of_wedging(scene: ls.Scene) -> list[float]:
 
     def refined(low: float, high: float) -> list[float]:
         angles = np.linspace(low, high, 721)
-        status = ls.sweep(scene, angles, outputs=["status"]).status.values
+        status = ls.sweep(scene, angles, of=["status"]).status.values
         turns = np.flatnonzero((status[:-1] != status[1:]) & np.isin(status[:-1] + status[1:], JAMMED))
         if high - low < 1e-9:
             return [0.5 * (low + high)] if turns.size else []
@@ -174,13 +174,13 @@ def test_the_friction_that_jams():
         assert (least == 0.0) == (limits.assembly[k] != 0)
         if least:
             square, scene = slide_angle[k] + np.array([90.0, 270.0]), bare(lengths, slide_angle=float(slide_angle[k]))
-            flattest = ls.sweep(scene, square, outputs=["transmission_angle"]).transmission_angle.min().item()
+            flattest = ls.sweep(scene, square, of=["transmission_angle"]).transmission_angle.min().item()
             assert limits.transmission_angle_min[k].item() == pytest.approx(flattest, rel=1e-10)
             assert least == pytest.approx(np.tan(np.radians(flattest)), rel=1e-10)
             angles = np.concatenate([square, np.linspace(0, 360, 97)])
             for share, jams in ((1 - 1e-9, False), (1 + 1e-9, True)):
                 scene = bare(lengths, slide_angle=float(slide_angle[k]), friction=share * least)
-                status = ls.sweep(scene, angles, outputs=["status"]).status.values
+                status = ls.sweep(scene, angles, of=["status"]).status.values
                 assert np.isin(status, JAMMED).any() == jams
                 assert np.isfinite(ls.check(scene).jam_angle).any() == jams
 
@@ -222,7 +222,7 @@ def test_little_friction_is_little_change(drive, branch):
     """Away from the dead centres every force and torque leaves its frictionless value in proportion to μ."""
     scenes = [machine(mu, drive, branch, offset=0.02, slide_angle=12.0) for mu in (0.0, 1e-6, 2e-6)]
     names = [*FORCES, scenes[0].mechanism.drives[drive]]
-    smooth, once, twice = (ls.sweep(scene, MOVING, outputs=names)[names].to_array() for scene in scenes)
+    smooth, once, twice = (ls.sweep(scene, MOVING, of=names)[names].to_array() for scene in scenes)
     change, size = once - smooth, abs(smooth).max()
     assert 0.0 < abs(change).max() < 1e-4 * size
     assert abs(twice - smooth - 2.0 * change).max() < 1e-9 * size
@@ -234,7 +234,7 @@ def test_a_four_bar_with_an_endless_rocker_is_a_slider_crank(branch):
     """Rocker of length R straight under the guide, all its mass at C: the difference fades as 1/R."""
     offset, names = 0.02, (*KINEMATICS, *FORCES, "T12", "Cx", "Cy")
     scene = machine(offset=offset, branch=branch)
-    limit = ls.sweep(scene, MOVING, outputs=names)
+    limit = ls.sweep(scene, MOVING, of=names)
     foot, crank, rod = 0.15 if branch == "open" else -0.15, scene.mechanism.crank, scene.mechanism.rod
     differences = []
     for R in (1e3, 1e4, 1e5):
@@ -243,7 +243,7 @@ def test_a_four_bar_with_an_endless_rocker_is_a_slider_crank(branch):
         ground = {"ground": abs(D), "ground_angle": float(np.degrees(np.angle(D))), "branch": branch}
         bars = ls.FourBar(crank, rod, rocker, **ground)
         four_bar = ls.Scene(bars, 40.0, -90.0, (0.4, -9.81), loads("coupler", "rocker", at=R))
-        cycle = ls.sweep(four_bar, MOVING, outputs=names)
+        cycle = ls.sweep(four_bar, MOVING, of=names)
         differences.append({name: abs(cycle[name] - limit[name]).max().item() for name in names})
     near, nearer, nearest = differences
     sizes = {name: abs(limit[name]).max().item() for name in names} | {"F14x": abs(limit.F14y).max().item()}

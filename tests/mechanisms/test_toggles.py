@@ -27,7 +27,7 @@ EPS = 2.0**-52
 
 def force_error(data, angles: list[float], solve=solve, to_scene=to_scene, names=FORCES) -> float:
     """Largest error of a force over the angles, relative to the sample's largest; all of them must be ok."""
-    cycle = ls.sweep(to_scene(data), angles, outputs=names)
+    cycle = ls.sweep(to_scene(data), angles, of=names)
     assert not cycle.status.any(), cycle.status.values
     values = {name: cycle[name].broadcast_like(cycle.theta2).values.tolist() for name in names}
     worst = 0.0
@@ -73,12 +73,12 @@ def test_a_toggle_at_a_round_angle_is_one():
     """f = |b − c| = 2 at exactly 60 and 300 degrees; the next angles on the one side are ok, on the other cannot be."""
     scene = to_scene(triangle(3.0))
     at, above, below = (list(np.nextafter([60.0, 300.0], towards)) for towards in ([60.0, 300.0], 180.0, [0.0, 360.0]))
-    status = ls.sweep(scene, at, outputs="status").status
+    status = ls.sweep(scene, at, of="status").status
     assert status.values.tolist() == [2, 2]
     beside = 1e-12 * np.array([1.0, -1.0])
-    assert ls.sweep(scene, list(at + beside), outputs="status").status.values.tolist() == [0, 0]
-    assert ls.sweep(scene, list(at - beside), outputs="status").status.values.tolist() == [1, 1]
-    assert ls.sweep(scene, [*above, *below], outputs="status").status.values.tolist() == [2] * 4
+    assert ls.sweep(scene, list(at + beside), of="status").status.values.tolist() == [0, 0]
+    assert ls.sweep(scene, list(at - beside), of="status").status.values.tolist() == [1, 1]
+    assert ls.sweep(scene, [*above, *below], of="status").status.values.tolist() == [2] * 4
 
 
 @pytest.mark.parametrize("turn", [0.0, 12.5])

@@ -124,7 +124,7 @@ def test_fast_path_agrees_with_the_reference():
     result = []
     for case in cases():
         names = all_names(case.data)
-        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=names)
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, of=names)
         assert not cycle.status.any(), case
         result.append(errors(cycle, names, case))
     assert max(worst(result).values()) < 1e-11, worst(result)
@@ -133,7 +133,7 @@ def test_fast_path_agrees_with_the_reference():
 def test_power_balances_at_every_sample():
     """Drive, loads, gravity and inertia, of which none knows of the others; 1.4e-14 on 19 000 positions."""
     for case in cases()[::2]:
-        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, outputs=["power_residual"])
+        cycle = ls.sweep(to_scene(case.data), theta2=case.theta2, of=["power_residual"])
         assert abs(cycle.power_residual).max() < 1e-13, case
 
 
@@ -142,8 +142,8 @@ def test_dense_path_agrees_with_the_reference_and_with_the_fast_path():
     result = []
     for case in cases()[1::3]:
         names = unknowns(case.data)
-        dense = ls.sweep(to_scene(case.data), case.theta2, outputs=[*names, "cond"], solver="dense")
-        fast = ls.sweep(to_scene(case.data), case.theta2, outputs=names)
+        dense = ls.sweep(to_scene(case.data), case.theta2, of=[*names, "cond"], solver="dense")
+        fast = ls.sweep(to_scene(case.data), case.theta2, of=names)
         allowed = np.minimum(1e-10, EPS * dense.cond)
         for name in names:
             size = case.results["largest_torque" if name.startswith("T") else "largest_force"]
@@ -156,9 +156,9 @@ def test_fast_and_dense_paths_are_two():
     """Equal to the last bit everywhere would mean that one stands in for the other."""
     case = cases()[0]
     names = unknowns(case.data)
-    dense = ls.sweep(to_scene(case.data), case.theta2, outputs=names, solver="dense")
-    for outputs in (names, (*names, "cond")):
-        fast = ls.sweep(to_scene(case.data), case.theta2, outputs=outputs)
+    dense = ls.sweep(to_scene(case.data), case.theta2, of=names, solver="dense")
+    for of in (names, (*names, "cond")):
+        fast = ls.sweep(to_scene(case.data), case.theta2, of=of)
         assert any((dense[name] != fast[name]).any() for name in names)
 
 
@@ -187,7 +187,7 @@ def test_errors_near_a_toggle_grow_as_they_must(seed):
     for angle in near_toggles(data):
         mu = toggle_margin(data, angle)
         assert 0.0 < mu < 0.2
-        cycle = errors(ls.sweep(to_scene(data), [angle], outputs=names), names, solved(data, [angle]))
+        cycle = errors(ls.sweep(to_scene(data), [angle], of=names), names, solved(data, [angle]))
         for name, error in cycle.items():
             allowed = 20.0 * EPS / mu if name.startswith("theta") else 400.0 * EPS / mu**2
             assert error < allowed, (name, error / EPS, mu)
@@ -202,7 +202,7 @@ def test_near_a_change_point_no_digit_is_lost(ground, sign, flat, miss, branch):
     data = FourBarData(*links, ground=ground + sign * miss, branch=branch, omega2=3.0, gravity=(0.0, -9.81))
     names = (*KINEMATICS, *unknowns(data))
     assert toggle_margin(data, flat[0]) < 2e-3
-    cycle = errors(ls.sweep(to_scene(data), flat, outputs=names), names, solved(data, flat))
+    cycle = errors(ls.sweep(to_scene(data), flat, of=names), names, solved(data, flat))
     assert max(cycle.values()) < 1e-13, cycle
 
 
@@ -224,7 +224,7 @@ def in_arms(row):
 
 def test_condition_number_is_that_of_the_balanced_matrix():
     for case in cases()[2::7]:
-        cycle = ls.sweep(to_scene(case.data), case.theta2[:1], outputs="cond").cond.item()
+        cycle = ls.sweep(to_scene(case.data), case.theta2[:1], of="cond").cond.item()
         rows = [scaled_to_one(in_arms(row)) for row in system(case.data, motion(case.data, case.theta2[0]))[0]]
         matrix = mp.matrix([scaled_to_one(column) for column in zip(*rows, strict=True)]).T
         cond = float(norm_1(matrix) * norm_1(matrix**-1))
@@ -255,7 +255,7 @@ def test_compiled_batch_has_the_bits_of_interpreted_single_designs(drive, monkey
     theta2 = rng.uniform(-180, 540, 11)
     names = (*KINEMATICS, *unknowns(designs[0]), "F32", "Bx", "aG4x", "power_residual")
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
-    batch = ls.sweep(stacked(designs, ls.FourBar, LINKS, "ground", "ground_angle"), theta2, outputs=names)
+    batch = ls.sweep(stacked(designs, ls.FourBar, LINKS, "ground", "ground_angle"), theta2, of=names)
     monkeypatch.setattr(run, "COMPILE_AFTER", np.inf)
     assert {0, 1} <= set(batch.status.values.flat)
     assert_each_is_as_alone(batch, designs, to_scene, names)

@@ -107,7 +107,7 @@ def test_arrows_start_at_their_pins_and_are_as_long_as_the_dense_solution_says(f
 
 
 def test_the_present_values_are_said_and_marked_on_the_curves(films):
-    cycle = ls.sweep(PRESS, theta2=FRAMES, outputs=["F12", "F32", "F43", "F14"])
+    cycle = ls.sweep(PRESS, theta2=FRAMES, of=["F12", "F32", "F43", "F14"])
     np.testing.assert_allclose(angles_of(films["press"]), 60.0 * np.arange(FRAMES))
     machine, curves = films["press"].figure.axes
     films["press"].show(2)
@@ -148,11 +148,11 @@ def test_between_toggles_it_goes_to_and_fro_and_never_beyond():
     ends = [end for k in range(len(film)) for end in arrows_of(film, k).values()]
     longest = max(float(np.hypot(*(end - start))) for start, end in ends)
     assert 0.8 * on_scale < longest < on_scale  # though forces beside a toggle are far beyond
-    assert float(ls.sweep(SWING, theta2=[limit - 0.5], outputs=["F32"]).F32[0]) * scale_of(film) > 3.0 * on_scale
+    assert float(ls.sweep(SWING, theta2=[limit - 0.5], of=["F32"]).F32[0]) * scale_of(film) > 3.0 * on_scale
 
 
 def way(scene, frames, theta2=720):
-    cycle = ls.sweep(scene, theta2, outputs=["omega2"])
+    cycle = ls.sweep(scene, theta2, of=["omega2"])
     return animation.way(cycle, cycle.omega2, frames)
 
 

@@ -34,9 +34,7 @@ def test_throws_stand_side_by_side_where_their_cranks_are(k):
         pin = RADIUS * np.array([np.cos(angle), np.sin(angle)])
         np.testing.assert_allclose(places(ax, "B"), [pin], atol=1e-12)
         np.testing.assert_allclose(places(ax, "C"), [(0.0, pin[1] + np.sqrt(ROD**2 - pin[0] ** 2))], atol=1e-12)
-    torque = sum(
-        ls.sweep(ENGINE, [(60.0 * k + ahead) % 720.0], outputs=["T12"]).T12.item() for ahead in [0, 540, 180, 360]
-    )
+    torque = sum(ls.sweep(ENGINE, [(60.0 * k + ahead) % 720.0], of=["T12"]).T12.item() for ahead in [0, 540, 180, 360])
     (dot,) = curve.collections[-1].get_offsets()
     np.testing.assert_allclose(dot, [60.0 * k, torque], rtol=1e-9)
 

@@ -172,7 +172,7 @@ def test_the_force_on_a_massless_link_without_loads_lies_along_it(pin, massless)
     links = [ls.Bar(length=length, **BAR) for length in (0.08, 0.22, 0.18)]
     links[massless] = ls.Link(length=links[massless].length, mass=0.0, inertia=0.0)
     scene = ls.Scene(ls.FourBar(*links, ground=0.20), 30.0, loads=[ls.Load("rocker", torque=-12.0)] * (massless == 1))
-    ds = ls.sweep(scene, outputs=[f"{pin}x", f"{pin}y"])  # without the link's angle
+    ds = ls.sweep(scene, of=[f"{pin}x", f"{pin}y"])  # without the link's angle
     x, y = line(plot.bearing(ds, pin, frame="link"), f"_locus {pin}").get_data()
     assert np.abs(y).max() < 1e-12 * np.abs(x).max()
 

@@ -79,7 +79,7 @@ def test_what_is_balanced_away_is_shown_as_nothing():
     balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
     figure = ls.plot.balance(PRESS, balanced, theta2=90)
     before, after = (text.get_text() for text in figure.axes[0].get_legend().get_texts())
-    largest = float(ls.sweep(PRESS, theta2=90, outputs=["Fs"]).Fs.max())
+    largest = float(ls.sweep(PRESS, theta2=90, of=["Fs"]).Fs.max())
     assert before == f"before, up to {largest:#.4g}"
     assert after == "after, up to 0"
     figure.canvas.draw()

@@ -170,7 +170,7 @@ def test_torque_of_a_driven_rocker_is_its_T14(cycles):
 def test_guide_axes_part_normal_force_and_friction(cycles):
     for name in ("engine", "crossed"):
         scene, angles = SCENES[name], with_peaks(cycles[name]).theta2.values
-        expected = ls.sweep(scene, angles, outputs=["friction_force", "normal_force"])
+        expected = ls.sweep(scene, angles, of=["friction_force", "normal_force"])
         ax = plot.bearing(cycles[name], "F14", frame="link")
         x, y = line(ax, "_locus F14").get_data()
         np.testing.assert_allclose(x[:-1], expected.friction_force, atol=1e-9 * np.abs(y).max())

@@ -78,7 +78,7 @@ LISTS = """
 torque = ls.Load("rocker", torque=lambda theta2: 0.1 * theta2, breaks=[77.7], at=[0.1, 15.0])
 spring = ls.TorsionSpring("ground", "rocker", rate=2.0)
 again = ls.Scene(press, omega2=30.0, gravity=[0.0, -9.81], loads=[push, torque, spring])
-ls.sweep(again, theta2=range(0, 360, 10), outputs=ls.quantities(again, "force").names)
+ls.sweep(again, theta2=range(0, 360, 10), of=ls.quantities(again, "force").names)
 ls.peaks(again, of="F32", theta2=[0.0, 90.0])
 ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360], positions=[-0.15, -0.05, 0.05, 0.15]).sweep()
 names: list[str] = [f"{row.name} [{row.units}]" for row in ls.quantities(again)] + [ls.__version__]

@@ -26,7 +26,7 @@ def braked(distance=4e-4, radius=0.3637, scene=MACHINE, **words) -> ls.Scene:
 
 def brute(scene: ls.Scene, of: str) -> float:
     """The largest of samples every 1e-5 degree where the ends pass."""
-    return ls.sweep(scene, np.arange(62.0, 66.0, 1e-5), outputs=[of])[of].max(...).item()
+    return ls.sweep(scene, np.arange(62.0, 66.0, 1e-5), of=[of])[of].max(...).item()
 
 
 def test_a_damper_whose_ends_pass_close_by():

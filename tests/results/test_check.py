@@ -104,7 +104,7 @@ def test_a_parallelogram_folds_at_both_dead_points_and_closes_everywhere():
     assert limits.arc_end.values[0] == 360.0
     assert np.isnan([limits.arc_start.values[1], limits.arc_end.values[1]]).all()
     assert limits.transmission_angle_min == 0.0
-    status = words(ls.sweep(scene, theta2=[25.0, 26.0, 205.0, 206.0], outputs=["status"]).status)
+    status = words(ls.sweep(scene, theta2=[25.0, 26.0, 205.0, 206.0], of=["status"]).status)
     assert status == ["toggle", "ok", "toggle", "ok"]
 
 
@@ -194,7 +194,7 @@ def test_the_status_of_a_sweep_is_ok_on_the_arcs():
     scene = batch(np.concatenate([designs, impossible]), ground_angle=-37.0)
     limits = ls.check(scene)
     angles = np.arange(0.0, 360.0, 0.7)
-    status = ls.sweep(scene, theta2=angles, outputs=["status"]).status
+    status = ls.sweep(scene, theta2=angles, of=["status"]).status
     reach = np.mod(xr.DataArray(angles, dims="theta2") - limits.arc_start, 360.0)
     inside = (reach < limits.arc_end - limits.arc_start).any("arc").transpose("design", "theta2")
     np.testing.assert_array_equal(inside, status == 0)
@@ -228,7 +228,7 @@ def test_least_transmission_angle_against_a_dense_search():
 
 def test_least_transmission_angle_is_that_of_the_sweep():
     scene = ls.example("press")
-    angles = ls.sweep(scene, theta2=720, outputs=["transmission_angle"]).transmission_angle
+    angles = ls.sweep(scene, theta2=720, of=["transmission_angle"]).transmission_angle
     assert float(ls.check(scene).transmission_angle_min) == pytest.approx(float(angles.min()), abs=1e-9)
 
 

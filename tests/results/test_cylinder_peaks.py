@@ -26,7 +26,7 @@ def by_hand(machine, theta2):
     for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
         engine = machine.engine
         turned = replace(engine, mechanism=replace(engine.mechanism, slide_angle=engine.mechanism.slide_angle + bank))
-        cycle = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=NAMES)
+        cycle = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), of=NAMES)
         each = {name: cycle[name].values for name in NAMES}
         each |= {"Msx": -z * each["Fsy"], "Msy": z * each["Fsx"]}
         total = {name: total[name] + each[name] for name in total}
@@ -88,7 +88,7 @@ def test_the_flywheel_keeps_the_speed_by_the_equation_of_motion(machine):
     drive, torque, inertia = 0.0, 0.0, 0.0
     for ahead, bank in zip(machine.crank_angles, machine.bank_angles, strict=True):
         turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
-        cycle = ls.sweep(turned, np.mod(theta + ahead, 720.0), outputs=["T12", "reduced_inertia"])
+        cycle = ls.sweep(turned, np.mod(theta + ahead, 720.0), of=["T12", "reduced_inertia"])
         torque, inertia = torque + cycle.T12.values, inertia + cycle.reduced_inertia.values
         drive += float(ls.duty(turned).effort_mean)
     total = float(wheel.flywheel_inertia) + inertia
@@ -116,7 +116,7 @@ def test_each_cylinder_has_the_pin_forces_of_one():
 def test_cylinders_that_jump_together_do_so_to_the_digit():
     """One fires as another turns round below: what is between the two jumps is rounding, and no load."""
     peaks = ls.peaks(FOUR, of=["F_main2", "F_main2_bound"])
-    beside = FOUR.sweep(270.0 + np.array([-1e-6, 1e-6]), outputs=["F_main2"]).F_main2
+    beside = FOUR.sweep(270.0 + np.array([-1e-6, 1e-6]), of=["F_main2"]).F_main2
     assert float(peaks.F_main2_peak) == pytest.approx(float(beside.max()), rel=1e-6)
     assert float(peaks.F_main2_peak_at) == pytest.approx(270.0, abs=1e-5)
     assert float(peaks.F_main2_bound) < 1e-9 * float(peaks.F_main2_peak)
@@ -128,13 +128,13 @@ def test_main_bearings_hold_the_throws_in_balance(mains):
     machine = ls.MultiCylinder(ENGINE, FIRING, [0, 10, -20, 30], PLACES, mains)
     names = [f"F_main{k}{axis}" for k in range(1, len(machine.mains) + 1) for axis in "xy"]
     theta2 = np.arange(0.0, 720.0, 7.3)
-    cycle = machine.sweep(theta2, outputs=names)
+    cycle = machine.sweep(theta2, of=names)
     for axis in "xy":
         carried = np.array([cycle[name] for name in names if name.endswith(axis)])
         force, moment = 0.0, 0.0
         for ahead, bank, z in zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True):
             turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
-            throw = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), outputs=[f"F12{axis}"])[f"F12{axis}"].values
+            throw = ls.sweep(turned, np.mod(theta2 + ahead, 720.0), of=[f"F12{axis}"])[f"F12{axis}"].values
             force, moment = force + throw, moment + z * throw
         np.testing.assert_allclose(carried.sum(axis=0), force, rtol=1e-9, atol=1e-6)
         np.testing.assert_allclose(np.array(machine.mains) @ carried, moment, rtol=1e-9, atol=1e-6)
@@ -163,7 +163,7 @@ def test_designs_that_move_over_part_of_a_turn_have_no_sums():
         (lambda: ls.peaks(FOUR, of=["T21"]), "of: nothing is named 'T21'; did you mean \"T12\"?"),
         (lambda: ls.peaks(FOUR, of=["F32x"]), "of: nothing is named 'F32x'; did you mean \"F32\"?"),
         (lambda: ls.peaks(FOUR, theta2=720), "theta2 = 720: must be left out: peaks of several cylinders are exact"),
-        (lambda: FOUR.sweep(outputs=["F_mian1"]), "outputs: nothing is named 'F_mian1'; did you mean \"F_main1\"?"),
+        (lambda: FOUR.sweep(of=["F_mian1"]), "of: nothing is named 'F_mian1'; did you mean \"F_main1\"?"),
         (lambda: ls.sweep(FOUR), "scene is a MultiCylinder, which this does not take"),
         (lambda: ls.breakdown(FOUR, "F32"), "scene is a MultiCylinder, which this does not take"),
         (lambda: ls.flywheel(FOUR, fluctuation=2.0), "fluctuation = 2.0: must be less than 2"),
@@ -185,7 +185,7 @@ def test_main_bearings_live_as_their_loads_let_them():
     parameters = {f"main{k}": ls.Bearing(diameter=0.05, length=0.02, capacity=capacity) for k in range(1, 6)}
     bearings = ls.bearings(FOUR, parameters)
     theta2 = np.arange(0.0, 720.0, step) + 0.5 * step
-    throws = [ls.sweep(ENGINE, np.mod(theta2 + ahead, 720.0), outputs=["F12x", "F12y"]) for ahead in FIRING]
+    throws = [ls.sweep(ENGINE, np.mod(theta2 + ahead, 720.0), of=["F12x", "F12y"]) for ahead in FIRING]
     loads = [(each.F12x.values, each.F12y.values) for each in throws]
     for k, beside in enumerate([[0], [0, 1], [1, 2], [2, 3], [3]]):
         x, y = (sum(0.5 * loads[throw][axis] for throw in beside) for axis in (0, 1))

@@ -23,7 +23,7 @@ def scenes() -> list[tuple[ls.Scene, list[float]]]:
 
 
 def solved(scene: ls.Scene, theta2) -> np.ndarray:
-    cycle = ls.sweep(scene, theta2, outputs=UNKNOWNS, solver="dense")
+    cycle = ls.sweep(scene, theta2, of=UNKNOWNS, solver="dense")
     assert not cycle.status.any()
     return np.stack([cycle[name].broadcast_like(cycle.theta2).values for name in UNKNOWNS], axis=-1)
 
@@ -68,9 +68,7 @@ def test_units_of_length_change_no_digit(exponent, solver):
     """By 2^k, forces in N go with the length, the torque with its square: 2^±300 is 1e±90."""
     theta2 = np.arange(0.0, 360.0, 10.0)
     scale = 2.0**exponent
-    plain, scaled = (
-        ls.sweep(to_scene(heavy(s)), theta2, outputs=(*UNKNOWNS, "cond"), solver=solver) for s in (1.0, scale)
-    )
+    plain, scaled = (ls.sweep(to_scene(heavy(s)), theta2, of=(*UNKNOWNS, "cond"), solver=solver) for s in (1.0, scale))
     assert not scaled.status.any()
     for name in UNKNOWNS:
         factor = scale * scale if name == "T12" else scale
@@ -80,7 +78,7 @@ def test_units_of_length_change_no_digit(exponent, solver):
 
 @pytest.mark.parametrize("scale", [1e-100, 1e100])
 def test_condition_knows_no_units(scale):
-    near, far = (ls.sweep(to_scene(heavy(s)), 36, outputs="cond").cond for s in (1.0, scale))
+    near, far = (ls.sweep(to_scene(heavy(s)), 36, of="cond").cond for s in (1.0, scale))
     assert float(abs(far / near).max()) < 4.0
     assert float(abs(near / far).max()) < 4.0
     assert float(near.max()) < 1e3
@@ -97,9 +95,9 @@ def light(scale: float) -> FourBarData:
 def test_far_beyond_all_units_numbers_are_right_or_the_status_says_not(scale, solver):
     theta2 = np.arange(0.0, 360.0, 30.0)
     data, plain_data = light(scale), light(1.0)
-    plain = ls.sweep(to_scene(plain_data), theta2, outputs=UNKNOWNS)
+    plain = ls.sweep(to_scene(plain_data), theta2, of=UNKNOWNS)
     with np.errstate(all="ignore"):
-        cycle = ls.sweep(to_scene(data), theta2, outputs=UNKNOWNS, solver=solver)
+        cycle = ls.sweep(to_scene(data), theta2, of=UNKNOWNS, solver=solver)
     ok = cycle.status.values == 0
     assert ok.all() if 1e-130 < scale < 1e130 else not ok.any()
     for name in UNKNOWNS[:-1]:
@@ -113,7 +111,7 @@ def test_a_batch_of_scales_is_solved_side_by_side():
     size = xr.DataArray(scales, dims="design")
     links = (ls.Link(x * size, 1.0, 0.02 * size * size, 0.4 * x * size) for x in (0.08, 0.22, 0.18))
     scene = ls.Scene(ls.FourBar(*links, ground=0.2 * size), omega2=30.0)
-    cycle = ls.sweep(scene, 12, outputs=UNKNOWNS, solver="dense")
+    cycle = ls.sweep(scene, 12, of=UNKNOWNS, solver="dense")
     assert not cycle.status.any()
     force = cycle.F32x / size
     assert float(abs(force / force.isel(design=1) - 1.0).max()) < 1e-9

@@ -24,7 +24,7 @@ def test_the_slider_turns_round_at_every_jump(name):
     scene = branch(name)
     assert len(scene.mechanism.jumps()) == 2
     for angle in scene.mechanism.jumps():
-        beside = ls.sweep(scene, [angle - 1e-6, angle + 1e-6], outputs=["v_slider", "friction_force"])
+        beside = ls.sweep(scene, [angle - 1e-6, angle + 1e-6], of=["v_slider", "friction_force"])
         assert np.prod(np.sign(beside.v_slider.values)) == -1.0
         assert np.prod(np.sign(beside.friction_force.values)) == -1.0
 
@@ -34,9 +34,9 @@ def test_a_one_sided_limit_is_the_peak(name):
     """The normal force hardly changes beside the dead centre: the limits are those of samples very near to it."""
     scene = branch(name)
     beside = [angle + aside for angle in scene.mechanism.jumps() for aside in (-1e-5, 1e-5)]
-    near = ls.sweep(scene, beside, outputs=["friction_force"]).friction_force
+    near = ls.sweep(scene, beside, of=["friction_force"]).friction_force
     peaks = ls.peaks(scene, of=["friction_force"])
-    everywhere = ls.sweep(scene, 3600, outputs=["friction_force"]).friction_force
+    everywhere = ls.sweep(scene, 3600, of=["friction_force"]).friction_force
     assert float(peaks.friction_force_max) == pytest.approx(max(float(near.max()), float(everywhere.max())), rel=1e-3)
     assert float(peaks.friction_force_min) == pytest.approx(min(float(near.min()), float(everywhere.min())), rel=1e-3)
 
@@ -44,7 +44,7 @@ def test_a_one_sided_limit_is_the_peak(name):
 def test_nothing_is_read_into_a_jump():
     """A peak is never more than the densest sampling shows."""
     for name in ("open", "crossed"):
-        dense = ls.sweep(branch(name), 20_000, outputs=["friction_force", "T12"])
+        dense = ls.sweep(branch(name), 20_000, of=["friction_force", "T12"])
         peaks = ls.peaks(branch(name), of=["friction_force", "T12"])
         assert float(peaks.friction_force_max) <= float(dense.friction_force.max()) * (1.0 + 1e-3)
         assert float(peaks.T12_max) <= float(dense.T12.max()) * (1.0 + 1e-3)
@@ -80,6 +80,6 @@ def test_a_design_that_jams_says_so():
 
 def test_check_knows_which_link_wedges():
     scene = replace(SCENE, drive="coupler")
-    status = ls.sweep(scene, 36_000, outputs=["status"]).status
+    status = ls.sweep(scene, 36_000, of=["status"]).status
     jammed = np.flatnonzero(np.diff((status.values >= 3).astype(int)))
     np.testing.assert_allclose(np.sort(ls.check(scene).jam_angle.values), status.theta2.values[jammed], atol=0.011)

@@ -67,7 +67,7 @@ def units():
 
 @pytest.mark.parametrize(("machine", "name"), QUANTITIES)
 def test_scales_as_its_unit_says(machine, name, units):
-    one, other = (ls.sweep(s, theta2=24, outputs=[name])[name] for s in (machine(), machine(LENGTH, MASS, TIME)))
+    one, other = (ls.sweep(s, theta2=24, of=[name])[name] for s in (machine(), machine(LENGTH, MASS, TIME)))
     dimension = units.parse_units(_pint(one.attrs["units"])).dimensionality
     factor = LENGTH ** dimension["[length]"] * MASS ** dimension["[mass]"] * TIME ** dimension["[time]"]
     np.testing.assert_array_equal(other.values, one.values * factor)

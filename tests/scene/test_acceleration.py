@@ -106,7 +106,7 @@ def test_samples_and_peaks_use_the_derived_alpha2():
     """With α written out by hand: forces, torques, exact peaks."""
     shaped = replace(PRESS, omega2=lambda t: cosine(np.radians(t))[0])
     by_hand = replace(shaped, alpha2=lambda t: np.multiply(*cosine(np.radians(t))))
-    cycle, expected = (ls.sweep(scene, outputs=["F12", "T12"]) for scene in (shaped, by_hand))
+    cycle, expected = (ls.sweep(scene, of=["F12", "T12"]) for scene in (shaped, by_hand))
     np.testing.assert_allclose(cycle.T12, expected.T12, rtol=0.0, atol=1e-11 * float(abs(expected.T12).max()))
     worst, reference = (ls.peaks(scene, of=["F12", "T12"]) for scene in (shaped, by_hand))
     assert float(worst.F12_peak) == pytest.approx(float(reference.F12_peak), rel=1e-11)

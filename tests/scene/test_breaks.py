@@ -23,7 +23,7 @@ def spike(width: float, at: float = 77.7):
 @pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
 def test_exact_peaks_see_a_narrow_load_at_its_break(width):
     """At the top of the spike the load is -1000 N: the peak is at least the force there, and next to nothing more."""
-    top = ls.sweep(pushed(-1000.0), [77.7], outputs=["F43y", "F32"])
+    top = ls.sweep(pushed(-1000.0), [77.7], of=["F43y", "F32"])
     peaks = ls.peaks(pushed(spike(width), breaks=[77.7]), of=["F32"])
     assert peaks.F32_peak == pytest.approx(top.F32.item(), rel=2e-6 if width > 1e-3 else 1e-7)
     assert peaks.F32_peak >= top.F32.item() * (1.0 - 1e-10)

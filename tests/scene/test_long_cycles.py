@@ -21,7 +21,7 @@ def torque_of(turns: int, largest: float = 10.0) -> ls.Load:
 def test_the_period_of_a_function_is_found_over_several_turns(turns):
     made = scene(torque_of(turns))
     assert made.period == 360.0 * turns
-    cycle = ls.sweep(made, theta2=36 * turns, outputs=["T12"])
+    cycle = ls.sweep(made, theta2=36 * turns, of=["T12"])
     assert cycle.theta2.values[-1] == 360.0 * turns - 10.0
     np.testing.assert_allclose(cycle.T12, -10.0 * np.cos(np.radians(cycle.theta2 / turns)), atol=1e-12)
     peaks = ls.peaks(made, of=["T12", "T12_mean"])
@@ -58,7 +58,7 @@ def test_an_array_and_a_table_span_several_turns(tmp_path):
 
 
 def test_orders_of_a_long_cycle_are_fractions():
-    cycle = ls.sweep(scene(torque_of(3)), theta2=108, outputs=["T12"])
+    cycle = ls.sweep(scene(torque_of(3)), theta2=108, of=["T12"])
     orders = ls.orders(cycle, "T12", n=1)
     np.testing.assert_allclose(orders.order, [0, 1 / 3, 2 / 3, 1])
     np.testing.assert_allclose(orders.T12_amplitude, [0.0, 10.0, 0.0, 0.0], atol=1e-12)

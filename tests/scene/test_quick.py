@@ -27,7 +27,7 @@ def loaded(torque, **words) -> ls.Scene:
 
 def largest_torque(torque, theta2) -> float:
     """Return the least T12 under a torque on the crank: the unloaded machine's T12 minus the torque."""
-    own = ls.sweep(ls.Scene(PRESS, omega2=30.0, gravity=(0.0, -9.81)), theta2, outputs=["T12"]).T12.values
+    own = ls.sweep(ls.Scene(PRESS, omega2=30.0, gravity=(0.0, -9.81)), theta2, of=["T12"]).T12.values
     return float((own - torque(theta2)).min())
 
 

@@ -384,7 +384,7 @@ def test_a_design_chosen_by_xarray():
 )
 def test_missing_labels_are_refused(where, message):
     made = ls.sample(PRESS, RANGE, n=8)
-    for study in (made, ls.sweep(made, theta2=8, outputs=["theta4"])):
+    for study in (made, ls.sweep(made, theta2=8, of=["theta4"])):
         with pytest.raises(ValueError) as error:  # noqa: PT011
             ls.scene_at(study, **where)
         assert str(error.value).startswith(message)

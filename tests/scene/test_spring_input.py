@@ -20,7 +20,7 @@ def test_scene_file_round_trip():
     loads.append(ls.Load("rocker", torque=-1.0))
     loaded = scene(loads=loads)
     assert parse_scene(write_scene(loaded)) == loaded
-    assert ls.sweep(loaded, 4, outputs=["T12"]).sizes == {"place": 2, "theta2": 4}
+    assert ls.sweep(loaded, 4, of=["T12"]).sizes == {"place": 2, "theta2": 4}
 
 
 FILE = """omega2 = 3

@@ -86,7 +86,7 @@ BY_HAND = [
 @pytest.mark.parametrize(("action", "expected"), BY_HAND)
 def test_by_hand(action, expected):
     still = ls.Scene(PARALLELOGRAM, omega2=2.0, loads=action)
-    cycle = ls.sweep(still, theta2=[90.0], outputs=list(expected))
+    cycle = ls.sweep(still, theta2=[90.0], of=list(expected))
     assert {name: float(cycle[name].squeeze()) for name in expected} == pytest.approx(expected, abs=1e-13)
 
 
@@ -193,7 +193,7 @@ def test_agrees_with_the_reference():
     """Every unknown to 1e-11 of the largest force, or of that times the longest link."""
     for reference, data, actions, angles in cases():
         names = unknowns(reference, data)
-        cycle = ls.sweep(with_actions(reference, data, actions), theta2=angles, outputs=names)
+        cycle = ls.sweep(with_actions(reference, data, actions), theta2=angles, of=names)
         assert not cycle.status.any()
         for k, theta2 in enumerate(angles):
             result = reference_solution(reference, data, actions, theta2)
@@ -206,8 +206,8 @@ def test_agrees_with_the_reference():
 def test_dense_path_agrees_and_power_balances():
     for reference, data, actions, angles in cases()[:40]:
         loaded, names = with_actions(reference, data, actions), unknowns(reference, data)
-        fast = ls.sweep(loaded, theta2=angles, outputs=[*names, "power_residual"])
-        dense = ls.sweep(loaded, theta2=angles, outputs=names, solver="dense")
+        fast = ls.sweep(loaded, theta2=angles, of=[*names, "power_residual"])
+        dense = ls.sweep(loaded, theta2=angles, of=names, solver="dense")
         assert abs(fast.power_residual).max() < 1e-12
         for some in (names[:-1], names[-1:]):
             largest = max(float(abs(fast[name]).max()) for name in some)
@@ -219,7 +219,7 @@ def test_springs_and_dampers_on_any_mechanism(mechanism):
     loaded = scene(mechanism, all_kinds(mechanism))
     cycle = ls.sweep(loaded, 90)
     dense = ls.sweep(loaded, 90, solver="dense")
-    assert abs(ls.sweep(loaded, 90, outputs=["power_residual"]).power_residual).max() < 1e-12
+    assert abs(ls.sweep(loaded, 90, of=["power_residual"]).power_residual).max() < 1e-12
     for name in mechanism.unknowns("crank"):
         assert abs(cycle[name] - dense[name]).max() <= 1e-12 * abs(cycle[name]).max(), name
 
@@ -234,8 +234,8 @@ def test_a_spring_does_no_work_in_a_cycle(mechanism):
     springs = [load for load in all_kinds(mechanism) if isinstance(load, ls.Spring)]
     springs.append(ls.TorsionSpring("ground", mechanism.links[2], rate=5.0, free_angle=150.0))
     for spring in springs:
-        own = ls.sweep(scene(frictionless, spring), outputs=["load1_power", "power"])
-        bare = ls.sweep(scene(frictionless), outputs=["power"])
+        own = ls.sweep(scene(frictionless, spring), of=["load1_power", "power"])
+        bare = ls.sweep(scene(frictionless), of=["power"])
         peak = abs(own.load1_power).max()
         assert abs(own.load1_power.mean()) <= 1e-10 * peak
         assert abs((own.power - bare.power).mean()) <= 1e-10 * peak
@@ -245,12 +245,12 @@ def test_a_spring_does_no_work_in_a_cycle(mechanism):
 def test_a_damper_dissipates():
     """Its tension is proportional to the rate of length, and the drive supplies its loss."""
     damper = ls.Damper(("ground", 0.3, 0.1), ("coupler", 0.1, 15.0), coefficient=20.0)
-    own = ls.sweep(scene(loads=damper), outputs=["load1_power", "load1_tension", "load1_length", "power"])
+    own = ls.sweep(scene(loads=damper), of=["load1_power", "load1_tension", "load1_length", "power"])
     harmonics = np.fft.fftfreq(720, 1 / 720)
     rate = -31.0 * np.fft.ifft(1j * harmonics * np.fft.fft(own.load1_length.values)).real
     np.testing.assert_allclose(own.load1_tension, 20.0 * rate, rtol=0, atol=1e-10 * float(abs(own.load1_tension).max()))
     assert (own.load1_power <= 0.0).all()
-    bare = ls.sweep(scene(), outputs=["power"])
+    bare = ls.sweep(scene(), of=["power"])
     assert float((own.power - bare.power).mean()) == pytest.approx(-float(own.load1_power.mean()), rel=1e-10)
 
 
@@ -302,7 +302,7 @@ def test_compiled_and_interpreted_agree_to_the_bit(more, monkeypatch):
     cycles = []
     for after in (np.inf, -1):
         monkeypatch.setattr(run, "COMPILE_AFTER", after)
-        cycles.append(ls.sweep(loaded, 37, outputs=names))
+        cycles.append(ls.sweep(loaded, 37, of=names))
     xr.testing.assert_equal(*cycles)
 
 
@@ -323,14 +323,14 @@ def test_a_scene_without_springs_plans_no_spring():
 def test_design_dims():
     rates = xr.DataArray([0.0, 1000.0, 2000.0], dims="rate")
     spring = ls.Spring(("ground", 0.3, 0.1), ("coupler", 0.1, 15.0), rate=rates, free_length=0.05)
-    cycle = ls.sweep(scene(loads=spring), 36, outputs=["T12", "theta3", "load1_length"])
+    cycle = ls.sweep(scene(loads=spring), 36, of=["T12", "theta3", "load1_length"])
     assert (cycle.T12.dims, cycle.theta3.dims, cycle.load1_length.dims) == (
         ("rate", "theta2"),
         ("theta2",),
         ("theta2",),
     )
     xr.testing.assert_allclose(cycle.T12[2] - cycle.T12[0], 2.0 * (cycle.T12[1] - cycle.T12[0]))
-    one = ls.sweep(scene(loads=replace(spring, rate=2000.0)), 36, outputs=["T12"])
+    one = ls.sweep(scene(loads=replace(spring, rate=2000.0)), 36, of=["T12"])
     np.testing.assert_array_equal(one.T12, cycle.T12[2])
 
 
@@ -366,7 +366,7 @@ def test_results_scale_with_the_units(name):
         "power": torque / slow,
     }
     names = [known for known in machine().table.quantity if re.fullmatch(f"load._{name}", known)]
-    one, other = (ls.sweep(m, 24, outputs=names) for m in (machine(), machine(long, heavy, slow, torque)))
+    one, other = (ls.sweep(m, 24, of=names) for m in (machine(), machine(long, heavy, slow, torque)))
     assert names
     for known in names:
         np.testing.assert_array_equal(other[known], one[known] * factor[name])

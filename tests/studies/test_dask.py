@@ -126,27 +126,27 @@ def test_no_door_looks_at_lazy_numbers():
     for cycle in cycles:
         mechanism = replace(ENGINE, offset=numbers[4], friction=numbers[5])
         scene = ls.Scene(mechanism, omega2=numbers[6], loads=[ls.GasPressure(bore=numbers[7], pressure=cycle)])
-        assert ls.sweep(scene, outputs=["T12"]).T12.dims == ("a", "theta2")
+        assert ls.sweep(scene, of=["T12"]).T12.dims == ("a", "theta2")
     car = ls.Scene(ls.LoopTrack(radius=numbers[0], mass=numbers[1]), speed=numbers[2], profile="energy")
     assert ls.peaks(car).sizes == {"a": 3}
 
 
 def test_what_designs_share_is_what_any_of_them_has():
     """The rod's angle does not depend on friction: where friction wedges in one block, another still has it."""
-    whole = ls.sweep(sliding(), theta2=24, outputs=["theta3", "T12"])
+    whole = ls.sweep(sliding(), theta2=24, of=["theta3", "T12"])
     wedged = whole.status == 4
     assert whole.theta3.dims == ("aside", "theta2")
     assert (wedged.any("mu") & ~wedged.all("mu")).any()
-    assert_equal(ls.sweep(lazy(sliding(), 1), theta2=24, outputs=["theta3", "T12"]), whole)
+    assert_equal(ls.sweep(lazy(sliding(), 1), theta2=24, of=["theta3", "T12"]), whole)
 
 
 def test_which_way_a_crank_turns_is_not_known_before():
     """Without masses the speed matters by its sign alone, for the strokes of the cycle; in each block it is one."""
     massless = ls.SliderCrank(ls.Link(0.04, 0.0, 0.0), ls.Link(0.14, 0.0, 0.0), slider_mass=0.0)
     scene = replace(gas(), mechanism=massless)
-    expected = ls.sweep(scene, theta2=24, outputs=["F14y"])
+    expected = ls.sweep(scene, theta2=24, of=["F14y"])
     assert expected.F14y.dims == ("speed", "bore", "theta2")
-    assert_equal(ls.sweep(lazy(scene), theta2=24, outputs=["F14y"]), expected)
+    assert_equal(ls.sweep(lazy(scene), theta2=24, of=["F14y"]), expected)
 
 
 def test_peaks_are_not_cut_along_what_designs_share():
@@ -157,10 +157,10 @@ def test_peaks_are_not_cut_along_what_designs_share():
 
 def test_requests_of_one_scene_are_kept_apart():
     scene = lazy(grid())
-    fast, dense = (ls.sweep(scene, theta2=8, outputs=["T12"], solver=solver) for solver in ("fast", "dense"))
+    fast, dense = (ls.sweep(scene, theta2=8, of=["T12"], solver=solver) for solver in ("fast", "dense"))
     both = dask.compute(fast, dense, scheduler="threads")
     for found, solver in zip(both, ("fast", "dense"), strict=True):
-        assert_equal(found, ls.sweep(grid(), theta2=8, outputs=["T12"], solver=solver))
+        assert_equal(found, ls.sweep(grid(), theta2=8, of=["T12"], solver=solver))
     assert not both[0].T12.equals(both[1].T12)
 
 
@@ -357,8 +357,8 @@ def test_workers_of_another_version_are_refused(client, tmp_path, monkeypatch):
 
 
 def test_lazy_results_are_computed_on_the_cluster(client):
-    found = client.compute(ls.sweep(lazy(many(), 30), theta2=12, outputs=["T12"])).result()
-    assert_equal(found, ls.sweep(many(), theta2=12, outputs=["T12"]))
+    found = client.compute(ls.sweep(lazy(many(), 30), theta2=12, of=["T12"])).result()
+    assert_equal(found, ls.sweep(many(), theta2=12, of=["T12"]))
 
 
 @pytest.mark.parametrize("client", [5, "tcp://127.0.0.1:8786"])

@@ -41,7 +41,7 @@ OUTPUTS = (
 )  # fmt: skip
 FIGURE = ("--plot", "out.png", OUTPUTS)
 OPTIONS: dict[str, tuple[tuple[str, str, Sequence[str]], ...]] = {
-    "sweep": (("-o", "out.nc", OUTPUTS), ("--theta2", "12", NUMBERS), ("--outputs", "F32", WORDS), FIGURE),
+    "sweep": (("-o", "out.nc", OUTPUTS), ("--theta2", "12", NUMBERS), ("--of", "F32", WORDS), FIGURE),
     "peaks": (("-o", "out.nc", OUTPUTS), ("--theta2", "12", NUMBERS), ("--of", "T12", WORDS)),
     "study": (("-o", "study.nc", OUTPUTS), ("--of", "T12", WORDS), ("--chunk", "5", NUMBERS)),
     "check": (),

@@ -56,7 +56,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     Examples
     --------
     >>> import linksweep as ls
-    >>> shaking = ls.sweep(ls.example("engine"), outputs=["Fsx", "Fsy"])
+    >>> shaking = ls.sweep(ls.example("engine"), of=["Fsx", "Fsy"])
     >>> parts = ls.orders(shaking, "Fsy", n=4)
     >>> parts.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
     [4460.0, 820.0]

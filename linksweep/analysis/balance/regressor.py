@@ -72,7 +72,7 @@ def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: in
     >>> scene = ls.example("press")
     >>> of_masses = ls.regressor(scene, ["T12"], theta2=36)
     >>> torque = (of_masses.T12 * of_masses.value).sum("parameter") + of_masses.T12_of_loads
-    >>> bool(abs(torque - ls.sweep(scene, theta2=36, outputs=["T12"]).T12).max() < 1e-12)
+    >>> bool(abs(torque - ls.sweep(scene, theta2=36, of=["T12"]).T12).max() < 1e-12)
     True
     """
     names = _checked(scene, of)

@@ -19,7 +19,7 @@ def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr
     Parameters
     ----------
     ds : Dataset
-        Cycle with Fsx, Fsy and Ms, as from ``sweep(scene, outputs=["Fsx", "Fsy", "Ms"])``.
+        Cycle with Fsx, Fsy and Ms, as from ``sweep(scene, of=["Fsx", "Fsy", "Ms"])``.
     about : pair of floats or DataArrays, default (0.0, 0.0)
         Coordinates (x, y) of the point from A, in ground axes [m].
 
