@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from linksweep import plot
@@ -31,14 +30,14 @@ CANCELLED = 10.0
 PINS = ("F12", "F32", "F43")
 
 
-def parts_of(machine: MultiCylinder) -> dict[str, Any]:
+def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
     """Return the parts of the page of an engine of one design."""
     engine = machine.engine
     refuse(["engine: has several designs, and a report shows one; give one"] * bool(design_labels(engine)))
     refuse(turning_problems(engine))
-    worst = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS])
+    worst = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS], threads=threads)
     refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
-    mains = bearings(machine) if machine.mains else None
+    mains = bearings(machine, threads=threads) if machine.mains else None
     return {
         "kind": f"{len(machine.crank_angles)} cylinders",
         "warnings": "",
@@ -49,10 +48,10 @@ def parts_of(machine: MultiCylinder) -> dict[str, Any]:
         ),
         "right": joined(
             section("Motion", page_inputs.settings(engine)),
-            section("Drive", _drive(machine)),
+            section("Drive", _drive(machine, threads)),
             section("Main bearings", _mains(mains), tag("p", HINGED, class_="note")) if mains is not None else Markup(),
         ),
-        "figures": pictures(_figures(machine, mains)),
+        "figures": pictures(_figures(machine, mains, threads)),
         "more": "",
         "signs": SIGNS,
         "scene": engine.to_toml(),
@@ -94,16 +93,15 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
 
 
-def _drive(machine: MultiCylinder) -> Markup:
-    work = duty(machine)
-    fluctuations = xr.DataArray(np.array(FLUCTUATIONS), dims="target")
-    size = flywheel(machine, fluctuation=fluctuations)["flywheel_inertia"]
+def _drive(machine: MultiCylinder, threads: int | None) -> Markup:
+    work = duty(machine, threads=threads)
+    size = flywheel(machine, fluctuation=FLUCTUATIONS, threads=threads)["flywheel_inertia"]
     rows = [
         ("mean torque", number(float(work["effort_mean"]), "N m")),
         ("mean power", number(float(work["power_mean"]), "W")),
     ]
     rows += [(title, number(float(work[name]), "J")) for name, title in page_tables.WORKS.items()]
-    rows += [(f"flywheel for δ = {d:g}", number(float(J), "kg m²")) for d, J in zip(FLUCTUATIONS, size, strict=True)]
+    rows += [(f"flywheel for δ = {J.target:g}", number(float(J), "kg m²")) for J in size]
     return table((), rows, class_="numbers")
 
 
@@ -123,8 +121,8 @@ def _mains(loads: xr.Dataset) -> Markup:
     return table(header, rows, class_="numbers")
 
 
-def _figures(machine: MultiCylinder, mains: xr.Dataset | None) -> Iterator[Picture]:
-    cycle = machine.sweep()
+def _figures(machine: MultiCylinder, mains: xr.Dataset | None, threads: int | None) -> Iterator[Picture]:
+    cycle = machine.sweep(threads=threads)
     yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [cycle["T12"]], "torque [N m]"))
     if mains is not None:
         loads = [mains["F"].sel(main=name) for name in mains["main"].values]

@@ -68,7 +68,7 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     yield Picture(kind, SIZE, lambda ax: plot.torque(ds, ax=ax))
     if not bounded:  # there, it is the nearness of the toggle that loads the pin
         return
-    shares = breakdown(results.scene, force, theta2=results.cycle[signals.INDEX].values[::STEPS])
+    shares = breakdown(results.scene, force, theta2=ds[signals.INDEX].values[::STEPS], threads=results.threads)
     title = f"Where the load of {drawing.joint_text(force)} comes from: {symbol(force)}"
     yield Picture(title, SIZE, lambda ax: _legend_below(plot.breakdown(shares, force, ax=ax)))
 

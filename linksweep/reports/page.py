@@ -46,6 +46,7 @@ def report(
     *,
     title: str | None = None,
     theta2: tuple[float, float] | None = None,
+    threads: int | None = None,
 ) -> None:
     """Write a report of one machine: inputs, checks, peaks, drive, geometry, shaking and figures, to print on A4.
 
@@ -61,6 +62,8 @@ def report(
     theta2 : pair of float, default None
         First and last crank angle [degree] of a machine that moves over part of a turn, as a tipper does; checks,
         figures and peaks are then of this part.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Raises
     ------
@@ -89,17 +92,17 @@ def report(
     ending_of(path, ENDINGS, ADVICE)
     if isinstance(scene, MultiCylinder):
         refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
-        write_text(page_of_cylinders(scene.in_memory, title), path)
+        write_text(page_of_cylinders(scene.in_memory, title, threads), path)
         return
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
-    text = page(one, title, theta2)
+    text = page(one, title, theta2, threads)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
 
 
-def page(scene: Scene, title: str | None = None, part: Range | None = None) -> str:
+def page(scene: Scene, title: str | None = None, part: Range | None = None, threads: int | None = None) -> str:
     """Return the report as HTML."""
-    results = results_of(scene, part)
+    results = results_of(scene, part, threads)
     kind = page_inputs.kind_of(scene)
     between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
     parts = {
@@ -118,9 +121,9 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None) -> s
     return _filled(parts)
 
 
-def page_of_cylinders(machine: MultiCylinder, title: str | None) -> str:
+def page_of_cylinders(machine: MultiCylinder, title: str | None, threads: int | None) -> str:
     """Return the report of an engine of several cylinders as HTML."""
-    parts = parts_of(machine)
+    parts = parts_of(machine, threads)
     return _filled({**parts, "title": title or "Engine", "version": version("linksweep")})
 
 

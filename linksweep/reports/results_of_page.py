@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -19,7 +19,7 @@ STEPS = 10  # samples in a degree
 SHAKING = ("Fs", "Ms")
 BESIDE_FORCES = (*SHAKING, "power", "transmission_angle")
 """Quantities whose peaks the page shows of any machine that has them, besides its own highlights."""
-FLUCTUATIONS = (0.02, 0.1)
+FLUCTUATIONS = xr.DataArray([0.02, 0.1], dims="target", coords={"target": [0.02, 0.1]})
 
 Range = tuple[float, float]
 """First and last crank angle [degree] of a machine that moves over part of a turn."""
@@ -30,6 +30,7 @@ class Results(NamedTuple):
 
     scene: Scene
     part: Range | None
+    threads: int | None
     cycle: xr.Dataset
     peaks: xr.Dataset
     check: xr.Dataset
@@ -74,18 +75,19 @@ class Results(NamedTuple):
         return self.part is None or (angle - self.part[0]) % 360.0 <= self.part[1] - self.part[0]
 
 
-def results_of(scene: Scene, part: Range | None = None) -> Results:
+def results_of(scene: Scene, part: Range | None = None, threads: int | None = None) -> Results:
     """Compute all results that the report shows of a scene of one design."""
     theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
-    cycle = sweep(scene, theta2, of=_outputs(scene))
-    worst = _exact(scene) if part is None else peaks_of_part(scene, _peaks_of(scene), part)
-    results = Results(scene, part, cycle, worst, check(scene))
+    cycle = sweep(scene, theta2, of=_outputs(scene), threads=threads)
+    worst = _exact(scene, threads) if part is None else peaks_of_part(scene, _peaks_of(scene), part, threads=threads)
+    results = Results(scene, part, threads, cycle, worst, check(scene))
     if not results.linkage or part is not None:
         return results
-    results = results._replace(geometry=geometry(scene))
+    results = results._replace(geometry=geometry(scene, threads=threads))
     if turning_problems(scene) or not results.whole:
         return results
-    return results._replace(duty=duty(scene), flywheel=None if steady_problems(scene) else _flywheel(scene))
+    wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=FLUCTUATIONS, threads=threads)
+    return results._replace(duty=duty(scene, threads=threads), flywheel=wheel)
 
 
 def _angles(first: float, last: float) -> np.ndarray:
@@ -116,16 +118,11 @@ def _others(scene: Scene) -> list[str]:
     return [*_known(scene, *BESIDE_FORCES), *scene.mechanism.highlights]
 
 
-def _exact(scene: Scene) -> xr.Dataset:
+def _exact(scene: Scene, threads: int | None) -> xr.Dataset:
     """Return exact peaks with their bounds; for a whole revolution means as well."""
-    worst = peaks(scene, _peaks_of(scene))
+    worst = peaks(scene, _peaks_of(scene), threads=threads)
     if int(worst["status"]):
         return worst
     shaking = [name for name in SHAKING if name in _others(scene)]
     averages = [f"{name}_{kind}" for name in (*_forces(scene), *shaking) for kind in ("mean", "rms")]
-    return worst.assign(peaks(scene, averages).data_vars)
-
-
-def _flywheel(scene: Scene) -> xr.Dataset:
-    fluctuations: Any = np.array(FLUCTUATIONS)
-    return flywheel(scene, fluctuation=xr.DataArray(fluctuations, {"target": fluctuations}, "target"))
+    return worst.assign(peaks(scene, averages, threads=threads).data_vars)

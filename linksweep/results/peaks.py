@@ -66,33 +66,25 @@ def peaks(
     solver: str = "fast",
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Return the worst case of each quantity over the continuous revolution, and where it is.
-
-    Exact: samples that are dense where a mechanism comes near a toggle find every rise, and between them the plan is
-    evaluated until nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the
-    limits at the ends of a revolution that toggles cut short; what grows there without bound has the peak inf.
-
-    Springs and dampers are looked at more closely where their ends pass each other; functions of theta2 every 0.02
-    degrees and, where they change more quickly, as closely as they ask for; arrays at least as closely as their angles.
-    What is narrower is found where the load's `breaks` name its angle.
+    """Find the exact peak of each quantity over the continuous revolution, and its angle.
 
     Parameters
     ----------
     scene : Scene or MultiCylinder
-        A machine, and what happens to it. Quantities of several cylinders are those of `MultiCylinder.sweep`, and the
-        pin forces of each cylinder, "F32" and the like, over the dim `cylinder`.
-    of : str or iterable of str, optional
+        Scene of any number of designs. Quantities of several cylinders are those of `MultiCylinder.sweep`, and the pin
+        forces of each cylinder, "F32" and the like, over the dim `cylinder`.
+    of : str or iterable of str, default None
         Names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much larger
         the peak could be than the one returned (inf where a function changes too quickly to be followed), "F32_samples"
-        how many crank angles were evaluated. By default all pins and the torque.
-    theta2 : int or array of angles, optional
-        A count of crank angles, or the angles themselves [degree], for the largest of these samples instead.
-    theta : int or array of angles, optional
-        The positions of a car in a loop, in place of theta2.
-    solver : {"fast", "superposed"}
+        how many crank angles were evaluated. None for all pin forces and the torque.
+    theta2 : int or array_like, default None
+        Count of crank angles, or angles [degree]: the largest of these samples is returned instead.
+    theta : int or array_like, default None
+        Count of positions of a car in a loop, or positions [degree], in place of theta2.
+    solver : {"fast", "superposed"}, default "fast"
         As in `linksweep.sweep`; "superposed" is for samples.
-    threads : int, optional
-        The most threads to use; by default all cores. Results do not depend on it.
+    threads : int, default None
+        Largest number of threads; None for all cores. Results do not depend on it.
 
     Returns
     -------
@@ -104,12 +96,20 @@ def peaks(
     Raises
     ------
     ValueError
-        For an unknown name, angles that are no angles or have the name of another machine's index, and for exact peaks
-        that are to be superposed.
+        If a name is unknown, an angle is no finite number or has the name of another machine's index, or exact peaks
+        are to be superposed.
 
     Notes
     -----
     Relative error at most 1e-10 of a peak, 1e-5 degree of its angle, besides the rounding of the forces themselves.
+
+    Samples that are dense where a machine comes near a toggle find every rise; between them the plan is evaluated until
+    nothing is left to gain. One-sided limits at jumps of friction and loads count, and so do the limits at the ends of
+    a revolution that toggles cut short; what grows there without bound has the peak inf.
+
+    Springs and dampers are sampled more densely where their ends pass each other; functions of theta2 every 0.02
+    degrees, or more densely where they change more quickly; arrays at least as densely as their angles. A narrower
+    event is found if the load's `breaks` name its angle.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
-def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
+def position_equation(scene: Scene, theta2: Any, *, threads: int | None = None) -> xr.Dataset:
     """Return the position equation of a four-bar as document 2 (ME 470) writes it.
 
     Parameters
@@ -25,6 +25,8 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
         Scene of a FourBar.
     theta2 : float or array_like
         Crank angle or angles [degree]; a single number is an angle here, not a count.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -59,9 +61,9 @@ def position_equation(scene: Scene, theta2: Any) -> xr.Dataset:
     formulas, roots = mechanism.position_equation
     both = replace(scene, mechanism=replace(mechanism, branch="both"), drive="crank", loads=())
     grid = crank_grid(angles, both.period, both.mechanism.index)
-    fields = compute(both.at(grid), grid, tuple(formulas))
+    fields = compute(both.at(grid), grid, tuple(formulas), threads)
     order = (*both.inputs.sizes, grid.dim)
-    page = sweep(both, angles, of=list(roots))
+    page = sweep(both, angles, of=list(roots), threads=threads)
     coefficients = {name: variable(fields[name], "1", formula, order) for name, formula in formulas.items()}
     for name, formula in roots.items():
         page[name].attrs["long_name"] += f"; {formula}"

@@ -48,25 +48,26 @@ def sweep(
     Parameters
     ----------
     scene : Scene
-        A machine, and what happens to it.
-    angles : int or array of angles, default 720
-        A count N, for the grid arange(N)·360/N (·720/N where a load takes two turns, as in a four-stroke engine), or
-        the angles themselves [degree]. ``sweep(scene, 360)``, or by the name of the machine's index, as follows.
-    theta2 : int or array of angles, optional
-        The angles of the crank.
-    theta : int or array of angles, optional
-        The positions of a car in a loop, 0 at the bottom.
-    of : str or iterable of str, optional
-        Names of quantities, as `linksweep.quantities` lists them: only what they need is computed. By default the
+        Scene of any number of designs.
+    angles : int or array_like, default None
+        Count N of crank angles, for the grid arange(N)·360/N (·720/N where a load takes two turns, as in a four-stroke
+        engine), or the angles themselves [degree]; None for 720. ``sweep(scene, 360)``, or by the name of the machine's
+        index, as follows.
+    theta2 : int or array_like, default None
+        Count of crank angles, or the angles [degree].
+    theta : int or array_like, default None
+        Count of positions of a car in a loop, or the positions [degree], 0 at the bottom.
+    of : str or iterable of str, default None
+        Names of quantities, as `linksweep.quantities` lists them: only what they need is computed. None for the
         kinematics, the unknown forces and torque, and the magnitudes of the pin forces.
-    outputs : str or iterable of str, optional
+    outputs : str or iterable of str, default None
         Another name of `of`.
-    solver : {"fast", "superposed", "dense"}
+    solver : {"fast", "superposed", "dense"}, default "fast"
         "fast": the 9×9 eliminated by hand. "superposed": along a design dim of masses, loads, speeds … over one
         geometry a few cycles are added up, which is faster and rounds a little differently. "dense": the full 9×9 by
         LAPACK with partial pivoting, as a check.
-    threads : int, optional
-        The most threads to use; by default all cores. Results do not depend on it.
+    threads : int, default None
+        Largest number of threads; None for all cores. Results do not depend on it.
 
     Returns
     -------
@@ -77,8 +78,8 @@ def sweep(
     Raises
     ------
     ValueError
-        For an unknown name, angles that are no angles or have the name of another machine's index, and for an
-        `error_bound` of superposed sums.
+        If a name is unknown, an angle is no finite number or has the name of another machine's index, or the
+        `error_bound` of superposed sums is requested.
 
     Notes
     -----

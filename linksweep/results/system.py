@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.conversion import to_float64
-from linksweep.base.validate import choice_problems, refuse
+from linksweep.base.validate import choice_problems, count_problems, refuse
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
@@ -31,23 +31,26 @@ def system(
     theta2: ArrayLike | None = None,
     theta: ArrayLike | None = None,
     form: str = "reduced",
+    threads: int | None = None,
 ) -> xr.Dataset:
     """Return the square Newton–Euler system of a scene, as the textbook prints it.
 
     Parameters
     ----------
     scene : Scene
-        A machine, and what happens to it.
-    angles : float or array of angles
+        Scene of any number of designs.
+    angles : float or array_like, default None
         Angle or angles [degree]; a single number is an angle here, not a count. ``system(scene, 45.0)``, or by the name
         of the machine's index, as follows.
-    theta2 : float or array of angles, optional
-        The angles of the crank.
-    theta : float or array of angles, optional
-        The positions of a car in a loop.
-    form : {"reduced", "document"}
+    theta2 : float or array_like, default None
+        Angle or angles of the crank [degree].
+    theta : float or array_like, default None
+        Position or positions of a car in a loop [degree].
+    form : {"reduced", "document"}, default "reduced"
         "reduced": nine equations. "document": a slider-crank's with T14 and its row, as document 3 prints them: nine
         without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one form.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -55,6 +58,13 @@ def system(
         With `matrix` (…, theta2, equation, unknown), `rhs` (…, theta2, equation) and `status`. Rows ΣFx and ΣFy are in
         N, rows ΣM (about the link's centre of gravity) in N m; columns of forces in N, of the torque in N m.
 
+    Raises
+    ------
+    ValueError
+        If the scene is no Scene, an angle is no finite number, or the form is unknown.
+
+    Notes
+    -----
     Sources, with their misprints mended:
 
     - Four-bar: document 2 (ME 470), the matrix of R vectors, R_23 read as R_23x, with weights and loads on every link;
@@ -71,11 +81,6 @@ def system(
       drive="cylinder" cylinder_force stands on block and rocker in place of a torque. The loop: document 3's 2×2,
       example 17-4.
 
-    Raises
-    ------
-    ValueError
-        For what is no Scene, for angles that are none, and for another form.
-
     Examples
     --------
     >>> import linksweep as ls
@@ -87,16 +92,16 @@ def system(
     ['T12', 'T14']
     """
     require_scene(scene)
-    refuse(choice_problems("form", form, FORMS))
+    refuse([*choice_problems("form", form, FORMS), *count_problems("threads", threads)])
     index = scene.mechanism.index
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     refuse([f"{index} is missing: give an angle or angles, in degrees"] if angles is None else [])
     scene = in_memory(scene)
     grid = crank_grid(as_angles(angles), scene.period, index)
     sampled = scene.at(grid)
-    status = sample_status(sampled, grid)
+    status = sample_status(sampled, grid, threads)
     unknowns, equations = of_form(scene, form)
-    dims, matrix, rhs = assembled(sampled, grid, unknowns, equations)
+    dims, matrix, rhs = assembled(sampled, grid, unknowns, equations, threads)
     both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
     blank(both, status)
     variables = {

@@ -47,14 +47,6 @@ from linksweep.plot.kit.film import Film
 
 PACKAGE = Path(ls.__file__).parent
 
-NOT_YET = {
-    "MultiCylinder.sweep",
-    "peaks",
-    "sweep",
-    "system",
-}
-"""Names whose docstrings are not yet of this form: delete each as its docstring is rewritten."""
-
 LEFT_OUT = {
     "GL01",  # the summary stands on the line of the opening quotes
     "ES01",  # a summary that says it all needs no more
@@ -207,9 +199,9 @@ def plain_unit(text: str) -> str:
     return text.strip().replace("^", "").replace("²", "2").replace("³", "3").replace("·", " ")
 
 
-@pytest.mark.parametrize("name", sorted({*SUBJECTS} - NOT_YET))
+@pytest.mark.parametrize("name", sorted(SUBJECTS))
 def test_docstring(name):
-    """Each public docstring is of the form above; those in NOT_YET wait for their turn."""
+    """Each public docstring is of the form above."""
     assert problems(name) == []
 
 

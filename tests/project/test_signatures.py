@@ -29,8 +29,9 @@ SUBJECTS = {
     r"Mapping\[str, Bearing\]": {"pins"},
 }
 WORK = {
-    "bearings", "best_counterweights", "breakdown", "compare", "coupler_curve", "duty", "geometry", "peaks",
-    "pin_friction", "regressor", "study", "sweep", "MultiCylinder.sweep",
+    "bearings", "best_counterweights", "breakdown", "compare", "coupler_curve", "duty", "flywheel", "geometry",
+    "motor_load", "peaks", "pin_friction", "position_equation", "regressor", "report", "speed_limit",
+    "speed_separation", "study", "sweep", "system", "MultiCylinder.sweep",
 }  # fmt: skip
 """Functions that compute cycles or peaks, and therefore take `threads`."""
 
@@ -93,12 +94,35 @@ def test_work_is_shared_among_threads(name):
     assert threads.kind is inspect.Parameter.KEYWORD_ONLY and threads.default is None
 
 
+CAR, PRESS = ls.example("loop"), ls.example("press")
+MOTOR = ls.Motor(speeds=(0.0, 600.0), torques=(4.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        lambda n: ls.flywheel(PRESS, inertia=1.0, theta2=36, threads=n),
+        lambda n: ls.motor_load(PRESS, MOTOR, theta2=36, threads=n),
+        lambda n: ls.position_equation(PRESS, 45.0, threads=n),
+        lambda n: ls.speed_limit(PRESS, "F32", below=1000.0, threads=n),
+        lambda n: ls.speed_separation(PRESS, "F32x", theta2=36, threads=n),
+        lambda n: ls.system(PRESS, 45.0, threads=n),
+    ],
+)
+def test_threads_are_checked_and_change_no_result(work):
+    with pytest.raises(ValueError, match=r"^threads = 0: must be a whole number, 1 or more"):
+        work(0)
+    assert work(1).identical(work(2))
+
+
+def test_a_report_takes_threads(tmp_path):
+    with pytest.raises(ValueError, match=r"^threads = 0: must be a whole number, 1 or more"):
+        ls.report(PRESS, tmp_path / "press.html", threads=0)
+
+
 def test_decorated_functions_show_their_own_signature():
     assert [*FUNCTIONS["sweep"].parameters][:2] == ["scene", "angles"]
     assert [*inspect.signature(ls.sweep.__wrapped__).parameters] == [*FUNCTIONS["sweep"].parameters]
-
-
-CAR, PRESS = ls.example("loop"), ls.example("press")
 
 
 @pytest.mark.parametrize(

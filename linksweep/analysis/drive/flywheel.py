@@ -34,7 +34,12 @@ BISECTIONS = 60
 
 
 def flywheel(
-    scene: Scene | MultiCylinder, *, fluctuation: Number | None = None, inertia: Number | None = None, theta2: int = 720
+    scene: Scene | MultiCylinder,
+    *,
+    fluctuation: Number | None = None,
+    inertia: Number | None = None,
+    theta2: int = 720,
+    threads: int | None = None,
 ) -> xr.Dataset:
     """Compute the flywheel for a coefficient of fluctuation, or the fluctuation that a flywheel leaves.
 
@@ -48,6 +53,8 @@ def flywheel(
         Moment of inertia of a flywheel about the crank's axis [kg m²]; 0 for none.
     theta2 : int, default 720
         Count of crank angles over the cycle.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -87,7 +94,7 @@ def flywheel(
         refuse(_too_large(fluctuation))
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
-    cycle, one = _at_constant_speed(scene, theta2), one_cylinder(scene)
+    cycle, one = _at_constant_speed(scene, theta2, threads), one_cylinder(scene)
     index, mean = one.mechanism.index, abs(one.omega2)
     J, torque = (cycle[name].broadcast_like(cycle[index]) for name in ("reduced_inertia", "reduced_torque"))
     stored, drive = _work(torque, one.period, index)
@@ -112,11 +119,11 @@ def flywheel(
     return cycle[["status"]].assign(variables).assign_attrs(attributes)
 
 
-def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int) -> xr.Dataset:
+def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:
     names = ["reduced_torque", "reduced_inertia"]
     if isinstance(scene, MultiCylinder):
-        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, of=names)
-    return sweep(replace(scene, alpha2=0.0), theta2, of=names)
+        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, of=names, threads=threads)
+    return sweep(replace(scene, alpha2=0.0), theta2, of=names, threads=threads)
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:

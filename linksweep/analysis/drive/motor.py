@@ -91,7 +91,13 @@ class Motor:
 
 
 def motor_load(
-    scene: Scene, motor: Motor, *, ratio: Number = 1.0, efficiency: Number = 1.0, theta2: Any = 720
+    scene: Scene,
+    motor: Motor,
+    *,
+    ratio: Number = 1.0,
+    efficiency: Number = 1.0,
+    theta2: Any = 720,
+    threads: int | None = None,
 ) -> xr.Dataset:
     """Compute speed and torque of a motor that drives a machine through a gear, and its margin.
 
@@ -107,6 +113,8 @@ def motor_load(
         Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
     theta2 : int or array_like, default 720
         Count of crank angles, or angles [degree], as in `linksweep.sweep`.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -144,7 +152,7 @@ def motor_load(
     refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
     omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
-    cycle = sweep(scene, theta2, of=[torque, omega, alpha])
+    cycle = sweep(scene, theta2, of=[torque, omega, alpha], threads=threads)
     index = scene.mechanism.index
     T, speed = cycle[torque].broadcast_like(cycle[index]), ratio * cycle[omega]
     fed = T * cycle[omega] > 0.0

@@ -41,7 +41,9 @@ TERMS = {
 """Each term by its ending: the numbers that isolate it, its unit beside the force's, and its description."""
 
 
-def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720) -> xr.Dataset:
+def speed_separation(
+    scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
+) -> xr.Dataset:
     """Separate forces and torques into A·ω2² + B·α2 + C, valid for all speeds.
 
     Parameters
@@ -52,6 +54,8 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, the
         Names of components of pin forces, or of the drive's torque or force; None for all of them.
     theta2 : int or array_like, default 720
         Count of crank angles, or angles [degree], as in `linksweep.sweep`.
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -82,10 +86,10 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, the
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
-    cycle = sweep(scene, theta2, of=names)
+    cycle = sweep(scene, theta2, of=names, threads=threads)
     terms = {}
     for ending, (changed, units, words) in TERMS.items():
-        forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names)
+        forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names, threads)
         for name in names:
             attributes = {"units": f"{cycle[name].units} {units}".strip()}
             attributes["long_name"] = f"{words}: {cycle[name].long_name}"
@@ -94,7 +98,7 @@ def speed_separation(scene: Scene, of: str | Iterable[str] | None = None, *, the
     return cycle[["status"]].assign(terms).assign_attrs(cycle.attrs | {"command": command})
 
 
-def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
+def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = None) -> xr.Dataset:
     """Compute the highest crank speed at which the exact peak of a force or torque stays below a limit.
 
     Parameters
@@ -105,6 +109,8 @@ def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
         Name of a pin force, of one of its components, or of the drive's torque or force.
     below : float
         Limit [N, N m].
+    threads : int, default None
+        Largest number of threads; None for all cores.
 
     Returns
     -------
@@ -112,8 +118,7 @@ def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
         Results over the design dims:
 
         - `omega2_limit` [rad/s], not negative: inf where no speed exceeds the limit, NaN where none keeps it, because
-          the
-          force at rest is beyond it and no speed relieves it, or forces grow without bound
+          the force at rest is beyond it and no speed relieves it, or forces grow without bound
         - `omega2_limit_at` [degree]: crank angle of the peak at that speed.
 
     Raises
@@ -139,11 +144,11 @@ def speed_limit(scene: Scene, of: str, *, below: float) -> xr.Dataset:
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components
     unit_speed = replace(scene, omega2=_one_each(scene))
-    squared, angle = _of_samples(unit_speed, parts, below), xr.DataArray(math.nan)
+    squared, angle = _of_samples(unit_speed, parts, below, threads), xr.DataArray(math.nan)
     for _ in range(CUTS):
         at_speed = replace(scene, omega2=unit_speed.omega2 * np.sqrt(squared.where(np.isfinite(squared), 0.0)))
-        peak, angle = _peak(at_speed, name)
-        cut = _cut(at_speed, parts, angle, below).where(np.isfinite(peak))
+        peak, angle = _peak(at_speed, name, threads)
+        cut = _cut(at_speed, parts, angle, below, threads).where(np.isfinite(peak))
         over = np.isfinite(squared) & (peak > below * (1.0 + CLOSE)) & ~(cut >= squared)
         squared = squared.where(~over, cut)
         if not bool(over.any()):
@@ -183,14 +188,14 @@ def _one_each(scene: Scene) -> xr.DataArray:
     return (xr.DataArray(np.ones(tuple(sizes.values())), dims=tuple(sizes)) * sign).transpose(*sizes)
 
 
-def _of_samples(scene: Scene, parts: tuple[str, ...], below: float) -> xr.DataArray:
+def _of_samples(scene: Scene, parts: tuple[str, ...], below: float, threads: int | None) -> xr.DataArray:
     """Return the largest ω2² that the samples of a grid allow; the continuous revolution can only lower it."""
     index = scene.mechanism.index
     grid = crank_grid(SAMPLES, scene.period, index)
     sampled = scene.at(grid)
-    ok = sweep(scene, SAMPLES, of=[])["status"].drop_vars(index, errors="ignore") == 0
-    growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts)
-    standing = quantities_with({"omega2": 0.0}, sampled, grid, parts)
+    ok = sweep(scene, SAMPLES, of=[], threads=threads)["status"].drop_vars(index, errors="ignore") == 0
+    growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts, threads)
+    standing = quantities_with({"omega2": 0.0}, sampled, grid, parts, threads)
     roots = _roots([growing[part] for part in parts], [standing[part] for part in parts], below)
     lower, upper = (xr.broadcast(root, ok, scene.omega2)[0] for root in roots)
     least = lower.where(ok, -math.inf).max(index, skipna=False)
@@ -212,9 +217,9 @@ def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
         return lower, xr.where(flat, kept, np.maximum(first, second))
 
 
-def _peak(scene: Scene, name: str) -> tuple[xr.DataArray, xr.DataArray]:
+def _peak(scene: Scene, name: str, threads: int | None) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the exact peak of a magnitude, or of a signed quantity's magnitude, and its angle."""
-    worst = peaks(scene, of=[name]).drop_vars("status")
+    worst = peaks(scene, of=[name], threads=threads).drop_vars("status")
     worst = worst.drop_vars([coordinate for coordinate in worst.coords if coordinate not in worst.dims])
     if f"{name}_peak_at" in worst:
         return worst[f"{name}_peak"], worst[f"{name}_peak_at"]
@@ -222,13 +227,13 @@ def _peak(scene: Scene, name: str) -> tuple[xr.DataArray, xr.DataArray]:
     return worst[f"{name}_peak"], xr.where(positive, worst[f"{name}_max_at"], worst[f"{name}_min_at"])
 
 
-def _cut(scene: Scene, parts: tuple[str, ...], angle: xr.DataArray, below: float) -> xr.DataArray:
+def _cut(scene: Scene, parts: tuple[str, ...], angle: xr.DataArray, below: float, threads: int | None) -> xr.DataArray:
     """Return the upper root at this angle of each design, which bounds the speed from above."""
     speed = scene.omega2
     designs, angles = np.arange(speed.size), angle.broadcast_like(speed).transpose(*speed.dims).values.ravel()
     angles = np.where(np.isfinite(angles), angles, 0.0)
-    standing = quantities_at(replace(scene, omega2=0.0 * speed), parts, designs, angles)
+    standing = quantities_at(replace(scene, omega2=0.0 * speed), parts, designs, angles, threads)
     with np.errstate(all="ignore"):
-        growing = (quantities_at(scene, parts, designs, angles) - standing) / speed.values.ravel() ** 2
+        growing = (quantities_at(scene, parts, designs, angles, threads) - standing) / speed.values.ravel() ** 2
     _, upper = _roots([*growing], [*standing], below)
     return speed.copy(data=np.reshape(np.asarray(upper), speed.shape)).where(lambda w: w >= 0.0)

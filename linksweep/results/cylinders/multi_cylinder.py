@@ -196,15 +196,15 @@ class MultiCylinder(ByContent):
 
         Parameters
         ----------
-        theta2 : int or array of angles, default 720
+        theta2 : int or array_like, default 720
             Count of crank angles, or the angles themselves [degree], as in `linksweep.sweep`.
-        of : str or iterable of str, optional
-            Names of quantities. By default T12, the shaking force and its moments; others are `power`,
-            `reduced_torque`, `reduced_inertia`, `F_main1`, `F_main1x` … and the like.
-        outputs : str or iterable of str, optional
+        of : str or iterable of str, default None
+            Names of quantities. None for T12, the shaking force and its moments; others are `power`, `reduced_torque`,
+            `reduced_inertia`, `F_main1`, `F_main1x` … and the like.
+        outputs : str or iterable of str, default None
             Another name of `of`.
-        threads : int, optional
-            The most threads to use; by default all cores. Results do not depend on it.
+        threads : int, default None
+            Largest number of threads; None for all cores. Results do not depend on it.
 
         Returns
         -------
@@ -215,7 +215,7 @@ class MultiCylinder(ByContent):
         Raises
         ------
         ValueError
-            For angles that are no angles, and unknown names.
+            If an angle is no finite number, or a name is unknown.
         """
         word, quantities = either(of=of, outputs=outputs)
         names = list(SHAKING) if quantities is None else requested(word, quantities)
