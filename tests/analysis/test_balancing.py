@@ -34,35 +34,35 @@ OUTPUTS = ["F12x", "F32y", "F43x", "F14y", "T12", "Fsx", "Ms", "power", "F32x_li
 def test_coefficients_times_parameters_are_the_sweep(scene):
     names = [name.replace("T12", scene.mechanism.drives[scene.drive]) for name in OUTPUTS] + ["T14", "T43"]
     names = [name for name in names if name in scene.table.quantity]
-    found, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, of=names)
+    regressor, cycle = ls.regressor(scene, names, theta2=36), ls.sweep(scene, theta2=36, of=names)
     for name in names:
-        again = (found[name] * found.value).sum("parameter", skipna=False) + found[f"{name}_of_loads"]
+        again = (regressor[name] * regressor.value).sum("parameter", skipna=False) + regressor[f"{name}_of_loads"]
         near = 1e-12 * float(np.abs(cycle[name]).max())
         np.testing.assert_allclose(*xr.broadcast(again, cycle[name]), rtol=1e-9, atol=near)
 
 
-def test_coefficients_foretell_other_masses():
-    """What no probe has seen: a coupler of other mass, place and inertia."""
-    found = ls.regressor(SKEW, OUTPUTS, theta2=36)
+def test_coefficients_predict_other_masses():
+    """A coupler of another mass, centre of gravity and inertia than any probe has."""
+    regressor = ls.regressor(SKEW, OUTPUTS, theta2=36)
     m, d, angle, inertia = 1.7, 0.05, 75.0, 2e-3
     h = m * d * np.exp(1j * np.radians(angle))
-    values = found.value.copy()
+    values = regressor.value.copy()
     for word, number in {"m": m, "mx": h.real, "my": h.imag, "J": inertia + m * d**2}.items():
         values.loc[{"parameter": f"coupler.{word}"}] = number
     other = replace(SKEW.mechanism, coupler=ls.Link(0.22, m, inertia, d, angle))
     cycle = ls.sweep(replace(SKEW, mechanism=other), theta2=36, of=OUTPUTS)
     for name in OUTPUTS:
-        again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
+        again = (regressor[name] * values).sum("parameter") + regressor[f"{name}_of_loads"]
         np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
 
 
-def test_coefficients_foretell_a_slider_and_a_block_of_other_centres_of_gravity():
+def test_coefficients_predict_a_slider_and_a_block_of_other_centres_of_gravity():
     for scene, role in ((ENGINE, "slider"), (SHAPER, "block")):
         mass = getattr(scene.mechanism, f"{role}_mass")
         moved = {f"{role}_cg_distance": 0.03, f"{role}_cg_angle": 35.0}
         names = [name for name in (*OUTPUTS, "T14", "T43") if name in scene.table.quantity]
-        found = ls.regressor(scene, names, theta2=36)
-        h, values = mass * 0.03 * np.exp(1j * np.radians(35.0)), found.value.copy()
+        regressor = ls.regressor(scene, names, theta2=36)
+        h, values = mass * 0.03 * np.exp(1j * np.radians(35.0)), regressor.value.copy()
         numbers = {"mx": h.real, "my": h.imag}
         if role == "block":
             numbers["J"] = scene.mechanism.block_inertia + mass * 0.03**2
@@ -70,24 +70,24 @@ def test_coefficients_foretell_a_slider_and_a_block_of_other_centres_of_gravity(
             values.loc[{"parameter": f"{role}.{word}"}] = number
         cycle = ls.sweep(replace(scene, mechanism=replace(scene.mechanism, **moved)), theta2=36, of=names)
         for name in names:
-            again = (found[name] * values).sum("parameter") + found[f"{name}_of_loads"]
+            again = (regressor[name] * values).sum("parameter") + regressor[f"{name}_of_loads"]
             np.testing.assert_allclose(again, cycle[name], rtol=1e-9, atol=1e-10 * float(np.abs(cycle[name]).max()))
 
 
 def test_the_torque_of_a_flywheel_is_its_inertia_times_alpha():
-    found = ls.regressor(SKEW, ["T12", "F12x"], theta2=36)
-    np.testing.assert_allclose(found.T12.sel(parameter="crank.J"), 50.0, rtol=1e-12)
-    np.testing.assert_allclose(found.F12x.sel(parameter="crank.J"), 0.0, atol=1e-12)
+    regressor = ls.regressor(SKEW, ["T12", "F12x"], theta2=36)
+    np.testing.assert_allclose(regressor.T12.sel(parameter="crank.J"), 50.0, rtol=1e-12)
+    np.testing.assert_allclose(regressor.F12x.sel(parameter="crank.J"), 0.0, atol=1e-12)
 
 
-def test_designs_go_along():
+def test_designs_are_batched():
     lengths = xr.DataArray([0.2, 0.22, 0.24], dims="coupler_length")
     several = replace(
         PRESS, mechanism=replace(PRESS.mechanism, ground=lengths), omega2=xr.DataArray([5.0, 9.0], dims="s")
     )
-    found = ls.regressor(several, ["F32x"], theta2=12)
+    regressor = ls.regressor(several, ["F32x"], theta2=12)
     cycle = ls.sweep(several, theta2=12, of=["F32x"]).F32x
-    again = (found.F32x * found.value).sum("parameter") + found.F32x_of_loads
+    again = (regressor.F32x * regressor.value).sum("parameter") + regressor.F32x_of_loads
     np.testing.assert_allclose(again.transpose(*cycle.dims), cycle, rtol=1e-10, atol=1e-10)
 
 
@@ -101,7 +101,7 @@ def shaking(scene, **options):
 @pytest.mark.parametrize(
     "scene", [PRESS, SKEW, replace(SKEW, mechanism=replace(SKEW.mechanism, branch="crossed")), SHAPER, BLOCK]
 )
-def test_balanced_wholly(scene):
+def test_full_force_balance(scene):
     """Berkof and Lowen: no shaking force is left, at any speed and acceleration of the crank."""
     weights = ls.counterweights(scene, radius={"crank": 0.05, "rocker": 0.07})
     balanced = ls.with_counterweights(scene, weights)
@@ -123,8 +123,8 @@ def test_berkof_and_lowens_in_line_four_bar():
     assert abs(crank.at[1]) == abs(rocker.at[1]) == pytest.approx(180.0, abs=1e-12)
 
 
-def test_forces_of_a_balanced_machine_on_the_ground_add_up_to_nothing():
-    """Without loads and weights: F21 + F41 = 0, whatever is left is a couple."""
+def test_pin_forces_of_a_balanced_machine_on_the_ground_cancel():
+    """Without loads and weights F21 + F41 = 0; only a couple remains."""
     free = replace(SKEW, gravity=(0.0, 0.0), loads=[])
     cycle = ls.sweep(ls.with_counterweights(free, ls.counterweights(free, radius=0.05)))
     largest = float(np.hypot(cycle.F12x, cycle.F12y).max())
@@ -134,7 +134,7 @@ def test_forces_of_a_balanced_machine_on_the_ground_add_up_to_nothing():
 
 @pytest.mark.parametrize("fraction", [0.0, 0.5, 1.0])
 def test_a_fraction_of_the_first_order(fraction):
-    """An upright engine: 1 − f of m_rec·r·ω² stays along the cylinder, f of it goes across; higher orders stay."""
+    """In an upright engine (1 − f)·m_rec·r·ω² remains along the cylinder, f·m_rec·r·ω² across; higher orders remain."""
     balanced = ls.with_counterweights(ENGINE, ls.counterweights(ENGINE, radius=0.05, fraction=fraction))
     before, after = (ls.orders(shaking(s, theta2=1440), ["Fsx", "Fsy"], n=6) for s in (ENGINE, balanced))
     rod = ENGINE.mechanism.rod
@@ -152,7 +152,7 @@ def test_a_fraction_of_the_first_order(fraction):
         np.testing.assert_allclose(after[f"{name}_amplitude"].sel(high), same, atol=1e-11 * first)
 
 
-def test_a_counterweight_weighs_and_turns():
+def test_a_counterweight_adds_weight_and_inertia():
     weight = ls.Counterweight("rocker", 0.3, at=(0.05, 120.0), inertia=2e-4)
     both = ls.with_counterweights(PRESS, weight).mechanism.rocker
     rocker = PRESS.mechanism.rocker
@@ -171,14 +171,14 @@ def test_counterweights_of_designs():
     assert (shaking(balanced).Fs.max("theta2") < 1e-12 * shaking(several).Fs.max("theta2")).all()
 
 
-def test_the_loads_stay_what_they_are():
+def test_counterweights_keep_the_loads():
     weights = ls.counterweights(PRESS, radius=0.05)
     assert ls.with_counterweights(PRESS, weights).loads == PRESS.loads
     assert ls.with_counterweights(PRESS, []) == PRESS
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.counterweights(LOOP, radius=0.1), "which has no links"),
         (lambda: ls.counterweights(PRESS, radius=0.0), "radius = 0 m: must be greater than 0"),
@@ -192,12 +192,12 @@ def test_the_loads_stay_what_they_are():
         (lambda: ls.regressor(LOOP, ["speed"]), "scene is of a LoopTrack"),
     ],
 )
-def test_refusals(call, said):
+def test_refusals(call, message):
     (line,) = refusal(call)
-    assert said in line
+    assert message in line
 
 
-def test_loads_at_the_centre_of_gravity_would_move():
+def test_loads_at_the_centre_of_gravity_are_refused():
     loaded = replace(PRESS, loads=[ls.Load("crank", force=(1.0, 0.0), origin="cg")])
     (line,) = refusal(ls.with_counterweights, loaded, [ls.Counterweight("crank", 1.0)])
     assert 'loads[1].origin = "cg"' in line
@@ -207,19 +207,19 @@ def test_loads_at_the_centre_of_gravity_would_move():
 
 
 def mix(scene, weights, minimize):
-    """The objective by definition, from sweeps."""
+    """Return the objective by its definition, from sweeps."""
     table = ls.compare(scene, ls.with_counterweights(scene, weights), of=minimize, theta2=180)
     ratio = {name: table[name].sel(balance="after") / table[name].sel(balance="before") for name in minimize}
     return sum(minimize[name] * ratio[name] ** 2 for name in minimize).values
 
 
-def test_for_the_shaking_force_alone_it_finds_berkof_and_lowen():
-    found = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
-    assert mix(SKEW, found, {"Fs_rms": 1.0}) < 1e-10
-    for best, exact in zip(found, ls.counterweights(SKEW, radius=0.06), strict=True):
+def test_the_least_shaking_force_is_berkof_and_lowens_solution():
+    weights = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius=0.06, theta2=180)
+    assert mix(SKEW, weights, {"Fs_rms": 1.0}) < 1e-10
+    for best, exact in zip(weights, ls.counterweights(SKEW, radius=0.06), strict=True):
         moments = [w.mass * w.at[0] * np.exp(1j * np.radians(w.at[1])) for w in (best, exact)]
         assert abs(moments[0] - moments[1]) < 1e-6 * abs(moments[1])
-        assert best.mass == pytest.approx(exact.mass, rel=0.01)  # the lightest of those that do
+        assert best.mass == pytest.approx(exact.mass, rel=0.01)  # the lightest of the solutions
 
 
 @pytest.mark.parametrize(
@@ -230,8 +230,8 @@ def test_for_the_shaking_force_alone_it_finds_berkof_and_lowen():
         pytest.param({"F12_peak": 1.0, "Fs_rms": 0.5, "Ms_peak": 0.5, "T12_ripple": 0.3}, marks=pytest.mark.long),
     ],
 )
-def test_brute_force_finds_nothing_better(minimize):
-    """Masses at the radius in any two directions, by a search that knows nothing of linearity."""
+def test_a_general_search_finds_nothing_better(minimize):
+    """Search masses at the radius in any two directions without use of linearity."""
     from scipy.optimize import differential_evolution
 
     best = mix(SKEW, ls.best_counterweights(SKEW, minimize, radius=0.06, theta2=180), minimize)
@@ -247,22 +247,22 @@ def test_brute_force_finds_nothing_better(minimize):
     assert best < searched.fun * (1.0 + 0.01)
 
 
-def test_sizes_are_what_their_names_say():
-    """Of an engine's torque, whose mean is not 0."""
+def test_sizes_of_the_objective_by_definition():
+    """An engine's torque, whose mean is not 0."""
     other = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slider_mass=0.6))
     table = ls.compare(ENGINE, other, of=["T12_peak", "T12_rms", "T12_ripple", "F43_rms"])
     for scene, when in ((ENGINE, "before"), (other, "after")):
         cycle = ls.sweep(scene, of=["T12", "F43x", "F43y"])
         torque, squares = cycle.T12.values, cycle.F43x.values**2 + cycle.F43y.values**2
-        found = table.sel(balance=when)
-        assert float(found.T12_peak) == max(torque.max(), -torque.min())
-        assert float(found.T12_rms) == pytest.approx(np.sqrt(np.mean(torque**2)), rel=1e-12)
-        assert float(found.T12_ripple) == pytest.approx(np.std(torque), rel=1e-12)
-        assert float(found.F43_rms) == pytest.approx(np.sqrt(squares.mean()), rel=1e-12)
+        row = table.sel(balance=when)
+        assert float(row.T12_peak) == max(torque.max(), -torque.min())
+        assert float(row.T12_rms) == pytest.approx(np.sqrt(np.mean(torque**2)), rel=1e-12)
+        assert float(row.T12_ripple) == pytest.approx(np.std(torque), rel=1e-12)
+        assert float(row.F43_rms) == pytest.approx(np.sqrt(squares.mean()), rel=1e-12)
     assert table.T12_ripple.units == "N m"
 
 
-def test_a_constant_torque_on_the_crank_is_no_ripple():
+def test_a_constant_torque_on_the_crank_does_not_count_as_ripple():
     aims = {"T12_ripple": 1.0, "Fs_rms": 1.0}
     loaded = replace(SKEW, loads=[*SKEW.loads, ls.Load("crank", torque=100.0)])
     for one, other in zip(
@@ -278,23 +278,23 @@ def test_the_limit_of_mass_is_kept():
     assert free[0].mass > 0.3
     assert bound[0].mass == pytest.approx(0.2, rel=1e-6)
     assert bound[0].mass <= 0.2 * (1.0 + 1e-12)
-    assert bound[0].at[0] == pytest.approx(0.06, rel=0.01)  # none of it is wasted
+    assert bound[0].at[0] == pytest.approx(0.06, rel=0.01)  # the limit is fully used
     one = ls.best_counterweights(SKEW, {"Fs_rms": 1.0}, radius={"rocker": 0.06}, theta2=180)
     assert [weight.link for weight in one] == ["rocker"]
 
 
-def test_what_cannot_be_bettered_is_left_alone():
-    """A balanced machine without loads: any counterweight would make it shake."""
+def test_a_balanced_machine_is_not_changed():
+    """In a balanced machine without loads any counterweight would cause shaking."""
     free = replace(SKEW, gravity=(0.0, 0.0), loads=[])
     balanced = ls.with_counterweights(free, ls.counterweights(free, radius=0.06))
     heavier = ls.with_counterweights(balanced, [ls.Counterweight("rocker", 0.2, (0.0, 0.0))])
-    found = ls.best_counterweights(heavier, {"T12_ripple": 1.0}, radius={"rocker": 0.06}, theta2=90)
-    before = ls.compare(heavier, ls.with_counterweights(heavier, found), of=["T12_ripple"], theta2=90).T12_ripple
+    weights = ls.best_counterweights(heavier, {"T12_ripple": 1.0}, radius={"rocker": 0.06}, theta2=90)
+    before = ls.compare(heavier, ls.with_counterweights(heavier, weights), of=["T12_ripple"], theta2=90).T12_ripple
     assert float(before.sel(balance="after")) <= float(before.sel(balance="before")) * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.best_counterweights(PRESS, {"F32_max": 1.0}, radius=0.05), "minimize: nothing is named 'F32_max'"),
         (lambda: ls.best_counterweights(PRESS, {}, radius=0.05), "minimize = {}: must be weights by name"),
@@ -314,15 +314,15 @@ def test_what_cannot_be_bettered_is_left_alone():
         ),
     ],
 )
-def test_refusals_of_aims(call, said):
+def test_refusals_of_objectives(call, message):
     (line,) = refusal(call)
-    assert said in line
+    assert message in line
 
 
 # ------------------------------------------------------------------------------------------------- plot
 
 
-def test_the_plot_shows_both():
+def test_the_plot_shows_both_machines():
     balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
     figure = ls.plot.balance(PRESS, balanced, theta2=90)
     hodograph, moment, torque, pin = figure.axes

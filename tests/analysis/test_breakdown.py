@@ -1,4 +1,4 @@
-"""Why a pin is loaded: the shares of its sources, and its speed."""
+"""Breakdown of a pin force into the contributions of its sources, and the speed limit."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ SCENES = [
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_shares_add_up_to_the_whole(scene):
+def test_contributions_add_up_to_the_whole(scene):
     drive = scene.mechanism.drives[scene.drive]
     names = ["F12", "F32", "F43x", "F14", "F14y", drive, *(["T14"] if scene.mechanism == SLIDER_CRANK else [])]
     shares, whole = ls.breakdown(scene, names, theta2=72), ls.sweep(scene, 72, of=names)
@@ -53,9 +53,9 @@ def alone(scene, **changes):
     return ls.sweep(replace(scene, **changes), 72, of=["F32x", "F14y", "T12"])
 
 
-def test_each_share_is_the_machine_with_that_source_alone():
+def test_each_contribution_is_the_machine_with_that_source_alone():
     scene = SCENES[0]
-    found = ls.breakdown(scene, ["F32x", "F14y", "T12"], theta2=72)
+    shares = ls.breakdown(scene, ["F32x", "F14y", "T12"], theta2=72)
     none = replace(CRANK, mass=0.0, inertia=0.0), replace(ROD, mass=0.0, inertia=0.0)
     rocker = ls.FourBar(*none, ROCKER, ground=0.2)
     massless = ls.FourBar(*none, replace(ROCKER, mass=0.0, inertia=0.0), ground=0.2)
@@ -66,43 +66,43 @@ def test_each_share_is_the_machine_with_that_source_alone():
         "load1 (coupler)": alone(scene, mechanism=massless, gravity=nothing, loads=scene.loads[:1]),
         "load2 (ground–crank)": alone(scene, mechanism=massless, gravity=nothing, loads=scene.loads[1:]),
     }
-    assert found.source.values.tolist() == ["crank inertia", "coupler inertia", *expected]
+    assert shares.source.values.tolist() == ["crank inertia", "coupler inertia", *expected]
     for source, ds in expected.items():
         for name in ("F32x", "F14y", "T12"):
-            share = found[name].sel(source=source)
-            np.testing.assert_allclose(share, ds[name], rtol=1e-12, atol=1e-12 * float(abs(found[name]).max()))
+            share = shares[name].sel(source=source)
+            np.testing.assert_allclose(share, ds[name], rtol=1e-12, atol=1e-12 * float(abs(shares[name]).max()))
 
 
-def test_frictions_share_is_what_its_force_does_on_a_slider_without_friction():
+def test_the_contribution_of_friction_is_its_force_on_a_frictionless_slider():
     scene = SCENES[2]
     force = ls.sweep(scene, 72, of=["friction_force"]).friction_force
     smooth = replace(SLIDER_CRANK, friction=0.0, crank=replace(CRANK, mass=0.0, inertia=0.0), slider_mass=0.0)
     smooth = replace(smooth, rod=replace(ROD, mass=0.0, inertia=0.0))
     rubbing = ls.Scene(smooth, 30.0, loads=[ls.Load("slider", force=(force.reset_coords(drop=True), 0.0))])
     expected = ls.sweep(rubbing, 72, of=["F32x", "F32y", "T12", "F14y"])
-    found = ls.breakdown(scene, ["F32x", "F32y", "T12", "F14y"], theta2=72).sel(source="friction")
+    shares = ls.breakdown(scene, ["F32x", "F32y", "T12", "F14y"], theta2=72).sel(source="friction")
     for name in ("F32x", "F32y", "T12", "F14y"):
-        np.testing.assert_allclose(found[name], expected[name], atol=1e-11 * float(abs(expected.F32x).max()))
-    assert float(abs(found.T12).max()) > 0.1
+        np.testing.assert_allclose(shares[name], expected[name], atol=1e-11 * float(abs(expected.F32x).max()))
+    assert float(abs(shares.T12).max()) > 0.1
 
 
-def test_a_magnitudes_share_is_the_part_along_the_force():
+def test_the_contribution_to_a_magnitude_is_the_component_along_the_force():
     scene = SCENES[0]
-    found = ls.breakdown(scene, ["F32", "F32x", "F32y"], theta2=36)
+    shares = ls.breakdown(scene, ["F32", "F32x", "F32y"], theta2=36)
     whole = ls.sweep(scene, 36, of=["F32x", "F32y"])
     angle = np.arctan2(whole.F32y, whole.F32x)
-    np.testing.assert_allclose(found.F32, found.F32x * np.cos(angle) + found.F32y * np.sin(angle), atol=1e-11)
+    np.testing.assert_allclose(shares.F32, shares.F32x * np.cos(angle) + shares.F32y * np.sin(angle), atol=1e-11)
 
 
-def test_designs_keep_their_dims_and_sources_that_are_not_there_are_left_out():
+def test_designs_keep_their_dims_and_absent_sources_are_left_out():
     heavy = replace(FOUR_BAR, rocker=replace(ROCKER, mass=xr.DataArray([0.5, 0.6], {"m": [1, 2]}, "m")))
     scene = ls.Scene(heavy, xr.DataArray([10.0, 20.0, 30.0], dims="speed"))
-    found = ls.breakdown(scene, "T12", theta2=12)
-    assert found.T12.sizes == {"source": 3, "m": 2, "speed": 3, "theta2": 12}
+    shares = ls.breakdown(scene, "T12", theta2=12)
+    assert shares.T12.sizes == {"source": 3, "m": 2, "speed": 3, "theta2": 12}
     one = ls.breakdown(
         replace(scene, mechanism=replace(FOUR_BAR, rocker=replace(ROCKER, mass=0.6)), omega2=20.0), "T12", theta2=12
     )
-    np.testing.assert_array_equal(found.T12.sel(m=2).isel(speed=1).transpose("source", "theta2"), one.T12)
+    np.testing.assert_array_equal(shares.T12.sel(m=2).isel(speed=1).transpose("source", "theta2"), one.T12)
 
 
 def test_what_it_refuses():
@@ -114,7 +114,7 @@ def test_what_it_refuses():
         ls.breakdown(FOUR_BAR)
 
 
-# ------------------------------------------------------------------------------------------------ and speed
+# ------------------------------------------------------------------------------------------------ speed limit
 
 SMOOTH = [
     ls.Scene(FOUR_BAR, 30.0, 70.0, UPRIGHT, [push("coupler"), SPRING]),
@@ -124,7 +124,7 @@ SMOOTH = [
 
 
 @pytest.mark.parametrize("scene", SMOOTH)
-def test_the_three_terms_give_every_speed(scene):
+def test_three_terms_give_the_force_at_every_speed(scene):
     parts = ls.speed_separation(scene, theta2=72)
     names = [name for name in scene.mechanism.unknowns("crank") if name != "T14"]
     for omega2, alpha2 in ((30.0, 70.0), (-112.0, 0.0), (0.0, -900.0)):
@@ -141,8 +141,8 @@ def test_the_three_terms_give_every_speed(scene):
 @pytest.mark.parametrize("of", ["F32", "T12"])
 def test_at_the_limit_the_exact_peak_is_the_limit_and_beyond_it_is_larger(scene, of):
     below = 2.0 * float(ls.peaks(replace(scene, omega2=0.0), of=[of])[f"{of}_peak"])
-    found = ls.speed_limit(scene, of, below=below)
-    speed = float(found.omega2_limit)
+    limit = ls.speed_limit(scene, of, below=below)
+    speed = float(limit.omega2_limit)
     speeds = xr.DataArray(speed * np.array([1.0, 1.0 + 1e-6, 1.1, 2.0]), dims="speed")
     peaks = ls.peaks(replace(scene, omega2=np.sign(scene.omega2) * speeds), of=[of])[f"{of}_peak"]
     np.testing.assert_allclose(peaks[0], below, rtol=1e-10)
@@ -153,7 +153,7 @@ def test_at_the_limit_the_exact_peak_is_the_limit_and_beyond_it_is_larger(scene,
     assert brute.max() <= below * (1.0 + 1e-10)
 
 
-def test_it_does_not_depend_on_the_grid_that_it_starts_from(monkeypatch):
+def test_the_limit_is_independent_of_the_initial_grid(monkeypatch):
     fine = ls.speed_limit(SMOOTH[0], "F43", below=300.0)
     monkeypatch.setattr(speed_limit, "SAMPLES", 5)
     coarse = ls.speed_limit(SMOOTH[0], "F43", below=300.0)
@@ -164,16 +164,16 @@ def test_it_does_not_depend_on_the_grid_that_it_starts_from(monkeypatch):
 def test_a_study_has_a_limit_for_each_design():
     length = xr.DataArray([0.2, 0.22, 0.25], dims="rod")
     scene = ls.Scene(replace(FOUR_BAR, coupler=replace(ROD, length=length)), 30.0, loads=[push("rocker")])
-    found = ls.speed_limit(scene, "F43", below=150.0)
-    assert found.omega2_limit.dims == ("rod",)
+    limit = ls.speed_limit(scene, "F43", below=150.0)
+    assert limit.omega2_limit.dims == ("rod",)
     for k in range(3):
         single = replace(scene, mechanism=replace(FOUR_BAR, coupler=replace(ROD, length=float(length[k]))))
         np.testing.assert_allclose(
-            found.omega2_limit[k], ls.speed_limit(single, "F43", below=150.0).omega2_limit, rtol=1e-10
+            limit.omega2_limit[k], ls.speed_limit(single, "F43", below=150.0).omega2_limit, rtol=1e-10
         )
 
 
-def test_a_machine_without_mass_has_no_limit_and_one_that_is_overloaded_at_rest_no_speed():
+def test_a_massless_machine_has_no_limit_and_an_overloaded_one_no_speed():
     light = [replace(link, mass=0.0, inertia=0.0) for link in (CRANK, ROD, ROCKER)]
     scene = ls.Scene(ls.FourBar(*light, ground=0.2), 30.0, loads=[push("rocker")])
     peak = float(ls.peaks(scene, of=["F43"]).F43_peak)
@@ -183,14 +183,14 @@ def test_a_machine_without_mass_has_no_limit_and_one_that_is_overloaded_at_rest_
 
 
 def test_a_mass_on_the_crank_by_hand():
-    """One mass m at r on the crank and nothing else: |F12| = m r ω², T12 = 0 at constant speed."""
+    """With one mass m at r on the crank, |F12| = m r ω² and T12 = 0 at constant speed."""
     light = [replace(link, mass=0.0, inertia=0.0) for link in (ROD, ROCKER)]
     scene = ls.Scene(ls.FourBar(ls.Link(0.08, 2.0, 0.0, 0.05), *light, ground=0.2), 30.0)
     np.testing.assert_allclose(ls.speed_limit(scene, "F12", below=250.0).omega2_limit, 50.0, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("scene", "of", "below", "said"),
+    ("scene", "of", "below", "message"),
     [
         (SCENES[2], "F32", 10.0, "mechanism.friction: its force does not grow"),
         (SCENES[3], "F32", 10.0, r"loads\[2\] is a damper"),
@@ -200,12 +200,12 @@ def test_a_mass_on_the_crank_by_hand():
         (ls.example("loop"), "F32", 1.0, "has no crank"),
     ],
 )
-def test_what_the_limit_refuses(scene, of, below, said):
-    with pytest.raises(ValueError, match=said):
+def test_refusals_of_the_limit(scene, of, below, message):
+    with pytest.raises(ValueError, match=message):
         ls.speed_limit(scene, of, below=below)
 
 
-def test_the_stack_of_shares_ends_at_the_sum():
+def test_the_stack_of_contributions_ends_at_the_sum():
     shares = ls.breakdown(SCENES[0], "T12")
     ax = ls.plot.breakdown(shares)
     drawn = line(ax, "sum").get_ydata()

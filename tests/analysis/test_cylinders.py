@@ -1,4 +1,4 @@
-"""MultiCylinder: what is known of inline engines and V-twins, order by order, and of a bank that is a turned guide."""
+"""MultiCylinder: known orders of inline engines and V-twins, and a bank against a rotated guide."""
 
 from dataclasses import replace
 
@@ -23,16 +23,16 @@ ORDERS = [1, 2, 3, 4, 5, 6]
 
 
 def amplitudes(machine, *names):
-    found = ls.orders(machine.sweep(theta2=1440), list(names), n=6).sel(order=ORDERS)
-    return [found[f"{name}_amplitude"].values for name in names]
+    orders = ls.orders(machine.sweep(theta2=1440), list(names), n=6).sel(order=ORDERS)
+    return [orders[f"{name}_amplitude"].values for name in names]
 
 
 def along(count):
-    """Places of so many cylinders about the middle."""
+    """Return positions of `count` cylinders about the middle."""
     return [SPACING * (k - 0.5 * (count - 1)) for k in range(count)]
 
 
-def test_one_cylinder_is_the_sweep():
+def test_one_cylinder_equals_the_sweep():
     one, cycle = ls.MultiCylinder(ENGINE, [0.0]).sweep(), ls.sweep(ENGINE, of=["T12", "Fsx", "Fsy", "Fs", "Ms"])
     for name in ("T12", "Fsx", "Fsy", "Ms"):
         np.testing.assert_array_equal(one[name], cycle[name])
@@ -40,15 +40,15 @@ def test_one_cylinder_is_the_sweep():
     assert float(abs(one.Msx).max() + abs(one.Msy).max()) == 0.0
 
 
-def test_one_cylinder_alone_shakes_by_its_travel():
+def test_the_shaking_force_of_one_cylinder_is_that_of_its_slider():
     x, y = amplitudes(ls.MultiCylinder(ENGINE, [0.0]), "Fsx", "Fsy")
     assert y[0] == pytest.approx(FIRST + ROTATING, rel=1e-12)
     assert x[0] == pytest.approx(ROTATING, rel=1e-12)
     assert y[1] == pytest.approx(SECOND, rel=1e-12)
 
 
-def test_an_inline_four_keeps_the_second_order_alone():
-    """First orders cancel, second ones add up, and no moment tilts it; of higher orders the even ones stay."""
+def test_an_inline_four_has_the_second_order_only():
+    """First orders cancel, second orders add up, the moment is zero; of higher orders the even ones remain."""
     four = ls.MultiCylinder(ENGINE, [0, 540, 180, 360], positions=along(4))
     x, y, tilt, yaw = amplitudes(four, "Fsx", "Fsy", "Msx", "Msy")
     assert y[1] == pytest.approx(4.0 * SECOND, rel=1e-12)
@@ -56,15 +56,15 @@ def test_an_inline_four_keeps_the_second_order_alone():
     np.testing.assert_allclose([x, tilt, yaw], 0.0, atol=1e-11 * FIRST)
 
 
-def test_four_strokes_of_four_cylinders_pull_twice_a_turn():
-    """Evenly fired: the torque repeats every 180 degrees, as that of one cylinder does every 720."""
+def test_four_strokes_of_four_cylinders_fire_twice_a_turn():
+    """With even firing the torque repeats every 180 degrees, that of one cylinder every 720."""
     torque = ls.MultiCylinder(ENGINE, [0, 540, 180, 360]).sweep().T12
     np.testing.assert_allclose(torque, np.roll(torque, 180), rtol=1e-9, atol=1e-9 * float(abs(torque).max()))
     one = ls.sweep(ENGINE, of=["T12"]).T12
     assert float(torque.mean()) == pytest.approx(4.0 * float(one.mean()), rel=1e-12)
 
 
-def test_an_inline_three_shakes_by_its_moments_alone():
+def test_an_inline_three_has_shaking_moments_only():
     """Forces of orders 1 and 2 cancel; the moments are √3·F·spacing: forces 120 degrees apart on arms −1, 0, 1."""
     three = ls.MultiCylinder(ENGINE, [0, 240, 480], positions=along(3))
     x, y, tilt = amplitudes(three, "Fsx", "Fsy", "Msx")
@@ -75,14 +75,14 @@ def test_an_inline_three_shakes_by_its_moments_alone():
 
 def test_an_inline_six_is_smooth_to_the_sixth_order():
     six = ls.MultiCylinder(ENGINE, [0, 600, 120, 480, 240, 360], positions=along(6))
-    found = np.array(amplitudes(six, "Fsx", "Fsy", "Msx", "Msy"))
-    assert found[1, 5] > 1e-6 * FIRST
-    np.testing.assert_allclose(found[:, :5], 0.0, atol=1e-11 * FIRST)
+    shaking = np.array(amplitudes(six, "Fsx", "Fsy", "Msx", "Msy"))
+    assert shaking[1, 5] > 1e-6 * FIRST
+    np.testing.assert_allclose(shaking[:, :5], 0.0, atol=1e-11 * FIRST)
 
 
-def test_a_v_twin_at_90_degrees_loses_its_first_order():
-    """One counterweight for all that rotates and, of both cylinders, half of what reciprocates; the second order stays:
-    √2 of one cylinder's, square to the middle of the V."""
+def test_a_v_twin_at_90_degrees_has_no_first_order():
+    """A counterweight balances all rotating and half of the reciprocating masses; the second order remains,
+    √2 times one cylinder's, perpendicular to the middle of the V."""
     throw = ls.with_counterweights(ENGINE, ls.counterweights(ENGINE, radius=0.05, fraction=0.5))
     twin = ls.MultiCylinder(throw, crank_angles=[0, 0], bank_angles=[45, -45])
     x, y = amplitudes(twin, "Fsx", "Fsy")
@@ -94,8 +94,8 @@ def test_a_v_twin_at_90_degrees_loses_its_first_order():
 
 
 @pytest.mark.parametrize("bank", [30.0, -45.0, 180.0])
-def test_a_bank_is_a_turned_guide(bank):
-    """Gas, weights and friction included: only the gravity keeps its direction."""
+def test_a_bank_equals_a_rotated_guide(bank):
+    """Gas, weights and friction are included; only gravity keeps its direction."""
     turned = replace(ENGINE, mechanism=replace(ENGINE.mechanism, slide_angle=90.0 + bank))
     one = ls.MultiCylinder(ENGINE, [0.0], bank_angles=[bank]).sweep(theta2=48)
     cycle = ls.sweep(turned, theta2=48, of=["T12", "Fsx", "Fsy", "Ms"])
@@ -105,16 +105,16 @@ def test_a_bank_is_a_turned_guide(bank):
         np.testing.assert_allclose(one[name][smooth], cycle[name][smooth], rtol=1e-9, atol=1e-10 * largest)
 
 
-def test_designs_go_along():
+def test_designs_are_batched():
     speeds = xr.DataArray([100.0, 200.0], {"speed": [1, 2]}, "speed")
-    found = ls.MultiCylinder(replace(ENGINE, omega2=speeds), [0, 540, 180, 360]).sweep(theta2=36)
-    np.testing.assert_allclose(found.Fsy.isel(speed=1), 4.0 * found.Fsy.isel(speed=0), rtol=1e-9, atol=1e-8)
-    assert found.Fsy.units == "N"
-    assert int(found.status.max()) == 0
+    cycle = ls.MultiCylinder(replace(ENGINE, omega2=speeds), [0, 540, 180, 360]).sweep(theta2=36)
+    np.testing.assert_allclose(cycle.Fsy.isel(speed=1), 4.0 * cycle.Fsy.isel(speed=0), rtol=1e-9, atol=1e-8)
+    assert cycle.Fsy.units == "N"
+    assert int(cycle.status.max()) == 0
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.MultiCylinder(SCENE, [0]), "engine is of a FourBar, which has no cylinder: give"),
         (lambda: ls.MultiCylinder(3.0, [0]), "engine is a float: must be a Scene"),
@@ -132,6 +132,6 @@ def test_designs_go_along():
         ),
     ],
 )
-def test_refusals(call, said):
+def test_refusals(call, message):
     line = refusal(call)[0]
-    assert said in line
+    assert message in line

@@ -1,4 +1,4 @@
-"""What the drive gives: work, power, reduced inertia, mechanical advantage, flywheel, motor."""
+"""Drive: work, power, reduced inertia, mechanical advantage, flywheel, motor."""
 
 from dataclasses import replace
 
@@ -28,63 +28,63 @@ SPRING = ls.Spring(("ground", 0.3, 0.1), ("crank", 0.04, 30.0), rate=2000.0, fre
 
 
 @MACHINES
-def test_inertia_takes_no_work_in_a_cycle(mechanism):
-    found = ls.duty(ls.Scene(mechanism, 30.0))
-    assert abs(float(found.effort_mean)) < 1e-10 * float(found.effort_peak)
-    assert abs(float(found.work)) < 1e-10 * float(found.work_fed)
+def test_inertia_does_no_work_in_a_cycle(mechanism):
+    duty = ls.duty(ls.Scene(mechanism, 30.0))
+    assert abs(float(duty.effort_mean)) < 1e-10 * float(duty.effort_peak)
+    assert abs(float(duty.work)) < 1e-10 * float(duty.work_fed)
 
 
 @MACHINES
-def test_nor_do_weights_and_springs(mechanism):
-    found = ls.duty(ls.Scene(mechanism, -30.0, gravity=(1.0, -9.81), loads=[SPRING]))
-    assert abs(float(found.work)) < 1e-10 * float(found.work_fed)
-    np.testing.assert_allclose(found.work_fed, found.work_regenerated, rtol=1e-9)
+def test_weights_and_springs_do_no_work_in_a_cycle(mechanism):
+    duty = ls.duty(ls.Scene(mechanism, -30.0, gravity=(1.0, -9.81), loads=[SPRING]))
+    assert abs(float(duty.work)) < 1e-10 * float(duty.work_fed)
+    np.testing.assert_allclose(duty.work_fed, duty.work_regenerated, rtol=1e-9)
 
 
-def test_energy_in_is_energy_out_and_friction():
-    found = ls.duty(ls.example("engine"))
-    terms = [float(found[name]) for name in ("work", "work_of_loads", "work_of_friction")]
+def test_energy_balance_with_friction():
+    duty = ls.duty(ls.example("engine"))
+    terms = [float(duty[name]) for name in ("work", "work_of_loads", "work_of_friction")]
     assert abs(sum(terms)) < 1e-10 * max(map(abs, terms))
     assert terms[2] < 0.0 < terms[1]
-    assert float(found.work_fed - found.work_regenerated) == pytest.approx(terms[0], rel=1e-10)
+    assert float(duty.work_fed - duty.work_regenerated) == pytest.approx(terms[0], rel=1e-10)
 
 
 def test_a_constant_torque_on_the_crank_by_hand():
     scene = ls.Scene(FOUR_BAR, -20.0, loads=[ls.Load("crank", torque=3.0)])
-    found = ls.duty(scene)
-    np.testing.assert_allclose(found.effort_mean, -3.0, rtol=1e-10)
-    np.testing.assert_allclose(found.work, 3.0 * 2.0 * np.pi, rtol=1e-10)  # the crank turns against it
-    np.testing.assert_allclose(found.power_mean, 60.0, rtol=1e-10)
-    np.testing.assert_allclose(found.work_of_loads, -3.0 * 2.0 * np.pi, rtol=1e-10)
+    duty = ls.duty(scene)
+    np.testing.assert_allclose(duty.effort_mean, -3.0, rtol=1e-10)
+    np.testing.assert_allclose(duty.work, 3.0 * 2.0 * np.pi, rtol=1e-10)  # the crank turns against it
+    np.testing.assert_allclose(duty.power_mean, 60.0, rtol=1e-10)
+    np.testing.assert_allclose(duty.work_of_loads, -3.0 * 2.0 * np.pi, rtol=1e-10)
 
 
-def test_it_is_what_a_fine_grid_gives():
+def test_duty_against_a_fine_grid():
     scene = ls.Scene(FOUR_BAR, 30.0, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=-5.0)])
-    found, cycle = ls.duty(scene), ls.sweep(scene, 7200, of=["T12", "power"])
-    np.testing.assert_allclose(found.effort_rms, np.sqrt((cycle.T12**2).mean()), rtol=1e-9)
-    np.testing.assert_allclose(found.work_fed, cycle.power.clip(min=0.0).mean() * 2.0 * np.pi / 30.0, rtol=1e-6)
-    np.testing.assert_allclose(found.power_min, cycle.power.min(), rtol=1e-6)
+    duty, cycle = ls.duty(scene), ls.sweep(scene, 7200, of=["T12", "power"])
+    np.testing.assert_allclose(duty.effort_rms, np.sqrt((cycle.T12**2).mean()), rtol=1e-9)
+    np.testing.assert_allclose(duty.work_fed, cycle.power.clip(min=0.0).mean() * 2.0 * np.pi / 30.0, rtol=1e-6)
+    np.testing.assert_allclose(duty.power_min, cycle.power.min(), rtol=1e-6)
 
 
 def test_designs_and_broken_cycles():
     rocker = replace(ROCKER, length=xr.DataArray([0.18, 0.10], dims="rocker"))
     scene = ls.Scene(replace(FOUR_BAR, rocker=rocker), 30.0, loads=[ls.Load("crank", torque=-3.0)])
-    found = ls.duty(scene)
-    assert found.status.values.tolist()[0] == 0
-    assert found.status.values.tolist()[1] != 0
-    assert np.isfinite(found.work).values.tolist() == [True, False]
+    duty = ls.duty(scene)
+    assert duty.status.values.tolist()[0] == 0
+    assert duty.status.values.tolist()[1] != 0
+    assert np.isfinite(duty.work).values.tolist() == [True, False]
 
 
 @pytest.mark.parametrize(
-    ("scene", "said"),
+    ("scene", "message"),
     [
         (ls.Scene(FOUR_BAR, 0.0), "omega2 = 0 rad/s: must turn"),
         (ls.Scene(FOUR_BAR, lambda theta2: 30.0 * np.cos(np.radians(theta2))), "omega2: changes its sign over theta2"),
         (ls.example("loop"), "which has no crank"),
     ],
 )
-def test_a_cycle_takes_a_crank_that_comes_round(scene, said):
-    with pytest.raises(ValueError, match=said):
+def test_a_cycle_needs_a_crank_that_turns_fully(scene, message):
+    with pytest.raises(ValueError, match=message):
         ls.duty(scene)
 
 
@@ -92,7 +92,7 @@ def test_a_cycle_takes_a_crank_that_comes_round(scene, said):
 
 
 @MACHINES
-def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_inertia(mechanism):
+def test_the_power_of_inertia_is_the_rate_of_the_reduced_kinetic_energy(mechanism):
     names = ["reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "inertia_power"]
     ds = ls.sweep(ls.Scene(mechanism, 30.0, 70.0), of=names)
     J, slope = ds.reduced_inertia, ds.reduced_inertia_slope
@@ -105,7 +105,7 @@ def test_the_reduced_inertia_has_the_kinetic_energy_whose_rate_is_the_power_of_i
 
 
 @pytest.mark.parametrize("theta2", [20.0, 145.0, 290.0])
-def test_of_the_four_bar_by_60_digits(theta2):
+def test_the_reduced_inertia_of_a_four_bar_in_60_digits(theta2):
     links = [references.LinkData(x.length, x.mass, x.inertia, x.cg_distance, x.cg_angle) for x in (CRANK, ROD, ROCKER)]
     data = oracle.FourBarData(*links, ground=0.2)
 
@@ -140,27 +140,27 @@ def test_of_the_four_bar_by_60_digits(theta2):
 @pytest.mark.parametrize(
     "mechanism", [ls.FourBar(*LIGHT, ground=0.2), ls.InvertedSliderCrank(LIGHT[0], LIGHT[2], 0.2, 0.0)]
 )
-def test_a_torque_on_the_rocker_takes_its_share_on_the_crank(mechanism):
+def test_mechanical_advantage_of_a_torque_on_the_rocker(mechanism):
     scene = ls.Scene(mechanism, 5.0, loads=[ls.Load("rocker", torque=-2.0)])
     ds = ls.sweep(scene, 90, of=["T12", "torque_ratio", "velocity_ratio", "omega4"])
     np.testing.assert_allclose(ds.T12 * ds.torque_ratio, 2.0, rtol=1e-12)
     np.testing.assert_allclose(ds.velocity_ratio, ds.omega4 / 5.0, rtol=1e-14)
 
 
-def test_a_force_square_to_the_rocker_at_c_takes_its_share_at_b():
+def test_mechanical_advantage_of_a_force_on_the_rocker():
     push = ls.Load("rocker", force=(0.0, -10.0), at=(0.18, 0.0), frame="link")
     ds = ls.sweep(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 5.0, loads=[push]), 90, of=["T12", "mechanical_advantage"])
     np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
 
 
-def test_a_force_on_a_slider_takes_its_share_at_b():
+def test_mechanical_advantage_of_a_force_on_a_slider():
     scene = ls.Scene(ls.SliderCrank(*LIGHT[:2], 0.0, offset=0.02), 5.0, loads=[ls.Load("slider", force=-10.0)])
     ds = ls.sweep(scene, np.arange(5.0, 360.0, 10.0), of=["T12", "mechanical_advantage", "velocity_ratio", "v_slider"])
     np.testing.assert_allclose(ds.T12 / 0.08 * ds.mechanical_advantage, 10.0, rtol=1e-12)
     np.testing.assert_allclose(ds.velocity_ratio, ds.v_slider / 5.0, rtol=1e-14)
 
 
-def test_the_reduced_torque_is_the_drives_power_per_crank_speed_whatever_drives():
+def test_the_reduced_torque_is_the_drives_power_per_crank_speed():
     for drive in ("crank", "coupler", "rocker"):
         scene = ls.Scene(FOUR_BAR, -30.0, 70.0, (1.0, -9.81), [ls.Load("coupler", torque=3.0)], drive)
         ds = ls.sweep(scene, 91, of=["reduced_torque", "power", "power_fed", "power_regenerated"])
@@ -173,28 +173,28 @@ def test_the_reduced_torque_is_the_drives_power_per_crank_speed_whatever_drives(
 
 
 def test_a_torque_of_second_order_on_a_crank_without_mass_by_hand():
-    """T = 4 + 6 sin 2θ: the energy swings by 6 J, J = 6/(δ ω²) (R. L. Norton, Dynamic Force Analysis)."""
+    """For T = 4 + 6 sin 2θ the energy varies by 6 J, J = 6/(δ ω²) (R. L. Norton, Dynamic Force Analysis)."""
     load = ls.Load("crank", torque=lambda theta2: -4.0 - 6.0 * np.sin(np.radians(2.0 * theta2)))
-    found = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[load]), fluctuation=0.03)
-    np.testing.assert_allclose(found.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=1e-7)
-    np.testing.assert_allclose(found.drive_torque, 4.0, rtol=1e-9)
-    np.testing.assert_allclose(found.energy_fluctuation, 6.0, rtol=1e-7)
-    assert found.flywheel_inertia.attrs["units"] == "kg m2"
+    wheel = ls.flywheel(ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[load]), fluctuation=0.03)
+    np.testing.assert_allclose(wheel.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=1e-7)
+    np.testing.assert_allclose(wheel.drive_torque, 4.0, rtol=1e-9)
+    np.testing.assert_allclose(wheel.energy_fluctuation, 6.0, rtol=1e-7)
+    assert wheel.flywheel_inertia.attrs["units"] == "kg m2"
 
 
 @MACHINES
 @pytest.mark.parametrize("omega2", [30.0, -30.0])
 def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
     scene = ls.Scene(mechanism, omega2, 55.0, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-2.0), SPRING])
-    found = ls.flywheel(scene, inertia=0.05)
-    speed = np.append(found.speed.values, found.speed.values[0])
+    wheel = ls.flywheel(scene, inertia=0.05)
+    speed = np.append(wheel.speed.values, wheel.speed.values[0])
     np.testing.assert_allclose(0.5 * (speed.max() + speed.min()), omega2, rtol=1e-12)
 
-    angles = np.append(found.theta2.values, 360.0)
+    angles = np.append(wheel.theta2.values, 360.0)
     static = ls.sweep(replace(scene, omega2=0.0, alpha2=0.0), of=["T12", "reduced_inertia", "reduced_inertia_slope"])
     T, J, slope = (CubicSpline(angles, np.append(row, row[0]), bc_type="periodic") for row in
                    (static.T12.values, static.reduced_inertia.values, static.reduced_inertia_slope.values))  # fmt: skip
-    drive = float(found.drive_torque)
+    drive = float(wheel.drive_torque)
 
     def motion(angle, square):  # (J_f + J) dω²/dθ/2 + J' ω²/2 = T_d − T
         degrees = np.degrees(angle)
@@ -205,29 +205,29 @@ def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
 
 
 @pytest.mark.parametrize("scene", [ls.example("press"), ls.example("quick-return"), ls.Scene(SLIDER_CRANK, -30.0)])
-def test_what_is_asked_for_is_what_results(scene):
-    found = ls.flywheel(scene, fluctuation=0.02)
-    again = ls.flywheel(scene, inertia=float(found.flywheel_inertia))
-    if float(found.flywheel_inertia) > 0.0:
-        np.testing.assert_allclose(found.fluctuation, 0.02, rtol=1e-10)
-    np.testing.assert_allclose(again.speed, found.speed, rtol=1e-12)
+def test_the_flywheel_gives_the_requested_fluctuation(scene):
+    wheel = ls.flywheel(scene, fluctuation=0.02)
+    again = ls.flywheel(scene, inertia=float(wheel.flywheel_inertia))
+    if float(wheel.flywheel_inertia) > 0.0:
+        np.testing.assert_allclose(wheel.fluctuation, 0.02, rtol=1e-10)
+    np.testing.assert_allclose(again.speed, wheel.speed, rtol=1e-12)
     assert float(again.fluctuation) <= 0.02 * (1.0 + 1e-10)
 
 
-def test_a_torque_that_never_changes_needs_no_flywheel():
-    found = ls.flywheel(
+def test_a_constant_torque_needs_no_flywheel():
+    wheel = ls.flywheel(
         ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[ls.Load("crank", torque=-4.0)]), fluctuation=0.01
     )
-    np.testing.assert_allclose([found.drive_torque, found.flywheel_inertia], [4.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose([wheel.drive_torque, wheel.flywheel_inertia], [4.0, 0.0], atol=1e-12)
 
 
-def test_a_large_flywheel_is_that_of_the_energy_at_constant_speed():
-    found = ls.flywheel(ls.example("press"), fluctuation=1e-6)
-    estimate = found.energy_fluctuation / (1e-6 * ls.example("press").omega2 ** 2)
-    np.testing.assert_allclose(found.flywheel_inertia, estimate, rtol=1e-3)
+def test_a_large_flywheel_follows_from_the_energy_at_constant_speed():
+    wheel = ls.flywheel(ls.example("press"), fluctuation=1e-6)
+    estimate = wheel.energy_fluctuation / (1e-6 * ls.example("press").omega2 ** 2)
+    np.testing.assert_allclose(wheel.flywheel_inertia, estimate, rtol=1e-3)
 
 
-def test_a_machine_that_needs_none_gets_none_and_one_that_would_stall_no_speed():
+def test_a_machine_without_need_has_no_flywheel_and_a_stalling_one_no_speed():
     heavy = ls.FourBar(ls.Disk(0.08, 0.5, 0.1, 7800), ROD, ROCKER, ground=0.2)
     assert float(ls.flywheel(ls.Scene(heavy, 30.0), fluctuation=0.1).flywheel_inertia) == 0.0
     pull = ls.Load("rocker", torque=lambda theta2: -200.0 * np.cos(np.radians(theta2)))
@@ -238,17 +238,17 @@ def test_a_machine_that_needs_none_gets_none_and_one_that_would_stall_no_speed()
 
 def test_designs_fluctuations_and_broken_cycles():
     rocker = replace(ROCKER, length=xr.DataArray([0.18, 0.10], dims="rocker"))
-    wanted = xr.DataArray([0.01, 0.05], dims="wanted")
-    found = ls.flywheel(ls.Scene(replace(FOUR_BAR, rocker=rocker), 10.0, loads=[SPRING]), fluctuation=wanted)
-    assert found.flywheel_inertia.sizes == {"rocker": 2, "wanted": 2}
-    assert np.isfinite(found.flywheel_inertia.isel(rocker=0)).all()
-    assert np.isnan(found.flywheel_inertia.isel(rocker=1)).all()
+    expected = xr.DataArray([0.01, 0.05], dims="aim")
+    wheel = ls.flywheel(ls.Scene(replace(FOUR_BAR, rocker=rocker), 10.0, loads=[SPRING]), fluctuation=expected)
+    assert wheel.flywheel_inertia.sizes == {"rocker": 2, "aim": 2}
+    assert np.isfinite(wheel.flywheel_inertia.isel(rocker=0)).all()
+    assert np.isnan(wheel.flywheel_inertia.isel(rocker=1)).all()
     single = ls.flywheel(ls.Scene(FOUR_BAR, 10.0, loads=[SPRING]), fluctuation=0.05)
-    np.testing.assert_allclose(found.flywheel_inertia.isel(rocker=0, wanted=1), single.flywheel_inertia, rtol=1e-12)
+    np.testing.assert_allclose(wheel.flywheel_inertia.isel(rocker=0, aim=1), single.flywheel_inertia, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ({}, "give one of fluctuation"),
         ({"fluctuation": 0.1, "inertia": 1.0}, "give one of fluctuation"),
@@ -257,8 +257,8 @@ def test_designs_fluctuations_and_broken_cycles():
         ({"inertia": -1.0}, r"inertia = -1 kg m\^2: must be at least 0"),
     ],
 )
-def test_what_a_flywheel_refuses(words, said):
-    with pytest.raises(ValueError, match=said):
+def test_refusals_of_flywheel(words, message):
+    with pytest.raises(ValueError, match=message):
         ls.flywheel(ls.Scene(FOUR_BAR, 30.0), **words)
 
 
@@ -275,28 +275,28 @@ def test_a_motors_curve():
 
 @pytest.mark.parametrize(("torque", "needed"), [(-4.0, 4.0 / (10.0 * 0.8)), (4.0, -4.0 * 0.8 / 10.0)])
 def test_a_gear_with_losses_by_hand(torque, needed):
-    """To feed 4 N m by 10:1 at 80 % takes 0.5 N m, to brake them 0.32 N m; besides, the rotor's J·i·α = 0.05 N m."""
+    """4 N m at 10:1 and 80 % need 0.5 N m to drive and 0.32 N m to brake, plus the rotor's J·i·α = 0.05 N m."""
     scene = ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, 50.0, loads=[ls.Load("crank", torque=torque)])
-    found = ls.motor_load(scene, DC, ratio=10.0, efficiency=0.8, theta2=8)
-    np.testing.assert_allclose(found.motor_torque, needed + 1e-4 * 10.0 * 50.0, rtol=1e-12)
-    np.testing.assert_allclose(found.motor_speed, 200.0)
-    np.testing.assert_allclose(found.available_torque, 1.0)
-    np.testing.assert_allclose(found.torque_margin, 1.0 - np.abs(found.motor_torque))
-    np.testing.assert_allclose(found.motor_torque_rms, np.abs(needed + 0.05), rtol=1e-12)
-    np.testing.assert_allclose(found.reflected_inertia, 1e-4 * 100.0)
+    motor = ls.motor_load(scene, DC, ratio=10.0, efficiency=0.8, theta2=8)
+    np.testing.assert_allclose(motor.motor_torque, needed + 1e-4 * 10.0 * 50.0, rtol=1e-12)
+    np.testing.assert_allclose(motor.motor_speed, 200.0)
+    np.testing.assert_allclose(motor.available_torque, 1.0)
+    np.testing.assert_allclose(motor.torque_margin, 1.0 - np.abs(motor.motor_torque))
+    np.testing.assert_allclose(motor.motor_torque_rms, np.abs(needed + 0.05), rtol=1e-12)
+    np.testing.assert_allclose(motor.reflected_inertia, 1e-4 * 100.0)
 
 
-def test_a_motor_on_the_rocker_and_ratios_as_a_design():
+def test_a_motor_on_the_rocker_with_several_ratios():
     ratio = xr.DataArray([5.0, 10.0], dims="ratio")
     scene = ls.Scene(FOUR_BAR, 20.0, drive="rocker")
-    found = ls.motor_load(scene, DC, ratio=ratio, theta2=[100.0, 200.0])
+    motor = ls.motor_load(scene, DC, ratio=ratio, theta2=[100.0, 200.0])
     ds = ls.sweep(scene, [100.0, 200.0], of=["T14", "omega4", "alpha4"])
-    np.testing.assert_allclose(found.motor_torque, ds.T14 / ratio + 1e-4 * ratio * ds.alpha4)
-    np.testing.assert_allclose(found.motor_speed, ratio * ds.omega4)
+    np.testing.assert_allclose(motor.motor_torque, ds.T14 / ratio + 1e-4 * ratio * ds.alpha4)
+    np.testing.assert_allclose(motor.motor_speed, ratio * ds.omega4)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ({"speeds": (0.0, 1.0), "torques": (1.0,)}, "torques has 1 values for 2 speeds"),
         ({"speeds": (1.0, 2.0), "torques": (1.0, 1.0)}, "must grow from 0"),
@@ -304,13 +304,13 @@ def test_a_motor_on_the_rocker_and_ratios_as_a_design():
         ({"speeds": (0.0, 1.0), "torques": (1.0, 1.0), "inertia": -1.0}, "inertia = -1"),
     ],
 )
-def test_curves_that_are_none(words, said):
-    with pytest.raises(ValueError, match=said):
+def test_refused_curves(words, message):
+    with pytest.raises(ValueError, match=message):
         ls.Motor(**words)
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ({"ratio": 0.0}, "ratio = 0: must be greater than 0"),
         ({"efficiency": 1.5}, "efficiency = 1.5: must be at most 1"),
@@ -318,16 +318,16 @@ def test_curves_that_are_none(words, said):
         ({"scene": ls.Scene(INVERTED, 1.0, drive="cylinder")}, 'drive = "cylinder": must be the torque on a link'),
     ],
 )
-def test_what_a_motor_load_refuses(words, said):
-    with pytest.raises(ValueError, match=said):
+def test_refusals_of_motor_load(words, message):
+    with pytest.raises(ValueError, match=message):
         ls.motor_load(**{"scene": ls.Scene(FOUR_BAR, 30.0), "motor": DC} | words)
 
 
-def test_the_plots_say_what_the_numbers_say():
-    found = ls.flywheel(ls.example("press"), fluctuation=0.05)
-    ax = ls.plot.flywheel(found)
-    np.testing.assert_array_equal(line(ax, "_speed").get_ydata()[:-1], found.speed)
-    assert line(ax, "_max").get_ydata()[0] == found.speed.max()
+def test_the_plots_show_the_results():
+    wheel = ls.flywheel(ls.example("press"), fluctuation=0.05)
+    ax = ls.plot.flywheel(wheel)
+    np.testing.assert_array_equal(line(ax, "_speed").get_ydata()[:-1], wheel.speed)
+    assert line(ax, "_max").get_ydata()[0] == wheel.speed.max()
     assert "fluctuation 5 %" in ax.get_title(loc="left")
     weak = ls.Motor((0.0, 600.0), (1.0, 0.2))
     load = ls.motor_load(ls.example("press"), weak, ratio=10.0)

@@ -26,23 +26,23 @@ def slider(a, b, **more):
 @pytest.mark.parametrize("lengths", [(0.08, 0.22, 0.18, 0.2), (0.02, 0.07, 0.05, 0.06), (0.05, 0.3, 0.31, 0.12)])
 def test_the_rocker_swings_between_its_extremes(lengths, branch):
     scene = four_bar(*lengths, branch=branch, ground_angle=20.0)
-    found, theta4 = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["theta4"]).theta4
+    geometry, theta4 = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["theta4"]).theta4
     turned = np.unwrap(theta4, period=360.0)
-    assert float(found.swing) == pytest.approx(np.ptp(turned), abs=1e-5)
-    at = np.sort(found.reversal_angle.values)
+    assert float(geometry.swing) == pytest.approx(np.ptp(turned), abs=1e-5)
+    at = np.sort(geometry.reversal_angle.values)
     seen = np.sort([float(theta4.theta2[k]) for k in (turned.argmax(), turned.argmin())])
     np.testing.assert_allclose(at, seen, atol=0.02)
     way = at[1] - at[0]
-    assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
-    standing = ls.sweep(scene, theta2=found.reversal_angle.values, of=["omega4"]).omega4
+    assert float(geometry.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
+    standing = ls.sweep(scene, theta2=geometry.reversal_angle.values, of=["omega4"]).omega4
     np.testing.assert_allclose(standing, 0.0, atol=1e-12)
 
 
 def test_a_centric_crank_rocker_has_time_ratio_one():
     """a² + d² = b² + c² (Norton, chapter 3: a four-bar without quick return)."""
     a, b, d = 0.05, 0.12, 0.2
-    found = ls.geometry(four_bar(a, b, np.sqrt(a**2 + d**2 - b**2), d))
-    assert float(found.time_ratio) == pytest.approx(1.0, abs=1e-12)
+    geometry = ls.geometry(four_bar(a, b, np.sqrt(a**2 + d**2 - b**2), d))
+    assert float(geometry.time_ratio) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_a_double_crank_has_no_swing():
@@ -53,43 +53,43 @@ def test_a_double_crank_has_no_swing():
 @pytest.mark.parametrize("offset", [0.0, 0.02, -0.03])
 def test_the_slider_travels_between_its_extremes(offset, branch):
     scene = slider(0.05, 0.15, offset=offset, slide_angle=30.0, branch=branch)
-    found, x = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["x_slider"]).x_slider
-    assert float(found.stroke) == pytest.approx(np.ptp(x.values), abs=1e-9)
-    standing = ls.sweep(scene, theta2=found.reversal_angle.values, of=["v_slider"]).v_slider
+    geometry, x = ls.geometry(scene), ls.sweep(scene, theta2=36000, of=["x_slider"]).x_slider
+    assert float(geometry.stroke) == pytest.approx(np.ptp(x.values), abs=1e-9)
+    standing = ls.sweep(scene, theta2=geometry.reversal_angle.values, of=["v_slider"]).v_slider
     np.testing.assert_allclose(standing, 0.0, atol=1e-14)
-    way = float(abs(found.reversal_angle.diff("limit")).item())
-    assert float(found.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
-    assert (float(found.time_ratio) == pytest.approx(1.0, abs=1e-12)) == (offset == 0.0)
+    way = float(abs(geometry.reversal_angle.diff("limit")).item())
+    assert float(geometry.time_ratio) == pytest.approx(max(way, 360.0 - way) / min(way, 360.0 - way), rel=1e-12)
+    assert (float(geometry.time_ratio) == pytest.approx(1.0, abs=1e-12)) == (offset == 0.0)
 
 
-def test_a_quick_return_has_the_time_ratio_that_check_tells():
-    found = ls.geometry(SHAPER)
+def test_a_quick_return_has_the_time_ratio_of_check():
+    geometry = ls.geometry(SHAPER)
     half = np.degrees(np.arccos(0.12 / 0.36))
-    assert float(found.time_ratio) == pytest.approx((360.0 - 2.0 * half) / (2.0 * half), rel=1e-12)
-    assert float(found.swing) == pytest.approx(2.0 * np.degrees(np.arcsin(0.12 / 0.36)), rel=1e-12)
+    assert float(geometry.time_ratio) == pytest.approx((360.0 - 2.0 * half) / (2.0 * half), rel=1e-12)
+    assert float(geometry.swing) == pytest.approx(2.0 * np.degrees(np.arcsin(0.12 / 0.36)), rel=1e-12)
 
 
 def test_transmission_angles_of_the_press():
-    """The angle of coupler and rocker is extreme with the crank on the line of the ground pins (Norton, chapter 4)."""
-    found = ls.geometry(PRESS)
+    """The transmission angle is extreme with the crank on the line of the ground pins (Norton, chapter 4)."""
+    geometry = ls.geometry(PRESS)
     a, b, c, d = PRESS.mechanism.lengths().values()
     at_0, at_180 = (np.degrees(np.arccos((b * b + c * c - f * f) / (2.0 * b * c))) for f in (d - a, d + a))
     acute = [min(angle, 180.0 - angle) for angle in (at_0, at_180)]
-    assert float(found.transmission_angle_min) == pytest.approx(min(acute), rel=1e-9)
-    assert float(found.transmission_angle_min_at) % 180.0 == pytest.approx(0.0, abs=1e-5)
-    assert float(found.transmission_angle_max) <= 90.0
+    assert float(geometry.transmission_angle_min) == pytest.approx(min(acute), rel=1e-9)
+    assert float(geometry.transmission_angle_min_at) % 180.0 == pytest.approx(0.0, abs=1e-5)
+    assert float(geometry.transmission_angle_max) <= 90.0
 
 
-def test_designs_and_branches_go_along():
+def test_designs_and_branches_are_batched():
     several = xr.DataArray([0.15, 0.18, 0.4], {"rocker": [1, 2, 3]}, "rocker")
     scene = four_bar(0.08, 0.22, several, 0.2, branch="both")
-    found = ls.geometry(scene)
-    assert found.swing.dims == ("rocker",)
-    assert {*found.reversal_angle.dims} == {"rocker", "branch", "limit"}
-    assert np.isnan(found.swing[2])
+    geometry = ls.geometry(scene)
+    assert geometry.swing.dims == ("rocker",)
+    assert {*geometry.reversal_angle.dims} == {"rocker", "branch", "limit"}
+    assert np.isnan(geometry.swing[2])
     one = ls.geometry(four_bar(0.08, 0.22, 0.18, 0.2, branch="crossed"))
-    assert float(found.swing[1]) == float(one.swing)
-    np.testing.assert_array_equal(found.reversal_angle.sel(rocker=2, branch="crossed"), one.reversal_angle)
+    assert float(geometry.swing[1]) == float(one.swing)
+    np.testing.assert_array_equal(geometry.reversal_angle.sel(rocker=2, branch="crossed"), one.reversal_angle)
 
 
 # ------------------------------------------------------------------------------------------------- curves
@@ -106,8 +106,8 @@ POINTS = [
 
 
 @pytest.mark.parametrize(("scene", "link", "at"), POINTS)
-def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
-    """By time, from positions beside each angle: dθ2/dt = ω2, and d²θ2/dt² = α2."""
+def test_velocity_and_acceleration_by_finite_differences(scene, link, at):
+    """Time derivatives from positions beside each angle: dθ2/dt = ω2 and d²θ2/dt² = α2."""
     angles, step = np.arange(5.0, 360.0, 30.0), 1e-2
     here, left, right = (ls.coupler_curve(scene, at, theta2=angles + s, link=link) for s in (0.0, -step, step))
     turn = np.radians(step)
@@ -120,7 +120,7 @@ def test_velocity_and_acceleration_are_those_of_the_curve(scene, link, at):
         np.testing.assert_allclose(a, expected, atol=1e-5 * max(abs(a).max(), 1e-3))
 
 
-def test_points_that_are_known():
+def test_points_of_known_position():
     cycle = ls.sweep(PRESS, theta2=36, of=["Bx", "By", "Cx", "Cy", "aG3x", "aG3y"])
     pin_b, pin_c = (ls.coupler_curve(PRESS, (r, 0.0), theta2=36) for r in (0.0, 0.22))
     np.testing.assert_allclose(pin_b.Px, cycle.Bx, atol=1e-15)
@@ -150,7 +150,7 @@ def test_points_over_designs_and_gaps():
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: ls.geometry(LOOP), "which has no links"),
         (lambda: ls.coupler_curve(LOOP, (0.1, 0.0)), "which has no links"),
@@ -162,13 +162,13 @@ def test_points_over_designs_and_gaps():
         (lambda: ls.coupler_curve(PRESS, (-0.1, 0.0)), "at[1] = -0.1 m: must be at least 0"),
     ],
 )
-def test_refusals(call, said):
+def test_refusals(call, message):
     (line,) = refusal(call)
-    assert said in line
+    assert message in line
 
 
-def test_loads_and_speeds_are_not_looked_at(monkeypatch):
-    """Geometry is that of the bare machine, and its scene that of the whole one."""
+def test_loads_and_speeds_are_not_evaluated(monkeypatch):
+    """Geometry depends on the mechanism alone, and its Dataset keeps the whole scene."""
 
     def looked(*_):
         raise AssertionError("a load over the angle was looked at")
@@ -183,7 +183,7 @@ def test_loads_and_speeds_are_not_looked_at(monkeypatch):
     loads = [ls.Load("rocker", torque=torque), ls.Load("coupler", force=(push, 0.0))]
     scene = replace(bare, omega2=lambda theta2: 20.0 + push(theta2), loads=loads)
     monkeypatch.setattr("linksweep.scene.curves.over_angle.called", looked)
-    found = ls.geometry(scene)
-    xr.testing.assert_equal(found.drop_vars("loads[1].torque"), ls.geometry(bare))
-    assert found.attrs["scene"] == write_scene(scene, elsewhere=["coupler.length", "loads[1].torque"])
-    assert ls.scene_at(found, design=6).loads[0].torque == 2.0
+    geometry = ls.geometry(scene)
+    xr.testing.assert_equal(geometry.drop_vars("loads[1].torque"), ls.geometry(bare))
+    assert geometry.attrs["scene"] == write_scene(scene, elsewhere=["coupler.length", "loads[1].torque"])
+    assert ls.scene_at(geometry, design=6).loads[0].torque == 2.0

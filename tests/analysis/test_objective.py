@@ -1,4 +1,4 @@
-"""objective: a search finds optima that are known in closed form; shapes, infinities, worst cases, refusals."""
+"""objective: searches reach optima known in closed form; shapes, infinities, worst cases, refusals."""
 
 import math
 
@@ -31,8 +31,8 @@ def evenly(n: int, bounds) -> np.ndarray:
 
 
 def test_a_search_finds_the_best_transmission_angle():
-    """The angle at C is extreme at θ2 = 0 and 180, cos μ = (b² + c² − (d ∓ a)²)/2bc. It swings equally far from a
-    square where b² + c² = a² + d² (a centric crank-rocker): there cos μ = ±a·d/(b·c), and no other b does better."""
+    """The angle at C is extreme at θ2 = 0 and 180, cos μ = (b² + c² − (d ∓ a)²)/2bc. Both extremes deviate equally
+    from 90 degrees where b² + c² = a² + d² (a centric crank-rocker): there cos μ = ±a·d/(b·c), the optimum."""
     a, c, d = 0.1, 0.3, 0.35
     crank, coupler, rocker = links(a, 0.25, c)
     scene = ls.Scene(ls.FourBar(crank, coupler, rocker, d), omega2=1.0)
@@ -42,24 +42,24 @@ def test_a_search_finds_the_best_transmission_angle():
 
     may_be, at = {"coupler.length": (0.16, 0.3)}, [0.0, 180.0]
     best = ls.objective(scene, may_be, minimize=away_from_square, of=["transmission_angle"], theta2=at)
-    found = search(best, tol=1e-12, polish=False)
+    result = search(best, tol=1e-12, polish=False)
     b = math.sqrt(a * a + d * d - c * c)
-    assert found.x[0] == pytest.approx(b, rel=1e-6)
-    assert found.fun == pytest.approx(90.0 - math.degrees(math.acos(a * d / (b * c))), rel=1e-6)
+    assert result.x[0] == pytest.approx(b, rel=1e-6)
+    assert result.fun == pytest.approx(90.0 - math.degrees(math.acos(a * d / (b * c))), rel=1e-6)
 
 
 def test_a_search_finds_the_end_of_a_monotone_parameter():
-    """Without gravity and loads forces go with ω² and with every mass: the least are at the least of both."""
+    """Without gravity and loads forces increase with ω² and every mass: the optimum is at both lower bounds."""
     scene = ls.Scene(ls.FourBar(*links(0.08, 0.22, 0.18), 0.2), omega2=30.0)
     best = ls.objective(scene, {"omega2": (20, 40), "rocker.mass": (0.5, 2.0)}, minimize="F14_peak", theta2=36)
-    found = search(best, maxiter=60)
-    assert found.x == pytest.approx([20.0, 0.5], rel=1e-3)
+    result = search(best, maxiter=60)
+    assert result.x == pytest.approx([20.0, 0.5], rel=1e-3)
     worst = ls.objective(scene, {"omega2": (20, 40)}, maximize="F14_peak", theta2=36)
     assert search(worst, maxiter=30).x == pytest.approx([40.0], rel=1e-3)
 
 
-def test_a_constraint_binds():
-    """Least ω2 for which F14, which goes with ω², is at least what it is at 30 rad/s."""
+def test_an_active_constraint():
+    """Least ω2 with F14, proportional to ω², at least its value at 30 rad/s."""
     scene = ls.Scene(ls.FourBar(*links(0.08, 0.22, 0.18), 0.2), omega2=30.0)
     enough = float(ls.peaks(scene, of=["F14"], theta2=36).F14_peak)
     best = ls.objective(
@@ -76,7 +76,7 @@ def test_a_constraint_binds():
 # ------------------------------------------------------------------------------------------------ values
 
 
-def test_it_is_the_peak_of_the_scene_bit_for_bit():
+def test_the_objective_is_the_peak_of_the_scene_to_the_bit():
     best = ls.objective(PRESS, MAY_BE, minimize="F32_peak", theta2=36)
     columns = evenly(8, best.bounds)
     together = best(columns)
@@ -89,27 +89,27 @@ def test_it_is_the_peak_of_the_scene_bit_for_bit():
         assert value == alone == float(ls.peaks(scene, of=["F32"], theta2=36).F32_peak)
 
 
-def test_bounds_and_names_are_those_of_the_parameters():
+def test_bounds_and_names_follow_the_parameters():
     best = ls.objective(PRESS, MAY_BE, minimize="F32_peak", theta2=8)
     assert best.bounds == [(0.2, 0.24), (0.15, 0.2)]
     assert best.names == ["coupler.length", "rocker.length"]
 
 
-def test_all_calls_have_one_plan():
-    """What a plan is made from is the same for any number of designs and any values, also 0 and 1."""
+def test_all_calls_share_one_plan():
+    """The plan is independent of the number of designs and of values, also 0 and 1."""
     best = ls.objective(PRESS, {"ground": (0.2, 1.0), "rocker.density": (0, 9e3)}, minimize="F32_peak", theta2=8)
     forms = [best.scene(np.array(x)).inputs.forms for x in ([[0.2], [5.0]], [[1.0], [0.0]], [[0.2, 0.3], [1.0, 2.0]])]
     assert forms[0] == forms[1] == forms[2]
 
 
-def test_what_it_does_not_depend_on():
+def test_an_objective_independent_of_a_parameter():
     best = ls.objective(PRESS, {"crank.density": (7000, 8000)}, minimize="F14_peak", theta2=8)
     values = best([[7000.0, 7500.0, 8000.0]])
     assert values.shape == (3,) and len(set(values)) == 1
 
 
 @pytest.mark.parametrize("name", ["F32_peak", "F32_rms", "T12_mean", "T12_min", "T12_max_at", "transmission_angle_max"])
-def test_every_name_of_peaks(name):
+def test_every_quantity_of_peaks_is_an_objective(name):
     best = ls.objective(PRESS, MAY_BE, maximize=name, theta2=8)
     quantity = name if name.endswith(("_rms", "_mean")) else name.rsplit("_at", 1)[0].rsplit("_", 1)[0]
     expected = ls.peaks(best.scene([0.21, 0.17]), of=[quantity], theta2=8)[name]
@@ -125,7 +125,7 @@ def test_impossible_and_partial_designs_are_infinite():
     assert np.isinf(ls.objective(PRESS, {"coupler.length": (0.05, 0.6)}, maximize="F32_peak", theta2=36)([0.06]))
 
 
-def test_the_worst_over_dims_of_the_scene_counts():
+def test_the_objective_is_the_worst_over_dims_of_the_scene():
     cases = xr.DataArray([10.0, 30.0, 20.0], dims="case")
     mechanism = ls.FourBar(PRESS.mechanism.crank, PRESS.mechanism.coupler, PRESS.mechanism.rocker, 0.2, branch="both")
     scene = ls.Scene(mechanism, cases, loads=PRESS.loads)
@@ -136,19 +136,19 @@ def test_the_worst_over_dims_of_the_scene_counts():
         for coupler, rocker in zip(*x, strict=True)
     ]
     assert best(x).tolist() == expected
-    most = ls.objective(scene, MAY_BE, maximize="T12_peak", theta2=36)  # there the worst is the least
+    most = ls.objective(scene, MAY_BE, maximize="T12_peak", theta2=36)  # maximized: the worst is the least
     least = ls.peaks(best.scene([0.21, 0.16]), of=["T12"], theta2=36).T12_peak.min()
     assert most([0.21, 0.16]) == -float(least)
 
 
-def test_functions_see_all_pins_and_the_torque_or_what_is_asked_for():
+def test_functions_receive_all_pins_and_the_torque_or_the_requested_quantities():
     seen = []
     both = ls.objective(PRESS, MAY_BE, minimize=lambda peaks: seen.append(set(peaks)) or peaks.F32_peak, theta2=8)
     assert {"F12_peak", "F32_peak", "F43_peak", "F14_peak", "T12_peak"} <= seen[-1]
-    asked = ls.objective(
+    objective = ls.objective(
         PRESS, MAY_BE, minimize=lambda peaks: seen.append(set(peaks)) or peaks.F32_peak, of=["F32"], theta2=8
     )
-    assert both([0.2, 0.2]) == asked([0.2, 0.2])
+    assert both([0.2, 0.2]) == objective([0.2, 0.2])
     assert seen[-1] == {"F32_peak", "F32_peak_at", "status"}
 
 
@@ -156,7 +156,7 @@ def test_functions_see_all_pins_and_the_torque_or_what_is_asked_for():
 
 
 @pytest.mark.parametrize(
-    ("parameters", "words", "said"),
+    ("parameters", "words", "message"),
     [
         (MAY_BE, {}, "minimize: give it, or maximize"),
         (MAY_BE, {"minimize": "F32_peak", "maximize": "T12_peak"}, "minimize: give either or maximize"),
@@ -175,14 +175,14 @@ def test_functions_see_all_pins_and_the_torque_or_what_is_asked_for():
         ({"coupler.length": ("1 kg", 2)}, {"minimize": "F32_peak"}, 'coupler.length = "1 kg": kg is a unit of mass'),
     ],
 )
-def test_what_is_wrong_is_said_before_the_search(parameters, words, said):
+def test_refusals_of_objective(parameters, words, message):
     with pytest.raises(ValueError) as error:  # noqa: PT011
         ls.objective(PRESS, parameters, **words)
-    assert str(error.value).startswith(said)
+    assert str(error.value).startswith(message)
 
 
 @pytest.mark.parametrize("x", [0.2, [0.2], [0.2, 0.2, 0.2], np.zeros((2, 2, 2))])
-def test_x_of_another_shape(x):
+def test_x_of_another_shape_is_refused(x):
     best = ls.objective(PRESS, MAY_BE, minimize="F32_peak", theta2=8)
     with pytest.raises(ValueError, match=r"x has the shape .*: must be \(2,\) or \(2, designs\), one row for each of"):
         best(x)

@@ -12,33 +12,33 @@ PUMP = ls.SliderCrank(CRANK, ROD, slider_mass=0.5)
 
 
 def signal(angles, *parts):
-    """A Dataset of Σ A cos(kθ − φ), parts being (k, A, φ)."""
+    """Return a Dataset of Σ A cos(kθ − φ), parts being (k, A, φ)."""
     angles = np.asarray(angles, dtype=float)
     values = sum(A * np.cos(np.radians(k * angles - phase)) for k, A, phase in parts)
     return xr.Dataset({"T12": ("theta2", values, {"units": "N m", "long_name": "torque"})}, {"theta2": angles})
 
 
-def test_amplitudes_and_phases_come_back():
+def test_amplitudes_and_phases_are_recovered():
     parts = [(0, 3.0, 0.0), (1, 5.0, 30.0), (2, 0.25, -120.0), (7, 1e-3, 170.0)]
-    found = ls.orders(signal(np.arange(64) * 5.625, *parts), "T12", n=8)
-    assert found.order.values.tolist() == list(range(9))
+    orders = ls.orders(signal(np.arange(64) * 5.625, *parts), "T12", n=8)
+    assert orders.order.values.tolist() == list(range(9))
     for k, A, phase in parts:
-        np.testing.assert_allclose(found.T12_amplitude.sel(order=k), A, atol=1e-14)
-        np.testing.assert_allclose(found.T12_phase.sel(order=k), phase, atol=1e-9)
-    assert float(found.T12_amplitude.sel(order=[3, 4, 5, 6, 8]).max()) < 1e-14
-    assert found.T12_amplitude.attrs["units"] == found.T12_cos.attrs["units"] == "N m"
-    assert found.T12_phase.attrs["units"] == "degree"
+        np.testing.assert_allclose(orders.T12_amplitude.sel(order=k), A, atol=1e-14)
+        np.testing.assert_allclose(orders.T12_phase.sel(order=k), phase, atol=1e-9)
+    assert float(orders.T12_amplitude.sel(order=[3, 4, 5, 6, 8]).max()) < 1e-14
+    assert orders.T12_amplitude.attrs["units"] == orders.T12_cos.attrs["units"] == "N m"
+    assert orders.T12_phase.attrs["units"] == "degree"
 
 
-def test_they_add_up_to_the_signal_again():
+def test_orders_add_up_to_the_signal():
     ds = ls.sweep(ls.Scene(PUMP, 100.0), 180, of=["a_slider"])
-    found = ls.orders(ds, "a_slider", n=40)
-    waves = np.radians(found.order * ds.theta2)
-    again = (found.a_slider_cos * np.cos(waves) + found.a_slider_sin * np.sin(waves)).sum("order")
+    orders = ls.orders(ds, "a_slider", n=40)
+    waves = np.radians(orders.order * ds.theta2)
+    again = (orders.a_slider_cos * np.cos(waves) + orders.a_slider_sin * np.sin(waves)).sum("order")
     np.testing.assert_allclose(again, ds.a_slider, atol=1e-10 * float(abs(ds.a_slider).max()))
 
 
-def test_a_grid_that_starts_elsewhere_and_in_any_order_has_the_same_orders():
+def test_orders_are_independent_of_the_grids_start_and_order():
     ds = ls.sweep(ls.Scene(PUMP, 100.0), 72, of=["Fsx"])
     shuffled = ls.sweep(ls.Scene(PUMP, 100.0), (np.arange(72) * 5.0 + 2.0)[::-1], of=["Fsx"])
     one, other = (ls.orders(each, "Fsx", n=6).Fsx_amplitude for each in (ds, shuffled))
@@ -47,31 +47,31 @@ def test_a_grid_that_starts_elsewhere_and_in_any_order_has_the_same_orders():
 
 def test_a_pistons_shaking_has_the_known_series():
     """Fx = m r ω² (cos θ + A2 cos 2θ − A4 cos 4θ + …), A2 = λ + λ³/4 + 15λ⁵/128, A4 = λ³/4 + 3λ⁵/16 (C. F. Taylor)."""
-    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
+    orders = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=6)
     unit, L = 0.5 * 0.05 * 100.0**2, 0.25
     expected = [0.0, unit, unit * (L + L**3 / 4 + 15 * L**5 / 128), 0.0, -unit * (L**3 / 4 + 3 * L**5 / 16), 0.0]
-    np.testing.assert_allclose(found.Fsx_cos.values[:6], expected, atol=2.0 * unit * L**7)
-    np.testing.assert_allclose(found.Fsx_sin, 0.0, atol=1e-11 * unit)
-    assert float(found.Fsy_amplitude.max()) == 0.0  # a crank and a rod without mass or balanced
+    np.testing.assert_allclose(orders.Fsx_cos.values[:6], expected, atol=2.0 * unit * L**7)
+    np.testing.assert_allclose(orders.Fsx_sin, 0.0, atol=1e-11 * unit)
+    assert float(orders.Fsy_amplitude.max()) == 0.0  # a crank and a rod without mass or balanced
 
 
 def test_a_four_stroke_cycle_has_half_orders():
-    found = ls.orders(ls.sweep(ls.example("engine"), of=["T12", "Fsy"]), ["T12", "Fsy"], n=2)
-    assert found.order.values.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
-    assert float(found.T12_amplitude.sel(order=0.5)) > 10.0
-    assert float(found.Fsy_amplitude.sel(order=0.5)) < 1e-9 * float(found.Fsy_amplitude.max())
+    orders = ls.orders(ls.sweep(ls.example("engine"), of=["T12", "Fsy"]), ["T12", "Fsy"], n=2)
+    assert orders.order.values.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert float(orders.T12_amplitude.sel(order=0.5)) > 10.0
+    assert float(orders.Fsy_amplitude.sel(order=0.5)) < 1e-9 * float(orders.Fsy_amplitude.max())
 
 
-def test_designs_keep_their_dims_and_a_broken_one_spoils_itself_alone():
+def test_designs_keep_their_dims_and_a_broken_one_changes_no_other():
     rods = xr.DataArray([0.02, 0.2, 0.3], dims="rod")
     ds = ls.sweep(ls.Scene(ls.SliderCrank(CRANK, ls.Link(rods, 1.0, 0.0), 0.5), 100.0), 36, of=["Fsx"])
-    found = ls.orders(ds, "Fsx", n=3)
-    assert found.Fsx_amplitude.dims == ("rod", "order")
-    assert np.isnan(found.Fsx_amplitude.values).all(axis=1).tolist() == [True, False, False]
+    orders = ls.orders(ds, "Fsx", n=3)
+    assert orders.Fsx_amplitude.dims == ("rod", "order")
+    assert np.isnan(orders.Fsx_amplitude.values).all(axis=1).tolist() == [True, False, False]
 
 
 @pytest.mark.parametrize(
-    ("angles", "of", "n", "said"),
+    ("angles", "of", "n", "message"),
     [
         (np.arange(8) * 45.0, "T12", 4, "8 samples resolve orders below 4"),
         (np.arange(8) * 45.0, "T12", 0, "n = 0: must be a whole number"),
@@ -80,20 +80,20 @@ def test_designs_keep_their_dims_and_a_broken_one_spoils_itself_alone():
         ([0.0, 10.0, 350.0], "T12", 1, "whole cycle"),
     ],
 )
-def test_what_it_refuses(angles, of, n, said):
+def test_what_it_refuses(angles, of, n, message):
     with pytest.raises(ValueError, match="ds has no dimension theta2"):
         ls.orders(xr.Dataset({"T12": 1.0}), "T12")
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         ls.orders(signal(angles, (1, 1.0, 0.0)), of, n=n)
 
 
-def test_bars_are_the_amplitudes():
-    found = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=4)
-    ax = ls.plot.orders(found)
+def test_bars_show_the_amplitudes():
+    orders = ls.orders(ls.sweep(ls.Scene(PUMP, 100.0), of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=4)
+    ax = ls.plot.orders(orders)
     heights = [bar.get_height() for bar in ax.patches]
-    assert heights == [*found.Fsx_amplitude.values, *found.Fsy_amplitude.values]
-    said = [text.get_text() for text in ax.get_legend().get_texts()]
-    size = f"{float(found.Fsx_amplitude.sel(order=1)):#.4g}".rstrip(".")  # that of order 1 is the largest
-    assert said == [f"$F_{{sx}}$, largest {size} N at order 1", "$F_{sy}$"]
+    assert heights == [*orders.Fsx_amplitude.values, *orders.Fsy_amplitude.values]
+    sentence = [text.get_text() for text in ax.get_legend().get_texts()]
+    size = f"{float(orders.Fsx_amplitude.sel(order=1)):#.4g}".rstrip(".")  # that of order 1 is the largest
+    assert sentence == [f"$F_{{sx}}$, largest {size} N at order 1", "$F_{sy}$"]
     with pytest.raises(ValueError, match="there are no orders of T12; there are Fsx, Fsy"):
-        ls.plot.orders(found, ["T12"])
+        ls.plot.orders(orders, ["T12"])

@@ -1,4 +1,4 @@
-"""pareto: against its definition, design by design, on small sets; what is left out, names, dims, scenes."""
+"""pareto: against its definition, design by design, on small sets; left-out designs, names, dims, scenes."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ PRESS = ls.example("press")
 
 
 def dominated(costs: np.ndarray) -> np.ndarray:
-    """By definition: another is nowhere worse and somewhere better."""
+    """Return where another design is nowhere worse and somewhere better: the definition."""
     return np.array([(np.all(costs <= row, axis=1) & np.any(costs < row, axis=1)).any() for row in costs])
 
 
@@ -22,16 +22,16 @@ def study(n=24, **more) -> xr.Dataset:
 
 @pytest.mark.parametrize("objectives", [1, 2, 3, 4, 6])
 @pytest.mark.parametrize("n", [1, 2, 7, 60, 5 * BATCH])
-def test_the_front_is_what_nothing_dominates(n, objectives):
+def test_the_front_holds_the_designs_that_none_dominates(n, objectives):
     random = np.random.default_rng(n * 10 + objectives)
     for costs in (random.random((n, objectives)), random.integers(0, 4, (n, objectives)).astype(float)):
-        found = front(costs)
-        assert sorted(found) == np.flatnonzero(~dominated(costs)).tolist()
-        assert [tuple(row) for row in costs[found]] == sorted(tuple(row) for row in costs[found])
+        chosen = front(costs)
+        assert sorted(chosen) == np.flatnonzero(~dominated(costs)).tolist()
+        assert [tuple(row) for row in costs[chosen]] == sorted(tuple(row) for row in costs[chosen])
 
 
-def test_a_front_of_all():
-    """On a circle and on a sphere nothing dominates; on a line all but the first is dominated."""
+def test_every_design_may_be_on_the_front():
+    """On a circle and a sphere no point dominates another; on a line the first dominates all."""
     angle = np.linspace(0.1, 1.4, 500)
     assert len(front(np.stack([np.cos(angle), np.sin(angle)], axis=-1))) == 500
     points = np.abs(np.random.default_rng(1).normal(size=(500, 3)))
@@ -39,69 +39,69 @@ def test_a_front_of_all():
     assert front(np.stack([angle, angle, angle], axis=-1)).tolist() == [0]
 
 
-def test_equal_designs_are_all_kept():
+def test_equal_designs_stay_on_the_front():
     assert front(np.array([[1.0, 2.0], [2.0, 1.0], [1.0, 2.0], [2.0, 2.0]])).tolist() == [0, 2, 1]
     assert front(np.array([[3.0], [1.0], [1.0]])).tolist() == [1, 2]
 
 
-def test_both_ways_in_a_study():
-    found = study()
-    chosen = ls.pareto(found, minimize=["F32_peak"], maximize=["coupler.length"])
-    costs = np.stack([found.F32_peak.values, -found["coupler.length"].values], axis=-1)
+def test_a_study_minimized_and_maximized():
+    designs = study()
+    chosen = ls.pareto(designs, minimize=["F32_peak"], maximize=["coupler.length"])
+    costs = np.stack([designs.F32_peak.values, -designs["coupler.length"].values], axis=-1)
     assert sorted(chosen.design.values) == np.flatnonzero(~dominated(costs)).tolist()
     assert (chosen.F32_peak.diff("design") >= 0).all()
-    xr.testing.assert_identical(chosen, found.sel(design=chosen.design.values))
+    xr.testing.assert_identical(chosen, designs.sel(design=chosen.design.values))
 
 
-def test_the_best_of_one():
-    found = study()
-    assert float(ls.pareto(found, maximize="F32_peak").F32_peak.item()) == float(found.F32_peak.max())
+def test_one_objective_gives_the_best_design():
+    designs = study()
+    assert float(ls.pareto(designs, maximize="F32_peak").F32_peak.item()) == float(designs.F32_peak.max())
 
 
 def test_designs_that_are_not_ok_or_not_finite_are_never_on_the_front():
-    found = study()
-    order = found.F32_peak.argsort().values
-    found.F32_peak[order[0]] = np.nan
-    found.T12_peak[order[1]] = np.inf
-    found.F32_peak[order[2]] = -np.inf
-    found.status[order[3]] = 3
-    found.status[order[4]] = 2
-    best = ls.pareto(found, minimize=["F32_peak"])
+    designs = study()
+    order = designs.F32_peak.argsort().values
+    designs.F32_peak[order[0]] = np.nan
+    designs.T12_peak[order[1]] = np.inf
+    designs.F32_peak[order[2]] = -np.inf
+    designs.status[order[3]] = 3
+    designs.status[order[4]] = 2
+    best = ls.pareto(designs, minimize=["F32_peak"])
     assert best.design.values.tolist() == [order[1]]
-    both = ls.pareto(found, minimize=["F32_peak"], maximize=["T12_peak"])
+    both = ls.pareto(designs, minimize=["F32_peak"], maximize=["T12_peak"])
     assert not set(both.design.values) & set(order[:5])
 
 
-def test_nothing_ok_is_an_empty_front():
-    found = study(n=4)
-    found["status"][:] = 2
-    assert ls.pareto(found, minimize=["F32_peak"]).sizes["design"] == 0
+def test_a_study_without_an_ok_design_has_an_empty_front():
+    designs = study(n=4)
+    designs["status"][:] = 2
+    assert ls.pareto(designs, minimize=["F32_peak"]).sizes["design"] == 0
 
 
-def test_machines_that_move_over_part_of_a_turn_are_chosen_from_by_their_peaks():
-    found = study()
-    first = int(found.F32_peak.values.argmin())
-    found.status[first] = 1
-    assert ls.pareto(found, minimize="F32_peak").design.values.tolist() == [first]
-    found.status.attrs["flag_meanings"] = "ok partial_lap never_on_track"  # a car that has left its track
-    assert first not in ls.pareto(found, minimize="F32_peak").design
-    del found.status.attrs["flag_meanings"]
-    assert first not in ls.pareto(found, minimize="F32_peak").design
+def test_machines_with_partial_revolutions_are_compared_by_their_peaks():
+    designs = study()
+    first = int(designs.F32_peak.values.argmin())
+    designs.status[first] = 1
+    assert ls.pareto(designs, minimize="F32_peak").design.values.tolist() == [first]
+    designs.status.attrs["flag_meanings"] = "ok partial_lap never_on_track"  # a car that has left its track
+    assert first not in ls.pareto(designs, minimize="F32_peak").design
+    del designs.status.attrs["flag_meanings"]
+    assert first not in ls.pareto(designs, minimize="F32_peak").design
 
 
-def test_rockers_that_only_swing_are_compared_by_how_far():
+def test_rockers_are_compared_by_their_swing():
     links = (ls.Link(length, 1.0, 1e-3) for length in (0.3, 0.25, 0.2))
     swings = ls.FourBar(*links, ground=xr.DataArray([0.4, 0.5, 0.6], dims="design"))
-    found = ls.peaks(ls.Scene(swings, omega2=10.0), of=["theta4"])
-    assert found.status.values.tolist() == [1, 1, 1]
-    best = int(found.theta4_max.values.argmin())
-    assert ls.pareto(found, minimize="theta4_max").design.values.tolist() == [best]
+    peaks = ls.peaks(ls.Scene(swings, omega2=10.0), of=["theta4"])
+    assert peaks.status.values.tolist() == [1, 1, 1]
+    best = int(peaks.theta4_max.values.argmin())
+    assert ls.pareto(peaks, minimize="theta4_max").design.values.tolist() == [best]
 
 
 def test_partial_revolutions_of_a_real_study_are_left_out():
-    found = study(n=64, ground=(0.1, 0.3))
-    assert 0 < int((found.status == 0).sum()) < 64
-    chosen = ls.pareto(found, minimize=["F32_peak", "T12_peak"])
+    designs = study(n=64, ground=(0.1, 0.3))
+    assert 0 < int((designs.status == 0).sum()) < 64
+    chosen = ls.pareto(designs, minimize=["F32_peak", "T12_peak"])
     assert chosen.sizes["design"] > 0 and (chosen.status == 0).all()
 
 
@@ -114,12 +114,12 @@ def grid() -> xr.Dataset:
     return ls.peaks(ls.Scene(mechanism, scene.omega2, loads=PRESS.loads), of=["F32", "T12"], theta2=36)
 
 
-def test_several_dims_lie_along_the_front_and_each_of_it_is_a_scene(tmp_path):
-    found = grid()
-    assert dict(found.sizes) == {"branch": 2, "design": 4, "length": 3}
-    chosen = ls.pareto(found, minimize=["F32_peak"], maximize=["T12_min", "omega2"])
+def test_several_dims_are_stacked_along_the_front_and_each_point_is_a_scene(tmp_path):
+    designs = grid()
+    assert dict(designs.sizes) == {"branch": 2, "design": 4, "length": 3}
+    chosen = ls.pareto(designs, minimize=["F32_peak"], maximize=["T12_min", "omega2"])
     assert set(chosen.F32_peak.dims) == {"front"} and chosen.sizes["front"] > 1
-    many = found.broadcast_like(found.F32_peak).stack(all=("branch", "design", "length"))
+    many = designs.broadcast_like(designs.F32_peak).stack(all=("branch", "design", "length"))
     costs = np.stack([many.F32_peak, -many.T12_min, -many.omega2], axis=-1)
     expected = {(b, int(d), float(n)) for b, d, n in many.isel(all=~dominated(costs))["all"].values}
     rows = [chosen.isel(front=k) for k in range(chosen.sizes["front"])]
@@ -134,13 +134,13 @@ def test_several_dims_lie_along_the_front_and_each_of_it_is_a_scene(tmp_path):
 
 def test_dims_without_labels_get_their_positions():
     torque = xr.DataArray([-3.0, -12.0, -1.0], dims="case")
-    found = ls.peaks(ls.Scene(PRESS.mechanism, 30.0, loads=[ls.Load("rocker", torque=torque)]), of=["F14"], theta2=36)
-    best = ls.pareto(found, minimize=["F14_peak"])
-    assert best.case.values.tolist() == [int(found.F14_peak.argmin("case"))]
+    peaks = ls.peaks(ls.Scene(PRESS.mechanism, 30.0, loads=[ls.Load("rocker", torque=torque)]), of=["F14"], theta2=36)
+    best = ls.pareto(peaks, minimize=["F14_peak"])
+    assert best.case.values.tolist() == [int(peaks.F14_peak.argmin("case"))]
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ({}, "minimize: is empty; give names of variables"),
         ({"minimize": ["F32_peek"]}, "minimize: nothing is named 'F32_peek'; did you mean \"F32_peak\"?"),
@@ -148,13 +148,13 @@ def test_dims_without_labels_get_their_positions():
         ({"minimize": 3}, "minimize = 3: must be names"),
     ],
 )
-def test_objectives_that_are_none(words, said):
+def test_refused_objectives(words, message):
     with pytest.raises(ValueError) as error:  # noqa: PT011
         ls.pareto(study(n=4), **words)
-    assert str(error.value).startswith(said)
+    assert str(error.value).startswith(message)
 
 
-def test_what_is_no_study():
+def test_a_dataset_that_is_not_a_study_is_refused():
     with pytest.raises(ValueError, match="ds holds one design: there is nothing to choose from"):
         ls.pareto(ls.peaks(PRESS, of=["F32"], theta2=8), minimize=["F32_peak"])
     with pytest.raises(ValueError, match="ds = 3: must be a Dataset over designs"):
