@@ -16,6 +16,11 @@ from linksweep.physics.algebra import planar
 Source = str | float
 
 
+def xy(stem: str) -> tuple[str, str]:
+    """Return the names of a vector's components."""
+    return f"{stem}x", f"{stem}y"
+
+
 @dataclass(frozen=True)
 class Body:
     """A moving link of a mechanism: its number and role, and the motion of its first pin.
@@ -60,12 +65,11 @@ class Body:
         return f"inertia_power{self.number}", f"gravity_power{self.number}"
 
     def _inertia(self) -> list[Row | Total]:
-        k, role, pin = self.number, self.role, self.pin_acceleration
-        vector, h, rates = (f"r{k}x", f"r{k}y"), (f"h{k}x", f"h{k}y"), (f"omega{k}", f"alpha{k}")
-        cg, gravity = (f"{role}_cg_x", f"{role}_cg_y"), ("gravity_x", "gravity_y")
-        mass, length = f"{role}_mass", f"{role}_length"
+        k, role, pin, h = self.number, self.role, self.pin_acceleration, xy(f"h{self.number}")
+        cg, gravity, rates = xy(f"{role}_cg_"), xy("gravity_"), (f"omega{k}", f"alpha{k}")
+        mass, length, vector = f"{role}_mass", f"{role}_length", xy(f"r{k}")
         moment_of_inertia = Row(inertia.moment_of_inertia_about_pin, (f"J{k}",), (mass, f"{role}_inertia", *cg))
-        force, moment, load = (f"Q{k}x", f"Q{k}y"), (f"N{k}",), (f"P{k}x", f"P{k}y")
+        force, moment, load = xy(f"Q{k}"), (f"N{k}",), xy(f"P{k}")
         if self.steady:
             body = (mass, *cg, length, *vector, *gravity)
             return [
@@ -81,50 +85,33 @@ class Body:
         ]
 
     def _centre(self) -> list[Row | Total]:
-        k, role = self.number, self.role
-        vector, centre, rates = (f"r{k}x", f"r{k}y"), (f"rG{k}x", f"rG{k}y"), (f"omega{k}", f"alpha{k}")
-        velocity, acceleration = (f"vG{k}x", f"vG{k}y"), (f"aG{k}x", f"aG{k}y")
-        mass = f"{role}_mass"
+        k, role, gravity, load = self.number, self.role, xy("gravity_"), (*xy(f"P{self.number}"), f"M{self.number}")
+        centre, velocity, acceleration = xy(f"rG{k}"), xy(f"vG{k}"), xy(f"aG{k}")
+        rates, (mass, inertia_about_cg) = (f"omega{k}", f"alpha{k}"), (f"{role}_mass", f"{role}_inertia")
+        moving = (mass, inertia_about_cg, *velocity, *acceleration, *rates)
+        sizes = (mass, inertia_about_cg, *self.pin_velocity, *self.pin_acceleration, *rates, *centre, *gravity, *load)
+        right_side = (mass, inertia_about_cg, *acceleration, rates[1], *gravity, *centre, *load)
         return [
-            Row(planar.to_ground_axes, centre, (f"{role}_cg_x", f"{role}_cg_y", f"{role}_length", *vector)),
+            Row(planar.to_ground_axes, centre, (*xy(f"{role}_cg_"), *self.axes)),
             Row(planar.point_velocity, velocity, (*self.pin_velocity, rates[0], *centre)),
             Row(planar.point_acceleration, acceleration, (*self.pin_acceleration, *rates, *centre)),
-            Row(
-                inertia.inertia_power,
-                (f"inertia_power{k}",),
-                (mass, f"{role}_inertia", *velocity, *acceleration, *rates),
-            ),
-            Row(inertia.gravity_power, (f"gravity_power{k}",), (mass, "gravity_x", "gravity_y", *velocity)),
-            Row(
-                inertia.power_size,
-                (f"power_size{k}",),
-                (
-                    *(mass, f"{role}_inertia", *self.pin_velocity, *self.pin_acceleration),
-                    *(*rates, *centre, "gravity_x", "gravity_y", f"P{k}x", f"P{k}y", f"M{k}"),
-                ),
-            ),
-            Row(
-                inertia.newton_euler_right_side,
-                (f"rhs{k}x", f"rhs{k}y", f"rhs{k}m"),
-                (
-                    *(mass, f"{role}_inertia", *acceleration, rates[1], "gravity_x", "gravity_y", *centre),
-                    *(f"P{k}x", f"P{k}y", f"M{k}"),
-                ),
-            ),
+            Row(inertia.inertia_power, (f"inertia_power{k}",), moving),
+            Row(inertia.gravity_power, (f"gravity_power{k}",), (mass, *gravity, *velocity)),
+            Row(inertia.power_size, (f"power_size{k}",), sizes),
+            Row(inertia.newton_euler_right_side, (*xy(f"rhs{k}"), f"rhs{k}m"), right_side),
         ]
 
     def _shaking(self) -> list[Row | Total]:
-        k, role, force = self.number, self.role, (f"S{self.number}x", f"S{self.number}y")
-        centre = (f"G{k}x", f"G{k}y")
+        k, role, force, centre = self.number, self.role, xy(f"S{self.number}"), xy(f"G{self.number}")
         return [
-            Row(planar.vector_sum, centre, (*self.pin_position, f"rG{k}x", f"rG{k}y")),
-            Row(shaking.inertia_force, force, (f"{role}_mass", f"aG{k}x", f"aG{k}y")),
+            Row(planar.vector_sum, centre, (*self.pin_position, *xy(f"rG{k}"))),
+            Row(shaking.inertia_force, force, (f"{role}_mass", *xy(f"aG{k}"))),
             Row(shaking.inertia_moment, (f"S{k}m",), (f"{role}_inertia", f"alpha{k}", *centre, *force)),
         ]
 
     def _reduced(self) -> list[Row | Total]:
-        k, centre = self.number, (f"rG{self.number}x", f"rG{self.number}y")
-        u, u_slope = (f"u{k}x", f"u{k}y"), (f"u{k}x_slope", f"u{k}y_slope")
+        k, centre, u = self.number, xy(f"rG{self.number}"), xy(f"u{self.number}")
+        u_slope = (f"u{k}x_slope", f"u{k}y_slope")
         moving = (f"{self.role}_mass", f"{self.role}_inertia", *u, self.ratio)
         return [
             Row(planar.point_velocity, u, (*self.pin_ratio, self.ratio, *centre)),

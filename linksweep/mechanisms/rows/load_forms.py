@@ -7,7 +7,7 @@ cached. `name` is the load's in the names of its quantities: load1, load2, …
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.rows.bodies import Body
@@ -20,39 +20,34 @@ class Acting(NamedTuple):
     moments: tuple[str, ...] = ()
 
 
-class Form(Protocol):
-    """The form of a load."""
+class Form:
+    """The form of a load: a base of frozen dataclasses."""
 
-    @property
-    def full_turns(self) -> bool:
-        """True for a load that has values only on a crank that turns fully; other designs have status no_cycle."""
-        ...
-
-    @property
-    def damps(self) -> bool:
-        """True for a load whose force grows with the speed."""
-        ...
+    full_turns: bool = False
+    """True for a load that has values only on a crank that turns fully; other designs have status no_cycle."""
+    damps: bool = False
+    """True for a load whose force grows with the speed."""
 
     @property
     def place(self) -> str:
         """The links on which it acts, in words."""
-        ...
+        raise NotImplementedError
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         """Return the rows that compute its forces, moments and powers."""
-        ...
+        raise NotImplementedError
 
     def on(self, name: str, link: str) -> Acting:
         """Return its action on the link in a role."""
-        ...
+        raise NotImplementedError
 
     def powers(self, name: str) -> tuple[str, ...]:
         """Return the names of the powers that it feeds into the mechanism."""
-        ...
+        raise NotImplementedError
 
     def quantities(self, name: str) -> list[Quantity]:
         """Return the quantities that a sweep may be asked for."""
-        ...
+        return []
 
 
 def action_rows(forms: tuple[Form, ...], bodies: Iterable[Body]) -> list[Row | Total]:

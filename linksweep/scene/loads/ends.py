@@ -7,23 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
 
 from linksweep.base.validate import choice_problems
 from linksweep.mechanisms.rows.bodies import Source
+from linksweep.mechanisms.rows.load_forms import Form
 
 GROUND = "ground"
 Pair = tuple[Source, Source]
 
 
 @dataclass(frozen=True)
-class Between:
+class Between(Form):
     """The form of a load between two links, or between one and the ground."""
 
     from_: str
     to: str
     damps: bool
-    full_turns: ClassVar[bool] = False
 
     @property
     def place(self) -> str:
@@ -41,11 +40,9 @@ class Between:
         return f"{name.replace('load', 'load ')} between {self.from_} and {self.to}"
 
 
-def link_problems(path: str, link: object, links: tuple[str, ...]) -> list[str]:
-    """Return the problems of the link at an end."""
-    return choice_problems(path, link, (GROUND, *links))
-
-
-def same_link_problems(path: str, first: str, second: str) -> list[str]:
-    """Return the problem of two ends on one link."""
-    return [f"{path} = {second!r}: must be another link than that of from_"] if first == second else []
+def link_problems(path: str, item: str, from_: str, to: str, links: tuple[str, ...]) -> list[str]:
+    """Return the problems of the links at the two ends; `item` is the place of a link in the value of an end."""
+    problems = choice_problems(f"{path}.from_{item}", from_, (GROUND, *links))
+    problems += choice_problems(f"{path}.to{item}", to, (GROUND, *links))
+    same = [f"{path}.to{item} = {to!r}: must be another link than that of from_"] if from_ == to else []
+    return problems or same

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any
 
 import xarray as xr
 
@@ -14,11 +14,11 @@ from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
-from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.bodies import Body
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
-from linksweep.mechanisms.rows.load_forms import Acting
+from linksweep.mechanisms.rows.load_forms import Acting, Form
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.physics.algebra import planar
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS
@@ -231,7 +231,7 @@ class Load(ChangingLoad):
 
 
 @dataclass(frozen=True)
-class LoadForm:
+class LoadForm(Form):
     """The rows of a force at a point of a link, a torque on it, or both."""
 
     link: str
@@ -239,7 +239,6 @@ class LoadForm:
     torque: bool
     link_axes: bool
     full_turns: bool = False
-    damps: ClassVar[bool] = False
 
     @property
     def place(self) -> str:
@@ -258,9 +257,6 @@ class LoadForm:
 
     def powers(self, name: str) -> tuple[str, ...]:
         return self._of_force(f"{name}_force_power") + self._of_torque(f"{name}_torque_power")
-
-    def quantities(self, name: str) -> list[Quantity]:
-        return []
 
     def _of_force(self, name: str) -> tuple[str, ...]:
         return (name,) if self.force else ()

@@ -10,12 +10,12 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, FieldKind, ListField, NumberField, field_problems, of_kind, parameter
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.rows.bodies import Body
+from linksweep.mechanisms.rows.bodies import Body, Source, xy
 from linksweep.mechanisms.rows.load_forms import Acting
 from linksweep.physics import springs
 from linksweep.physics.algebra import planar
 from linksweep.scene.loads.action import Action, register
-from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems, same_link_problems
+from linksweep.scene.loads.ends import GROUND, Between, link_problems
 
 LENGTH = NumberField(Rule("length"))
 End = tuple[str, Number, Number]
@@ -45,11 +45,7 @@ class _Line(Action):
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         """Return the problems of the load on a machine of these links."""
-        problems = field_problems(self, path + ".")
-        if not problems:
-            problems += link_problems(f"{path}.from_[1]", self.from_[0], links)
-            problems += link_problems(f"{path}.to[1]", self.to[0], links)
-        return problems or same_link_problems(f"{path}.to[1]", self.from_[0], self.to[0])
+        return field_problems(self, path + ".") or link_problems(path, "[1]", self.from_[0], self.to[0], links)
 
     @property
     def form(self) -> LineForm:
@@ -151,16 +147,15 @@ class LineForm(Between):
     """The rows of a force along the line between two points."""
 
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
-        unit, pull = (f"{name}_ux", f"{name}_uy"), (f"{name}_from_Fx", f"{name}_from_Fy")
-        line, speed = (f"{name}_dx", f"{name}_dy"), (f"{name}_dvx", f"{name}_dvy")
+        unit, pull, line, speed = xy(f"{name}_u"), xy(f"{name}_from_F"), xy(f"{name}_d"), xy(f"{name}_dv")
         rows = [row for end, link in self.ends(name) for row in _end_rows(end, bodies[link])]
         return [
             *rows,
-            Row(planar.difference, line, (*_position(f"{name}_to"), *_position(f"{name}_from"))),
+            Row(planar.difference, line, (*xy(f"{name}_to_"), *xy(f"{name}_from_"))),
             Row(planar.square, (f"{name}_length_squared",), line),
             Row(planar.root, (f"{name}_length",), (f"{name}_length_squared",)),
             Row(springs.line_direction, unit, (*line, f"{name}_length")),
-            Row(planar.difference, speed, (*_velocity(f"{name}_to", self.to), *_velocity(f"{name}_from", self.from_))),
+            Row(planar.difference, speed, self._of_ends(name, "v")),
             Row(planar.dot, (f"{name}_lengthening",), (*unit, *speed)),
             self._tension(name),
             Row(planar.along, pull, (f"{name}_tension", *unit)),
@@ -171,13 +166,18 @@ class LineForm(Between):
 
     def _approach(self, name: str, line: tuple[str, str]) -> list[Row | Total]:
         """Return the rows that tell where its ends come closest as the crank turns, and how narrow that is."""
-        ratio, (slope, width) = (f"{name}_dux", f"{name}_duy"), approach(name)
-        ends = (*_ratio(f"{name}_to", self.to), *_ratio(f"{name}_from", self.from_))
+        ratio, (slope, width) = xy(f"{name}_du"), approach(name)
         return [
-            Row(planar.difference, ratio, ends),
+            Row(planar.difference, ratio, self._of_ends(name, "u")),
             Row(planar.dot, (slope,), (*line, *ratio)),
             Row(springs.turning_width, (width,), (f"{name}_length", *ratio)),
         ]
+
+    def _of_ends(self, name: str, vector: str) -> tuple[Source, ...]:
+        """Return the names of a vector at both ends, that of `to` first; 0 on the ground."""
+        links = {"to": self.to, "from": self.from_}.items()
+        to, from_ = ((0.0, 0.0) if link == GROUND else xy(f"{name}_{end}_{vector}") for end, link in links)
+        return (*to, *from_)
 
     def _tension(self, name: str) -> Row:
         if self.damps:
@@ -204,25 +204,12 @@ def approach(name: str) -> tuple[str, str]:
 
 def _end_rows(end: str, body: Body) -> list[Row | Total]:
     """Return the rows of an end on a moving link: its position and velocity, moment and power of the force on it."""
-    arm, force, velocity = (f"{end}_rx", f"{end}_ry"), (f"{end}_Fx", f"{end}_Fy"), (f"{end}_vx", f"{end}_vy")
+    arm, force, velocity = xy(f"{end}_r"), xy(f"{end}_F"), xy(f"{end}_v")
     return [
-        Row(planar.to_ground_axes, arm, (f"{end}_at_x", f"{end}_at_y", *body.axes)),
-        Row(planar.vector_sum, (f"{end}_x", f"{end}_y"), (*body.pin_position, *arm)),
+        Row(planar.to_ground_axes, arm, (*xy(f"{end}_at_"), *body.axes)),
+        Row(planar.vector_sum, xy(f"{end}_"), (*body.pin_position, *arm)),
         Row(planar.point_velocity, velocity, (*body.pin_velocity, f"omega{body.number}", *arm)),
-        Row(planar.point_velocity, (f"{end}_ux", f"{end}_uy"), (*body.pin_ratio, body.ratio, *arm)),
+        Row(planar.point_velocity, xy(f"{end}_u"), (*body.pin_ratio, body.ratio, *arm)),
         Row(planar.cross, (f"{end}_moment",), (*arm, *force)),
         Row(planar.dot, (f"{end}_power",), (*force, *velocity)),
     ]
-
-
-def _position(end: str) -> Pair:
-    return f"{end}_x", f"{end}_y"
-
-
-def _velocity(end: str, link: str) -> Pair:
-    return (0.0, 0.0) if link == GROUND else (f"{end}_vx", f"{end}_vy")
-
-
-def _ratio(end: str, link: str) -> Pair:
-    """Return the velocity of an end per rate of the crank."""
-    return (0.0, 0.0) if link == GROUND else (f"{end}_ux", f"{end}_uy")

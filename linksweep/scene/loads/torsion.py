@@ -17,7 +17,7 @@ from linksweep.physics import springs
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import degrees
 from linksweep.scene.loads.action import Action, register
-from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems, same_link_problems
+from linksweep.scene.loads.ends import GROUND, Between, Pair, link_problems
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,9 +37,7 @@ class _Turning(Action):
 
     def problems(self, path: str, links: tuple[str, ...]) -> list[str]:
         """Return the problems of the load on a machine of these links."""
-        problems = link_problems(f"{path}.from_", self.from_, links) + link_problems(f"{path}.to", self.to, links)
-        problems = problems or same_link_problems(f"{path}.to", self.from_, self.to)
-        return problems + field_problems(self, path + ".")
+        return link_problems(path, "", self.from_, self.to, links) + field_problems(self, path + ".")
 
 
 @register
