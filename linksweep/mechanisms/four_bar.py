@@ -148,11 +148,8 @@ class FourBar(Mechanism):
         ]
 
     def parameters(self) -> dict[str, Any]:
-        numbers: dict[str, Any] = {
-            "ground_length": self.ground,
-            **frame_parameters("ground", self.ground_angle),
-            "branch_sign": self.branch_sign,
-        }
+        numbers: dict[str, Any] = {"ground_length": self.ground, "branch_sign": self.branch_sign}
+        numbers |= frame_parameters("ground", self.ground_angle)
         for role, link in self.parts().items():
             numbers |= link_parameters(role, link)
         return numbers

@@ -138,6 +138,7 @@ class LoopTrack(Mechanism):
 
 @lru_cache(maxsize=1)
 def _table() -> Table:
+    of_status = ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts")
     gated = ("squared_speed", "normal_force", "a_tangential")
     rows: list[Row | Total] = [
         *straight_rows("cos2", "sin2"),
@@ -147,9 +148,7 @@ def _table() -> Table:
         Row(loop_track.squared_speed, ("raw_squared_speed",)),
         Row(loop_track.force_of_track, ("raw_force",), ("mass", "radius", "raw_squared_speed", "gravity_inward")),
         Row(loop_track.tangential_acceleration, ("raw_a_tangential",)),
-        Row(
-            loop_track.status_on_track, ("status",), ("radians2", "leaves_at", "stalls_at", "raw_force", "work_counts")
-        ),
+        Row(loop_track.status_on_track, ("status",), of_status),
         Row(loop_track.mask_off_track, gated, ("status", "raw_squared_speed", "raw_force", "raw_a_tangential")),
         Row(loop_track.centripetal, ("a_radial",)),
         Row(planar.root, ("speed",), ("squared_speed",)),

@@ -37,12 +37,11 @@ TOGGLES = ("folded", "stretched", "stretched_mirrored", "folded_mirrored")
 def classes(a: Array, b: Array, c: Array, d: Array) -> Results:
     """Compute the Grashof class, the assembly and the least transmission angle."""
     limits = limits_of(a, b, c, d)
+    least = limits.transmission_angle_min
     return {
         "grashof": Finding(limits.grashof, "Grashof class", words=GRASHOF),
         "assembly": Finding(limits.assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
-        "transmission_angle_min": Finding(
-            limits.transmission_angle_min, "smallest acute angle between coupler and rocker"
-        ),
+        "transmission_angle_min": Finding(least, "smallest acute angle between coupler and rocker"),
     }
 
 
@@ -79,16 +78,14 @@ def rocker_dead_centres(a: Array, b: Array, c: Array, d: Array, ground_angle: Ar
 
 def coupler_dead_centres(a: Array, b: Array, c: Array, d: Array, ground_angle: Array) -> Results:
     """Compute the crank angles at which the coupler does not turn, and cannot drive."""
-    return _dead_centres(
-        (_angle(a - c, b, d), -_angle(a + c, b, d)), ground_angle, "coupler", "crank and rocker parallel"
-    )
+    parallel = _angle(a - c, b, d), -_angle(a + c, b, d)
+    return _dead_centres(parallel, ground_angle, "coupler", "crank and rocker parallel")
 
 
 def _dead_centres(angles_open: tuple[Array, Array], ground_angle: Array, driven: str, long_name: str) -> Results:
     """Return the dead centres of both branches; those of the crossed one mirror those of the open one."""
-    angle = np.mod(
-        np.stack([*angles_open, *(-angle for angle in angles_open)], axis=-1) + ground_angle[..., None], 360.0
-    )
+    from_ground = np.stack([*angles_open, *(-angle for angle in angles_open)], axis=-1)
+    angle = np.mod(from_ground + ground_angle[..., None], 360.0)
     return {"dead_centre_angle": Finding(angle, long_name, along=("dead_centre", DEAD_CENTRES[driven]))}
 
 
@@ -170,12 +167,9 @@ def arcs(limits: Limits, ground_angle: Array) -> tuple[Array, Array]:
     both = folded & stretched & ~whole
     cases = [whole, both, folded, stretched]
     nothing = np.full(whole.shape, np.nan)
-    first = (
-        np.select(cases, [np.zeros(whole.shape), limits.folded, limits.folded, -limits.stretched], np.nan),
-        np.select(
-            cases, [np.full(whole.shape, 360.0), limits.stretched, 360.0 - limits.folded, limits.stretched], np.nan
-        ),
-    )
+    starts = [np.zeros(whole.shape), limits.folded, limits.folded, -limits.stretched]
+    ends = [np.full(whole.shape, 360.0), limits.stretched, 360.0 - limits.folded, limits.stretched]
+    first = np.select(cases, starts, np.nan), np.select(cases, ends, np.nan)
     second = np.where(both, -limits.stretched, nothing), np.where(both, -limits.folded, nothing)
     start, end = (np.stack(pair, axis=-1) for pair in zip(first, second, strict=True))
     turned = np.mod(start + np.where(whole, 0.0, ground_angle)[..., None], 360.0)

@@ -42,12 +42,11 @@ def classes(a: Array, d: Array, e: Array) -> Results:
     motion = np.where(whole, np.where(a < d, 0, 1), 2).astype(np.int8)
     nearest = np.maximum(np.abs(d - a), e)
     angle = np.degrees(np.arctan2(np.sqrt((nearest - e) * (nearest + e)), e))
+    least = np.where(assembly == 2, np.nan, angle)
     return {
         "assembly": Finding(assembly, "crank angles at which it can be assembled", words=ASSEMBLY),
         "rocker_motion": Finding(motion, "how the rocker moves", words=MOTIONS),
-        "transmission_angle_min": Finding(
-            np.where(assembly == 2, np.nan, angle), "smallest acute angle between the line D-B and the normal force"
-        ),
+        "transmission_angle_min": Finding(least, "smallest acute angle between the line D-B and the normal force"),
     }
 
 

@@ -91,13 +91,12 @@ def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> Results:
     outcome = np.select([np.isfinite(leaves), np.isfinite(stalls)], [1, 2], 0).astype(np.int8)
     from_rest = curves(radius, mass, 0.0 * speed, thrust, gx, gy, work_counts)
     needed = np.max([np.max(-curve(curve.knots()), axis=0) for curve in from_rest], axis=0)
+    least = np.sqrt(np.maximum(needed, 0.0))
     return {
         "lap": Finding(outcome, "what becomes of the car in one lap from the bottom", words=LAP),
         "leaves_track_at": Finding(_degrees(leaves), "position at which the car first leaves the track"),
         "stalls_at": Finding(_degrees(stalls), "position at which the car stalls"),
-        "least_entry_speed": Finding(
-            np.sqrt(np.maximum(needed, 0.0)), "least speed at the bottom with which it goes round", "m s-1"
-        ),
+        "least_entry_speed": Finding(least, "least speed at the bottom with which it goes round", "m s-1"),
     }
 
 

@@ -38,14 +38,12 @@ def classes(a: Array, b: Array, e: Array) -> Results:
 
 def angles(a: Array, b: Array, e: Array, slide_angle: Array) -> Results:
     """Compute the crank angles of arcs and toggles."""
-    limits = _crossings(a, b, e)
+    toggles = np.mod(_crossings(a, b, e) + slide_angle[..., None], 360.0)
     start, end = _arcs(a, b, e, slide_angle)
     return {
         "arc_start": Finding(start, "crank angle at which an assembled arc starts", along=("arc", ())),
         "arc_end": Finding(end, "crank angle at which it ends (may pass 360)", along=("arc", ())),
-        "toggle_angle": Finding(
-            np.mod(limits + slide_angle[..., None], 360.0), "rod square to the guide", along=("side", SIDES)
-        ),
+        "toggle_angle": Finding(toggles, "rod square to the guide", along=("side", SIDES)),
     }
 
 
@@ -68,10 +66,8 @@ def rod_dead_centres(a: Array, b: Array, e: Array, slide_angle: Array) -> Result
     """Compute the crank angles at which the rod does not turn, and cannot drive."""
     angle = np.mod(np.stack([slide_angle + 90.0, slide_angle - 90.0], axis=-1), 360.0)
     closes = np.abs(np.stack([e - a, e + a], axis=-1)) < b[..., None]
-    long_name = "crank square to the guide"
-    return {
-        "dead_centre_angle": Finding(np.where(closes, angle, np.nan), long_name, along=("dead_centre", DEAD_CENTRES))
-    }
+    angle, along = np.where(closes, angle, np.nan), ("dead_centre", DEAD_CENTRES)
+    return {"dead_centre_angle": Finding(angle, "crank square to the guide", along=along)}
 
 
 def slider_dead_centres(a: Array, b: Array, e: Array, slide_angle: Array) -> Results:

@@ -235,9 +235,8 @@ def motion_quantities(body: Body) -> list[Quantity]:
 
 def position_quantities(*pins: str) -> list[Quantity]:
     """Return the coordinates of pins as quantities."""
-    return [
-        Quantity(f"{pin}{axis}", "m", f"position of pin {pin} from A along {axis}") for pin in pins for axis in "xy"
-    ]
+    axes = [(pin, axis) for pin in pins for axis in "xy"]
+    return [Quantity(f"{pin}{axis}", "m", f"position of pin {pin} from A along {axis}") for pin, axis in axes]
 
 
 def drive_torque(name: str, link: str) -> Quantity:

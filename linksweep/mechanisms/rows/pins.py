@@ -39,9 +39,8 @@ def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
     quantities = []
     for pin, (i, j) in rotating(pins).items():
         relative = f"of link {j} ({links[j]}) relative to link {i} ({links[i]}) at pin {pin}"
-        quantities.append(
-            Quantity(f"omega_{pin}", "rad s-1", f"angular velocity {relative}, positive counter-clockwise")
-        )
+        rotation = f"angular velocity {relative}, positive counter-clockwise"
+        quantities.append(Quantity(f"omega_{pin}", "rad s-1", rotation))
         force = f"force of link {i} ({links[i]}) on link {j} ({links[j]}) at pin {pin}"
         for k in sorted({i, j} - {1}):
             axes = f"of link {k} ({links[k]})"
@@ -59,7 +58,5 @@ def _arm_quantities(pin: str, link: int, other: int, links: Mapping[int, str]) -
     Its rows are `linksweep.mechanisms.rows.bodies.arm_rows`.
     """
     vector = f"vector from the centre of gravity of link {link} ({links[link]}) to its pin {pin} with link {other}"
-    axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}
-    return [
-        Quantity(f"R{other}{link}{axis}", "m", f"{vector} ({links[other]}), component {axes[axis]}") for axis in "xy"
-    ]
+    axes = {"x": "along x (positive to the right)", "y": "along y (positive upwards)"}.items()
+    return [Quantity(f"R{other}{link}{axis}", "m", f"{vector} ({links[other]}), component {way}") for axis, way in axes]

@@ -125,17 +125,15 @@ def _forces(drive: str) -> list[Row | Total]:
 
 def _status(drive: str, loads: tuple[Form, ...]) -> list[Row | Total]:
     """Return rows of the status: closure, then leverage of the drive, then jamming, then full turns for its loads."""
-    closure: list[Row | Total] = [Row(dyad_rrp.rrp_status, ("closure",))]
-    leverage: list[Row | Total] = [Row(planar.identity, ("leverage_status",), ("closure",))]
+    leverage = Row(planar.identity, ("leverage_status",), ("closure",))
     if drive == "coupler":
-        leverage = [
-            Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0))
-        ]
-    cycle: list[Row | Total] = [Row(planar.identity, ("status",), ("jam_status",))]
-    if any(form.full_turns for form in loads):
-        cycle = [Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))]
+        of_crank = ("closure", "crank_along", "crank_length", 1.0)
+        leverage = Row(crank_driven.drive_status, ("leverage_status",), of_crank)
     jam = Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
-    return [*closure, *leverage, jam, *cycle]
+    cycle = Row(planar.identity, ("status",), ("jam_status",))
+    if any(form.full_turns for form in loads):
+        cycle = Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))
+    return [Row(dyad_rrp.rrp_status, ("closure",)), leverage, jam, cycle]
 
 
 def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:

@@ -32,9 +32,8 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 def values_at(function: Any, angles: np.ndarray) -> np.ndarray:
     """Return the function's values at angles [degree], in the shape of these."""
-    return np.array(np.broadcast_to(np.asarray(function(angles.ravel()), dtype=float), angles.size)).reshape(
-        angles.shape
-    )
+    values = np.broadcast_to(np.asarray(function(angles.ravel()), dtype=float), angles.size)
+    return np.array(values).reshape(angles.shape)
 
 
 def tabulated(function: Any, turn: float) -> xr.DataArray | None:

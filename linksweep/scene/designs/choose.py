@@ -62,12 +62,10 @@ def _place(label: Any, labels: np.ndarray) -> int:
     text = quote(requested.item())
     if matches.size:
         raise ValueError(f"{text}: {matches.size} designs have this label; give them labels of their own")
-    nearest = (
-        f"nearest is {labels[np.argmin(abs(labels - requested))]}"
-        if numeric
-        else f"first is {quote(labels[:1].tolist()[0])}"
-    )
-    raise ValueError(f"{text}: must be one of its {labels.size} labels, of which the {nearest}")
+    one = f"first is {quote(labels[:1].tolist()[0])}"
+    if numeric:
+        one = f"nearest is {labels[np.argmin(abs(labels - requested))]}"
+    raise ValueError(f"{text}: must be one of its {labels.size} labels, of which the {one}")
 
 
 def _number(array: xr.DataArray) -> Any:

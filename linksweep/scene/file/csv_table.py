@@ -146,10 +146,9 @@ def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:
                 comma = ", with a decimal point" if "," in cells[k] else ""
                 problems.append(f"csv: {name}:{line}: {header.cells[k]} = {as_toml(cells[k])}: must be a number{comma}")
         samples.append(Sample(line, angle, value))
-    more = (
-        [f"csv: {name}: and {len(problems) - MOST_SHOWN} more lines like these"] if len(problems) > MOST_SHOWN else []
-    )
-    refuse(problems[:MOST_SHOWN] + more)
+    if len(problems) > MOST_SHOWN:
+        problems[MOST_SHOWN:] = [f"csv: {name}: and {len(problems) - MOST_SHOWN} more lines like these"]
+    refuse(problems)
     return samples
 
 
@@ -174,10 +173,10 @@ def _order_problems(name: str, samples: list[Sample], over: str) -> list[str]:
         return [f"csv: {name}: has {len(samples)} rows of numbers: give at least 2"]
     if not (rises > 0.0).all():
         k = int(np.argmin(rises > 0.0))
-        twice = (
-            "stands twice: give each angle once" if rises[k] == 0.0 else "is less than the one before: sort the rows"
-        )
-        return [f"csv: {name}:{samples[k + 1].line}: {over} = {samples[k + 1].angle:.15g} {twice}"]
+        advice = "is less than the one before: sort the rows"
+        if rises[k] == 0.0:
+            advice = "stands twice: give each angle once"
+        return [f"csv: {name}:{samples[k + 1].line}: {over} = {samples[k + 1].angle:.15g} {advice}"]
     return []
 
 

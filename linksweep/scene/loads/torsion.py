@@ -129,15 +129,14 @@ class TurningForm(Between):
     def rows(self, name: str, bodies: dict[str, Body]) -> list[Row | Total]:
         first, second = bodies.get(self.from_), bodies.get(self.to)
         rates = [f"omega{body.number}" if body else 0.0 for body in (second, first)]
+        ends = [(end, f"omega{bodies[link].number}") for end, link in self.ends(name)]
+        powers = [Row(planar.product, (f"{end}_power",), (f"{end}_torque", rate)) for end, rate in ends]
         return [
             Row(springs.turning_rate, (f"{name}_turning",), tuple(rates)),
             *self._resistance(name, first, second),
             Row(planar.identity, (f"{name}_from_torque",), (f"{name}_resistance",)),
             Row(planar.opposite, (f"{name}_to_torque",), (f"{name}_resistance",)),
-            *(
-                Row(planar.product, (f"{end}_power",), (f"{end}_torque", f"omega{bodies[link].number}"))
-                for end, link in self.ends(name)
-            ),
+            *powers,
             Row(springs.resisting_power, (f"{name}_power",), (f"{name}_resistance", f"{name}_turning")),
         ]
 
