@@ -60,11 +60,10 @@ def geometry(scene: Scene, *, threads: int | None = None) -> xr.Dataset:
         Results over the design dims:
 
         - `swing` [degree] of a rocker, or `stroke` [m] of a slider; NaN where it does not swing, or the crank does not
-          turn
-          fully
-        - `time_ratio` [1]: the slower way's crank angle over the faster one's - `reversal_angle` (…, limit) [degree]:
-          crank angles at which the output turns round, stretched and folded; of an
-          inverted slider-crank along `reversal`
+          turn fully
+        - `time_ratio` [1]: the slower way's crank angle over the faster one's
+        - `reversal_angle` (…, limit) [degree]: crank angles at which the output reverses, stretched and folded; of an
+          inverted slider-crank over the dim `reversal`
         - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`.
 
     Raises

@@ -67,8 +67,7 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
         - `work`, `work_fed`, `work_regenerated` [J] in a cycle: of one turn, or two of a four-stroke engine; `work` is
           `work_fed` less `work_regenerated`
         - `work_of_loads`, and of a machine with friction `work_of_friction` [J]; with `work` they add up to 0 where
-          alpha2
-          belongs to omega2
+          alpha2 belongs to omega2
         - `status` as in `peaks`; where a revolution is not whole, there is no work of a cycle (NaN).
 
     Raises

@@ -124,22 +124,20 @@ def bearings(
     Dataset
         Results over (design dims…, pin, frame, theta2), each over those that it depends on:
 
-        - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on link
-          - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, of Fij the force of link i on
-            link j; link i feels the opposite. "ground" are the ground's axes, "journal" and "bearing" those of the
-            links that have them (x along the line of pins, of a slider along its guide). At A and B the crank has the
-            journal, at D the rocker; at C the coupler, but of a slider-crank the slider, as an engine's piston has the
-            gudgeon pin.
-        - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` [1] of each sample in all rotation in
-          the
-          pin
+        - `F`, and `Fx`, `Fy` in each `frame` [N]: F12, F32, F43, F14 at A, B, C, D, where Fij is the force of link i on
+          link j, and its opposite acts on link i. "ground" are the ground's axes, "journal" and "bearing" those of the
+          links that carry them (x along the line of pins; of a slider along its guide). The crank carries the journal
+          at A and B, the rocker at D, the coupler at C; in a slider-crank the slider at C, as an engine's piston
+          carries the gudgeon pin.
+        - `rotation_speed` [rad/s] of link j relative to link i; `rotation_share` [1]: part of the pin's whole rotation
+          that each sample stands for
         - `pressure` [Pa], `sliding_speed` [m/s], `pv` [Pa m/s] and `friction_loss` [W], under loads without pin
           friction; `linksweep.pin_friction` couples the two
         - `rotation` [degree] over the cycle, or once over the part of a turn; `equivalent_load` [N], `L10` [million
           revolutions] and `L10h` [hours]: integrals over the continuous angle, which do not depend on the count of
           samples
         - of main bearings also `F_peak` [N] and `F_peak_at` [degree], exact as in `linksweep.peaks`
-        - `status` of each sample; integrals, that over time too, leave out angles that are not ok
+        - `status` of each sample; integrals leave out angles that are not ok
         - `life_status` (…, pin): ok, partial_revolution (the life of the angles that are ok), nothing_solved (NaN),
           unbounded_load (equivalent load inf, life 0), no_rotation (NaN).
 

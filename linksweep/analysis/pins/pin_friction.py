@@ -75,12 +75,11 @@ def pin_friction(
     Dataset
         Cycle as from `linksweep.sweep`; its scene has the moments of friction as loads. Besides:
 
-        - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij - `friction_loss`
-          (…, pin, theta2) [W], never negative - `convergence` (…, theta2): converged, not_converged; where it has not,
-          forces and torques are NaN: friction in the
-          pins holds the machine fast there, or nearly
-        - `efficiency` (…) [1]: share of the energy fed in a cycle that comes out again, at the drive or at the loads;
-          all
+        - `friction_torque` (…, pin, theta2) [N m]: moment of link i on link j of the pin's force Fij
+        - `friction_loss` (…, pin, theta2) [W], never negative
+        - `convergence` (…, theta2): converged or not_converged; where not converged, friction in the pins locks the
+          machine or nearly does, and forces and torques are NaN
+        - `efficiency` (…) [1]: part of the energy fed in a cycle that is returned at the drive or at the loads; all
           friction counts as lost, in a guide too.
 
     Raises
