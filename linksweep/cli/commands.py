@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
+from linksweep import plot
 from linksweep.analysis.balance.compare import compare
 from linksweep.analysis.balance.counterweights import counterweights, with_counterweights
 from linksweep.analysis.balance.orders import orders
@@ -40,53 +42,53 @@ BALANCED = ("Fs_peak", "Fs_rms", "Ms_peak", "{drive}_peak", "{drive}_ripple")
 
 def add_commands(commands: Any) -> None:
     """Add the words to those of the command line."""
-    film = _command(commands, "animate", _animate, "a film of the mechanism with its forces: .gif or .html")
+    add = partial(add_command, commands)
+    film = add("animate", _animate, "a film of the mechanism with its forces: .gif or .html")
     film.add_argument("-o", "--output", type=a_file(FILMS), required=True, help="film to write: .gif or .html")
     film.add_argument("--frames", type=int, default=72, metavar="N", help="in a cycle, 25 a second (72)")
 
-    pins = _command(commands, "bearings", _bearings, "load, rotation, pressure and life of the bearing in each pin")
+    pins = add("bearings", _bearings, "load, rotation, pressure and life of the bearing in each pin")
     pins.add_argument("--diameter", type=_number("length"), help='of all journals, such as "20 mm"')
     pins.add_argument("--length", type=_number("length"), help='of all bushes, such as "30 mm"')
     pins.add_argument("--capacity", type=_number("force"), help='dynamic load rating of all, such as "5 kN"')
     pins.add_argument("--kind", choices=EXPONENTS, default="ball", help="of rolling bearings (ball)")
-    part = "of a machine that moves over part of a turn: its crank angles in degrees"
-    pins.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
+    add_part(pins, "of a machine that moves over part of a turn: its crank angles in degrees")
     pins.add_argument("--frame", choices=FRAMES, default="ground", help="axes of the load diagrams (ground)")
-    _plots(pins)
+    add_plot(pins)
 
-    why = _command(commands, "breakdown", _breakdown, "sources of a pin's load: the part of each in its largest force")
+    why = add("breakdown", _breakdown, "sources of a pin's load: the part of each in its largest force")
     why.add_argument("of", help="a pin force or the drive's torque, such as F32")
-    _plots(why)
+    add_plot(why)
 
-    weights = _command(commands, "balance", _balance, "counterweights against shaking: before and after")
+    weights = add("balance", _balance, "counterweights against shaking: before and after")
     weights.add_argument("--radius", type=_number("length"), required=True, help='where they sit, such as "6 cm"')
     weights.add_argument("--fraction", type=float, help="of a slider-crank's first order that the crank takes (0.5)")
-    _plots(weights)
+    add_plot(weights)
 
-    shaking = _command(commands, "orders", _orders, "orders of the shaking force, or of other quantities")
+    shaking = add("orders", _orders, "orders of the shaking force, or of other quantities")
     shaking.add_argument("of", nargs="*", default=SHAKING, help="their names (Fsx Fsy)")
     shaking.add_argument("-n", type=int, default=12, help="the highest order (12)")
-    _plots(shaking)
+    add_plot(shaking)
 
-    drive = _command(
-        commands,
-        "flywheel",
-        _flywheel,
-        "power and work of the drive, and the flywheel that evens its speed",
-    )
+    drive = add("flywheel", _flywheel, "power and work of the drive, and the flywheel that evens its speed")
     drive.add_argument("--fluctuation", type=float, default=0.02, help="coefficient of speed fluctuation (0.02)")
-    _plots(drive)
+    add_plot(drive)
 
 
-def _command(commands: Any, name: str, run: Callable, text: str) -> argparse.ArgumentParser:
+def add_command(commands: Any, name: str, run: Callable, text: str) -> argparse.ArgumentParser:
+    """Add a command on a scene to those of the command line; return its parser."""
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
     parser.set_defaults(run=run)
     return parser
 
 
-def _plots(parser: argparse.ArgumentParser) -> None:
+def add_plot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
+
+
+def add_part(parser: argparse.ArgumentParser, text: str) -> None:
+    parser.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=text)
 
 
 def a_file(endings: tuple[str, ...]) -> Callable[[str], Path]:
@@ -136,12 +138,17 @@ def show(options: argparse.Namespace, draw: Callable[[], Any]) -> None:
     """Write the figure of a plot to the file that the option --plot names, if any, without a screen."""
     if options.plot is None:
         return
-    import matplotlib as mpl
-
-    mpl.use("Agg")
+    without_a_screen()
     drawn = draw()
     write_figure(drawn if hasattr(drawn, "savefig") else drawn.figure, options.plot)
     print(f"\nwritten: {options.plot}")
+
+
+def without_a_screen() -> None:
+    """Draw to files alone."""
+    import matplotlib as mpl  # here: its import is slow
+
+    mpl.use("Agg")
 
 
 def write_figure(figure: Figure, path: Path) -> None:
@@ -150,18 +157,12 @@ def write_figure(figure: Figure, path: Path) -> None:
 
 
 def _animate(options: argparse.Namespace) -> None:
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from linksweep.plot.animation import animate
-
-    animate(one_design(options.scene), frames=options.frames).save(options.output)
+    without_a_screen()
+    plot.animate(one_design(options.scene), frames=options.frames).save(options.output)
     print(f"written: {options.output}")
 
 
 def _bearings(options: argparse.Namespace) -> None:
-    from linksweep import plot
-
     scene = one_design(options.scene)
     bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
@@ -170,8 +171,6 @@ def _bearings(options: argparse.Namespace) -> None:
 
 
 def _breakdown(options: argparse.Namespace) -> None:
-    from linksweep import plot
-
     scene = one_design(options.scene)
     at = _worst_angle(scene, options.of)
     print(summaries.share_table(breakdown(scene, options.of, theta2=[at]), options.of))
@@ -190,8 +189,6 @@ def _worst_angle(scene: Scene, name: str) -> float:
 
 
 def _balance(options: argparse.Namespace) -> None:
-    from linksweep import plot
-
     scene = one_design(options.scene)
     weights = counterweights(scene, radius=options.radius, fraction=options.fraction)
     balanced = with_counterweights(scene, weights)
@@ -204,8 +201,6 @@ def _balance(options: argparse.Namespace) -> None:
 
 
 def _orders(options: argparse.Namespace) -> None:
-    from linksweep import plot
-
     ds = orders(sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
     _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
     print(summaries.order_table(ds, options.of))
@@ -213,8 +208,6 @@ def _orders(options: argparse.Namespace) -> None:
 
 
 def _flywheel(options: argparse.Namespace) -> None:
-    from linksweep import plot
-
     scene = one_design(options.scene)
     ds = flywheel(scene, fluctuation=options.fluctuation)
     _require_whole(options.scene, ds["speed"])

@@ -7,14 +7,26 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from linksweep import plot
 from linksweep.base.validate import refuse
 from linksweep.base.version import installed_version
-from linksweep.cli.commands import FILMS, PICTURES, a_file, add_commands, write_figure
+from linksweep.cli.commands import (
+    FILMS,
+    PICTURES,
+    a_file,
+    add_command,
+    add_commands,
+    add_part,
+    add_plot,
+    without_a_screen,
+    write_figure,
+)
 from linksweep.cli.text import check_lines, peak_table, study_report
 from linksweep.files.atomic import target_of
 from linksweep.files.netcdf import RESULTS, SCENES, load_scene, save
@@ -81,6 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linksweep {installed_version()}")
     parser.set_defaults(run=lambda options: parser.print_help())
     commands = parser.add_subparsers(metavar="command")
+    add = partial(add_command, commands)
 
     demo = commands.add_parser("demo", help="a built-in scene: peak table, demo.nc, demo.png")
     scenes, without = names(), "name of the files without ending (demo)"
@@ -88,59 +101,38 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("-o", "--output", type=_stem, dest="stem", metavar="NAME", default=Path("demo"), help=without)
     demo.set_defaults(run=_demo)
 
-    cycle = commands.add_parser("sweep", help="one revolution to a file, and to a figure")
-    cycle.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    cycle.add_argument(
-        "--theta2", "--theta", dest="angles", type=int, default=720, metavar="N", help="number of angles (720)"
-    )
+    cycle = add("sweep", _sweep, "one revolution to a file, and to a figure")
+    _add_angles(cycle, "number of angles (720)", default=720)
     cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
-    cycle.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
+    add_plot(cycle)
     cycle.add_argument("--of", "--outputs", type=_names, help="names of quantities, separated by commas")
-    cycle.set_defaults(run=_sweep)
 
-    worst = commands.add_parser("peaks", help="the worst of each pin force and of the torque")
-    worst.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    samples = "the largest of so many samples, not the exact peaks"
-    worst.add_argument("--theta2", "--theta", dest="angles", type=int, metavar="N", help=samples)
+    worst = add("peaks", _peaks, "the worst of each pin force and of the torque")
+    _add_angles(worst, "the largest of so many samples, not the exact peaks")
     worst.add_argument("--of", type=_names, help="names of the quantities, separated by commas")
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
-    worst.set_defaults(run=_peaks)
 
-    _add_quantities(commands)
-    _add_study(commands)
-    sound = commands.add_parser("check", help="assembly, Grashof class, limits, toggles")
-    sound.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
-    sound.set_defaults(run=_check)
-    _add_report(commands)
-    add_commands(commands)
-    return parser
-
-
-def _add_quantities(commands: Any) -> None:
-    listed = commands.add_parser("quantities", help="all quantities of sweep and peaks: names, units, meanings")
-    listed.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    listed = add("quantities", _quantities, "all quantities of sweep and peaks: names, units, meanings")
     listed.add_argument("words", nargs="*", help="only those with these words in name, unit or meaning, such as force")
-    listed.set_defaults(run=_quantities)
 
-
-def _add_study(commands: Any) -> None:
-    many = commands.add_parser("study", help="peaks of many designs to NetCDF; goes on where it was stopped")
-    many.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    many = add("study", _study, "peaks of many designs to NetCDF; goes on where it was stopped")
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
     many.add_argument("--of", type=_names, nargs="+", help="names of quantities")
     chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
-    many.set_defaults(run=_study)
 
+    add("check", _check, "assembly, Grashof class, limits, toggles")
 
-def _add_report(commands: Any) -> None:
-    page = commands.add_parser("report", help="a page to print: inputs, checks, peaks, drive, figures")
-    page.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    page = add("report", _report, "a page to print: inputs, checks, peaks, drive, figures")
     page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
     page.add_argument("--title", help="its heading (name of the scene file)")
-    part = "crank angles of a machine that moves over part of a turn"
-    page.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
-    page.set_defaults(run=_report)
+    add_part(page, "crank angles of a machine that moves over part of a turn")
+    add_commands(commands)
+    return parser
+
+
+def _add_angles(parser: argparse.ArgumentParser, text: str, default: int | None = None) -> None:
+    parser.add_argument("--theta2", "--theta", dest="angles", type=int, default=default, metavar="N", help=text)
 
 
 def _demo(options: argparse.Namespace) -> None:
@@ -222,9 +214,5 @@ def _names(text: str) -> list[str]:
 
 def _figure(cycle: xr.Dataset) -> Figure:
     """Draw the page of a cycle without a screen."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from linksweep import plot
-
+    without_a_screen()
     return plot.cycle(cycle)

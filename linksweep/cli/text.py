@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from math import prod
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -30,18 +31,17 @@ def _row(ds: xr.Dataset, name: str) -> tuple[str, ...]:
     return name, f"{float(values.isel(place)):.6g}", _unit(values), angle, *labels
 
 
-def _worst(values: xr.DataArray) -> dict[Hashable, int]:
+def _worst(values: xr.DataArray) -> Mapping[Any, xr.DataArray]:
     """Place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else."""
     name = str(values.name)
-    size = values.values if name.endswith("_max") else -values.values if name.endswith("_min") else abs(values.values)
-    known = np.where(np.isfinite(size), size, -np.inf)
-    return dict(zip(values.dims, map(int, np.unravel_index(int(np.argmax(known)), values.shape)), strict=True))
+    size = values if name.endswith("_max") else -values if name.endswith("_min") else abs(values)
+    return size.where(np.isfinite(size), -np.inf).argmax(...)
 
 
-def _label(ds: xr.Dataset, dim: Hashable, k: int | None) -> str:
+def _label(ds: xr.Dataset, dim: Hashable, k: Any) -> str:
     if k is None:
         return "any"
-    value = ds[dim].values[k] if dim in ds.coords else k
+    value = ds[dim].values[int(k)] if dim in ds.coords else int(k)
     return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
 
 
@@ -84,10 +84,10 @@ def study_report(ds: xr.Dataset, machine: Mechanism) -> str:
 def _best(ds: xr.Dataset, name: str) -> tuple[str, ...]:
     """Return a peak where it is least, of the designs that are ok all the way round; empty where there is none."""
     values = ds[name].where(ds.status == 0)
-    size = np.where(np.isfinite(values.values), values.values, np.inf)
+    size = values.where(np.isfinite(values), np.inf)
     if not np.isfinite(size).any():
         return ()
-    place = dict(zip(values.dims, map(int, np.unravel_index(int(np.argmin(size)), size.shape)), strict=True))
+    place = size.argmin(...)
     labels = (_label(ds, dim, place.get(dim)) for dim in ds.sizes)
     return name, f"{float(size.min()):.6g}", _unit(ds[name]), *labels
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -167,16 +168,17 @@ class Result(NamedTuple):
 
 
 def _dataset(scene: Scene, items: list[Request], result: Result, command: str, threads: int | None) -> xr.Dataset:
-    sampled, grid, assembly, largest, averages = result
-    order = tuple(sampled.inputs.sizes)
-    status = status_of(scene, sampled, grid, assembly, largest, averages, threads)
-    variables = {
-        name: variable(field, units, meaning, order)
-        for item in items
-        for name, field, units, meaning in named(item, largest, averages, scene.mechanism.spot)
-    }
-    coordinates = design_coordinates(sampled)
-    return xr.Dataset(variables | {"status": status}, coordinates, provenance(scene, command, coordinates))
+    status = status_of(scene, result, threads)
+    coordinates = design_coordinates(result.sampled)
+    variables = labelled(items, result) | {"status": status}
+    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
+
+
+def labelled(items: list[Request], result: Result) -> dict[str, xr.Variable]:
+    """Return the variables of all requests, with units and meanings."""
+    spot, order = result.sampled.mechanism.spot, tuple(result.sampled.inputs.sizes)
+    named = chain.from_iterable(_named(item, result.largest, result.averages, spot) for item in items)
+    return {name: variable(field, units, meaning, order) for name, field, units, meaning in named}
 
 
 def parsed_requests(
@@ -214,12 +216,10 @@ def _request(quantity: Quantity, summary: str) -> Request:
     return Request(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
 
 
-def _signals(items: list[Request]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(signal for item in items for signal in item.signals))
-
-
-def _powers(items: list[Request]) -> tuple[Power, ...]:
-    return tuple(dict.fromkeys(power for item in items for power in item.powers))
+def needed(items: list[Request]) -> tuple[tuple[str, ...], tuple[Power, ...]]:
+    """Return the signals and the powers of all requests, each once."""
+    signals = dict.fromkeys(signal for item in items for signal in item.signals)
+    return tuple(signals), tuple(dict.fromkeys(power for item in items for power in item.powers))
 
 
 def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part | None = None) -> Result:
@@ -227,7 +227,7 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     turns = round(scene.period / scene.mechanism.period)
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
     grid = crank_grid(angles, scene.period, scene.mechanism.index)
-    assembly, signals, powers = assembly_of(scene, threads), _signals(items), _powers(items)
+    assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
     if part is not None:
         largest = peaks_within(scene, signals, part, threads)
     else:
@@ -242,8 +242,8 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
     grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))
     sampled = scene.at(grid)
-    largest = {signal: Reduction("largest_sample", signal) for signal in _signals(items)}
-    powers = _powers(items)
+    signals, powers = needed(items)
+    largest = {signal: Reduction("largest_sample", signal) for signal in signals}
     pace = changing_pace(sampled, sampled.inputs)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
@@ -276,31 +276,23 @@ def _over_time(
     return averages
 
 
-def status_of(
-    scene: Scene,
-    sampled: Scene,
-    grid: Grid,
-    assembly: Field,
-    extremes: dict[str, SignalPeak],
-    averages: Averages,
-    threads: int | None,
-) -> xr.Variable:
+def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     """Return the status of peaks: the assembly's 0, 1 or 2; 1 if some sample is not ok, 3 if a peak or mean is inf.
 
     Peaks and means of designs without any sample that is ok become NaN.
     """
+    sampled, grid, assembly, largest, averages = result
     order = tuple(sampled.inputs.sizes)
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
         status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
-        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), extremes, averages)
-    for dims, values in (*(peak.value for peak in extremes.values()), *averages.values()):
+        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)
+    for dims, values in (*(peak.value for peak in largest.values()), *averages.values()):
         infinite = np.isinf(values)
         if infinite.any():
-            there = variable(Field(dims, infinite), "1", "", order)
-            status = xr.where(there, float(UNBOUNDED), status)
+            status = xr.where(variable(Field(dims, infinite), "1", "", order), float(UNBOUNDED), status)
     dims = tuple(dim for dim in order if dim in status.dims)
     words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
     return plain(Field(dims, status.transpose(*dims).values.astype(np.int8)), words)
@@ -319,15 +311,15 @@ def _extremes_of_status(
     return least, worst
 
 
-def _blank(ok: xr.Variable, extremes: dict[str, SignalPeak], averages: Averages) -> None:
+def _blank(ok: xr.Variable, largest: dict[str, SignalPeak], averages: Averages) -> None:
     """Make peaks and means NaN where no design that shares a number is ok."""
     good = Field(tuple(map(str, ok.dims)), ok.values)
     if not good.values.all():
-        extremes |= peaks_where(good, extremes)
+        largest |= peaks_where(good, largest)
         averages |= {power: only_where(good, field) for power, field in averages.items()}
 
 
-def named(
+def _named(
     item: Request, extremes: dict[str, SignalPeak], averages: Averages, spot: str
 ) -> Iterator[tuple[str, Field, str, str]]:
     """Yield name, field, unit and meaning of each variable of a request."""

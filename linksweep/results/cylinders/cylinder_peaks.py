@@ -11,12 +11,10 @@ from linksweep.base.validate import name_problems
 from linksweep.results.compute import assembly_of, requested
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
-from linksweep.results.dataset import design_coordinates, joined, origin_attributes, variable
-from linksweep.results.peak_search.along_paths import SignalPeak
+from linksweep.results.dataset import design_coordinates, joined, origin_attributes
 from linksweep.results.peak_search.quadrature import means_at
-from linksweep.results.peaks import STATUS_ANGLES, Averages, Request, named, parsed_requests, peaks, status_of
+from linksweep.results.peaks import STATUS_ANGLES, Request, Result, labelled, needed, parsed_requests, peaks, status_of
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.scene import Scene
 
 
 def peaks_of_cylinders(machine: MultiCylinder, of: Iterable[str] | None, threads: int | None = None) -> xr.Dataset:
@@ -41,28 +39,16 @@ def peaks_of_cylinders(machine: MultiCylinder, of: Iterable[str] | None, threads
 
 def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -> xr.Dataset:
     """Return the peaks and means of sums over the cylinders."""
-    signals = tuple(dict.fromkeys(signal for item in sums for signal in item.signals))
-    powers = tuple(dict.fromkeys(power for item in sums for power in item.powers))
-    extremes = exact_peaks_of_sums(machine, signals, threads) if signals else {}
+    (signals, powers), grid = needed(sums), crank_grid(STATUS_ANGLES, machine.period)
+    largest = exact_peaks_of_sums(machine, signals, threads) if signals else {}
     averages = means_at((), machine, powers, threads) if powers else {}
-    each = [_status(scene, extremes, averages, threads) for scene in machine.cylinders]
-    sampled = machine.engine.at_one_angle
-    order, spot = tuple(sampled.inputs.sizes), sampled.mechanism.spot
-    variables = {
-        name: variable(field, units, long_name, order)
-        for item in sums
-        for name, field, units, long_name in named(item, extremes, averages, spot)
-    }
+    results = [Result(s.at_one_angle, grid, assembly_of(s, threads), largest, averages) for s in machine.cylinders]
+    # sums become NaN where none of a cylinder's samples is ok
+    each = [status_of(*pair, threads) for pair in zip(machine.cylinders, results, strict=True)]
     worst = xr.Variable(each[0].dims, np.max([status.values for status in each], axis=0), each[0].attrs)
-    return xr.Dataset(
-        variables | {"status": worst}, design_coordinates(sampled), origin_attributes(machine.engine, "")
-    ).assign_attrs(title="linksweep: MultiCylinder")
-
-
-def _status(scene: Scene, extremes: dict[str, SignalPeak], averages: Averages, threads: int | None) -> xr.Variable:
-    """Return the status of one cylinder, and make the sums NaN where none of its samples is ok."""
-    grid = crank_grid(STATUS_ANGLES, scene.period)
-    return status_of(scene, scene.at_one_angle, grid, assembly_of(scene, threads), extremes, averages, threads)
+    variables, coordinates = labelled(sums, results[0]) | {"status": worst}, design_coordinates(results[0].sampled)
+    attributes = origin_attributes(machine.engine, "") | {"title": "linksweep: MultiCylinder"}
+    return xr.Dataset(variables, coordinates, attributes)
 
 
 def _of_pins(machine: MultiCylinder, names: list[str], threads: int | None) -> xr.Dataset:
