@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.mechanisms.limits.finding import Checks, Finding
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import design_coordinates, flags, origin_attributes
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import side_by_side
@@ -116,8 +116,8 @@ def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
     """Return the largest difference of alpha2 from the one that a changing omega2 has by itself, and its angle."""
     if scene.alpha2 is None or not scene.changes_speed:
         return {}
-    grid = crank_grid(_count(scene), scene.period, scene.mechanism.index)
-    revolution = Revolution(scene, grid)
+    count = next(iter(counts_without_angles(scene).values()), round(2.0 * scene.period))  # else 720 a turn
+    revolution = Revolution(scene, crank_grid(count, scene.period, scene.mechanism.index))
     difference = abs(revolution.alpha2 - revolution.derived_alpha2)
     at = difference["theta2"][difference.argmax("theta2")]
     words = "of alpha2 from omega2·d(omega2)/d(theta2)"
@@ -125,13 +125,6 @@ def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
         "alpha2_difference": _described(difference.max("theta2"), "rad s-2", f"largest difference {words}"),
         "alpha2_difference_at": _described(at, "degree", f"crank angle of the largest difference {words}"),
     }
-
-
-def _count(scene: Scene) -> int:
-    """Return the count of angles: 720 a turn, or that of an array over theta2 without a theta2 coordinate."""
-    index = scene.mechanism.index
-    counts = [a.sizes[index] for a in scene.arrays.values() if index in a.dims and index not in a.coords]
-    return next(iter(counts), round(2.0 * scene.period))
 
 
 def _described(array: xr.DataArray, units: str, long_name: str) -> xr.Variable:

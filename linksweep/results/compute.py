@@ -14,7 +14,6 @@ from linksweep.engine.trace.superpose import superposed
 from linksweep.mechanisms.capabilities import lack
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
-from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
 
 SEVERAL = (
@@ -75,11 +74,16 @@ def angles_missing(scene: Scene) -> list[str]:
     """Return the problem of each array over the angle that has no angles as its coordinate."""
     index = scene.mechanism.index
     return [
-        f"{path} has {array.sizes[index]} values over {index} but no {index} coordinate: give it its angles with "
-        f'coords={{"{index}": degrees}}, or ask for the largest of samples with {index}={array.sizes[index]}'
-        for path, array in scene.arrays.items()
-        if index in array.dims and index not in array.coords
+        f"{path} has {count} values over {index} but no {index} coordinate: give it its angles with "
+        f'coords={{"{index}": degrees}}, or ask for the largest of samples with {index}={count}'
+        for path, count in counts_without_angles(scene).items()
     ]
+
+
+def counts_without_angles(scene: Scene) -> dict[str, int]:
+    """Return the count of values of each array over the angle that has no angles as its coordinate."""
+    index = scene.mechanism.index
+    return {path: a.sizes[index] for path, a in scene.arrays.items() if index in a.dims and index not in a.coords}
 
 
 def compute(
@@ -110,9 +114,9 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
 
 
-def changing_pace(scene: Scene, inputs: Inputs) -> tuple[str, ...]:
+def changing_pace(scene: Scene) -> tuple[str, ...]:
     """Return the quantity that is the rate of the index, if it changes over the revolution; else no name."""
-    request = plan(scene.table, (scene.mechanism.pace,), inputs.forms)
+    request = plan(scene.table, (scene.mechanism.pace,), scene.inputs.forms)
     changes = scene.mechanism.index in request.dims(request.outputs[scene.mechanism.pace])
     return (scene.mechanism.pace,) if changes else ()
 

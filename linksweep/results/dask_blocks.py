@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from inspect import unwrap
-from typing import Any, NamedTuple, ParamSpec
+from typing import Any, ParamSpec
 
 import numpy as np
 import xarray as xr
@@ -112,15 +112,10 @@ def _lazily(
     return xr.Dataset(data, coordinates, _attributes(scene, one))
 
 
-class Looks(NamedTuple):
-    """The result of one design; the design dims in their order; and those that decide whether a sample is ok."""
-
-    one: xr.Dataset
-    order: tuple[str, ...]
-    deciding: tuple[str, ...]
-
-
-def _looks(function: Callable[[Scene], xr.Dataset], scene: Scene) -> Looks:
+def _looks(
+    function: Callable[[Scene], xr.Dataset], scene: Scene
+) -> tuple[xr.Dataset, tuple[str, ...], tuple[str, ...]]:
+    """Return the result of one design; the design dims in their order; and those that decide if a sample is ok."""
     import dask  # here and below: only those who have dask arrays have dask
 
     with dask.config.set(scheduler="synchronous"), np.errstate(all="ignore"):  # no work for a cluster, and no numbers
@@ -128,7 +123,7 @@ def _looks(function: Callable[[Scene], xr.Dataset], scene: Scene) -> Looks:
         inputs = first.at_one_angle.inputs
         request = plan(first.table, ("status",), inputs.forms)
         dims = request.dims(request.outputs["status"])
-        return Looks(function(first), tuple(inputs.sizes), tuple(dim for dim in dims if dim != request.index))
+        return function(first), tuple(inputs.sizes), tuple(dim for dim in dims if dim != request.index)
 
 
 def _compute(numbers: xr.Dataset, task: Task) -> xr.Dataset:
@@ -152,10 +147,8 @@ def _not_nan(values: np.ndarray, axis: tuple[int, ...], keepdims: Any) -> np.nda
 
 def _known(scene: Scene, one: xr.Dataset) -> dict[Any, xr.Variable]:
     """Return the variables that take no blocks: labels, and the scene's own parameters."""
-    parameters = design_coordinates(scene)
-    return {name: one.variables[name] for name in one.indexes} | {
-        k: v for k, v in parameters.items() if k in one.coords
-    }
+    parameters = {name: values for name, values in design_coordinates(scene).items() if name in one.coords}
+    return {name: one.variables[name] for name in one.indexes} | parameters
 
 
 def _numbers(scene: Scene, uncut: Iterable[str]) -> xr.Dataset:

@@ -232,8 +232,9 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
         largest = peaks_within(scene, signals, part, threads)
     else:
         largest = exact_peaks(scene, signals, assembly, threads) if signals else {}
-    averages = means(scene, powers, threads) if powers and part is None else {}
-    return Result(scene.at_one_angle, grid, with_dead_centres(scene, assembly), largest, averages)
+    sampled = scene.at_one_angle
+    averages = means(scene, powers, changing_pace(sampled), threads) if powers and part is None else {}
+    return Result(sampled, grid, with_dead_centres(scene, assembly), largest, averages)
 
 
 def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
@@ -244,7 +245,7 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     sampled = scene.at(grid)
     signals, powers = needed(items)
     largest = {signal: Reduction("largest_sample", signal) for signal in signals}
-    pace = changing_pace(sampled, sampled.inputs)
+    pace = changing_pace(sampled)
     averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
     request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass, fields
 from html import escape
 from typing import TYPE_CHECKING, overload
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, overload
 from linksweep.base.text_table import aligned
 from linksweep.base.validate import name_problems, refuse
 from linksweep.engine.trace.plan import plan
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import STATUS_LONG_NAME
 from linksweep.results.sweep import default_names
 from linksweep.results.system import names_in, of_form
@@ -99,9 +99,6 @@ class QuantityTable(Sequence[AvailableQuantity]):
 
     def __len__(self) -> int:
         return len(self.rows)
-
-    def __iter__(self) -> Iterator[AvailableQuantity]:
-        return iter(self.rows)
 
     def __contains__(self, key: object) -> bool:
         return key in self.names or key in self.rows
@@ -204,9 +201,8 @@ def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 def _with_samples(scene: Scene) -> Scene:
     """Return the scene at one angle, or at as many as an array over the index without coordinates has."""
-    index = scene.mechanism.index
-    counts = [a.sizes[index] for a in scene.arrays.values() if index in a.dims and index not in a.coords]
-    return scene.at(crank_grid(counts[0], scene.period, index)) if counts else scene.at_one_angle
+    counts = [*counts_without_angles(scene).values()]
+    return scene.at(crank_grid(counts[0], scene.period, scene.mechanism.index)) if counts else scene.at_one_angle
 
 
 def _html_row(cells: Iterable[str], tag: str) -> str:

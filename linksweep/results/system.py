@@ -101,7 +101,7 @@ def system(
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
     unknowns, equations = of_form(scene, form)
-    dims, matrix, rhs = assembled(sampled, grid, unknowns, equations, threads)
+    dims, matrix, rhs = assembled(sampled, grid, form, threads)
     both = {"matrix": Field((*dims, "equation", "unknown"), matrix), "rhs": Field((*dims, "equation"), rhs)}
     blank(both, status)
     variables = {
@@ -139,20 +139,14 @@ def names_in(equations: tuple[Equation, ...]) -> tuple[str, ...]:
 
 
 def assembled(
-    scene: Scene,
-    grid: Grid,
-    unknowns: tuple[str, ...],
-    equations: tuple[Equation, ...],
-    threads: int | None = None,
+    scene: Scene, grid: Grid, form: str, threads: int | None = None
 ) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Return dims, matrix and right side of a square system, for every design and angle."""
+    unknowns, equations = of_form(scene, form)
     fields = compute(scene, grid, names_in(equations), threads)
-    dims = (*scene.inputs.sizes, grid.dim)
-    dims = tuple(dim for dim in dict.fromkeys(dims) if any(dim in field.dims for field in fields.values()))
-    if grid.dim not in dims:
-        dims = (*dims, grid.dim)
-    sizes = dict(scene.inputs.sizes) | {grid.dim: len(grid.angles)}
-    shape = tuple(sizes[dim] for dim in dims)
+    sizes = {dim: n for dim, n in scene.inputs.sizes.items() if any(dim in field.dims for field in fields.values())}
+    sizes[grid.dim] = len(grid.angles)
+    dims, shape = tuple(sizes), tuple(sizes.values())
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
     for i, row in enumerate(equations):
         rhs[..., i] = aligned(fields[row.right_side], dims)
@@ -167,8 +161,8 @@ def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None 
 
     Rows and columns of the matrix are first scaled to one size, so that units and scales do not decide the pivots.
     """
-    unknowns, equations = of_form(scene, "reduced")
-    dims, matrix, rhs = assembled(scene, grid, unknowns, equations, threads)
+    unknowns, _ = of_form(scene, "reduced")
+    dims, matrix, rhs = assembled(scene, grid, "reduced", threads)
     bad = np.broadcast_to(aligned(status, dims) != 0, matrix.shape[:-2])
     matrix[bad] = np.eye(matrix.shape[-1])  # such a sample becomes NaN: any regular matrix will do
     balanced, rows, columns = equilibrated(matrix, unknowns)

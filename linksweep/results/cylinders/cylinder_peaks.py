@@ -12,7 +12,7 @@ from linksweep.results.compute import assembly_of, requested
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
 from linksweep.results.dataset import design_coordinates, joined, origin_attributes
-from linksweep.results.peak_search.quadrature import means_at
+from linksweep.results.peak_search.quadrature import means
 from linksweep.results.peaks import STATUS_ANGLES, Request, Result, labelled, needed, parsed_requests, peaks, status_of
 from linksweep.scene.grid import crank_grid
 
@@ -41,7 +41,7 @@ def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -
     """Return the peaks and means of sums over the cylinders."""
     (signals, powers), grid = needed(sums), crank_grid(STATUS_ANGLES, machine.period)
     largest = exact_peaks_of_sums(machine, signals, threads) if signals else {}
-    averages = means_at((), machine, powers, threads) if powers else {}
+    averages = means(machine, powers, (), threads) if powers else {}
     results = [Result(s.at_one_angle, grid, assembly_of(s, threads), largest, averages) for s in machine.cylinders]
     # sums become NaN where none of a cylinder's samples is ok
     each = [status_of(*pair, threads) for pair in zip(machine.cylinders, results, strict=True)]

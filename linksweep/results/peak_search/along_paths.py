@@ -39,13 +39,8 @@ class SignalPeak(NamedTuple):
     samples: Field
 
 
-class Best(NamedTuple):
-    """The best of each signal on each path: arrays (path, signal) of the numbers that `SignalPeak` has."""
-
-    value: Array
-    angle: Array
-    bound: Array
-    samples: Array
+Best = tuple[Array, Array, Array, Array]
+"""The best of each signal on each path: arrays (path, signal) of the numbers that `SignalPeak` has."""
 
 
 def nothing(field: Field) -> SignalPeak:
@@ -67,20 +62,16 @@ def angle_in_period(angle: Array, period: float) -> Array:
 
 def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
     """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
-    for paths_of in all_paths:
-        _follow(group, peaks, paths_of(group), threads)
-
-
-def _follow(group: Group, peaks: dict[str, SignalPeak], paths: Paths, threads: int | None) -> None:
-    if not len(paths.row):
-        return
-    places = group.some(paths.row).places
-    at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
-    standing = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
-    best = _search(group, tuple(peaks), paths, np.stack(standing, axis=1), threads)
-    best = best if paths.steps is None else _with_limits(group, tuple(peaks), paths, best, threads)
-    for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
-        _raise(peak, index, Best(*(numbers[:, k] for numbers in best)))
+    for paths in (paths_of(group) for paths_of in all_paths):
+        if not len(paths.row):
+            continue
+        places = group.some(paths.row).places
+        at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
+        standing = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
+        best = _search(group, tuple(peaks), paths, np.stack(standing, axis=1), threads)
+        best = best if paths.steps is None else _with_limits(group, tuple(peaks), paths, best, threads)
+        for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
+            _raise(peak, index, *(numbers[:, k] for numbers in best))
 
 
 def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
@@ -103,22 +94,22 @@ def _flat_index(field: Field, places: Places, count: int) -> Array:
     return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 
-def _raise(peak: SignalPeak, at: Array, best: Best) -> None:
+def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:
     """Replace a signal's peak at each index by the highest best of that index, where it is higher."""
     value, angle, bound, samples = (field.values.reshape(-1) for field in peak)
-    height = np.nan_to_num(best.value, nan=-np.inf)
+    height = np.nan_to_num(best, nan=-np.inf)
     order = np.lexsort((-np.arange(len(at)), height, at))  # by index, then height; of equals the first path comes last
     last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each index
     place = at[last]
     with np.errstate(invalid="ignore"):
         reach = np.nan_to_num(value + bound, nan=-np.inf, posinf=np.inf, neginf=-np.inf)
-        np.maximum.at(reach, at, height + best.bound)
+        np.maximum.at(reach, at, height + best_bound)
         higher = last[~(height[last] <= value[place]) & (height[last] > -np.inf)]
-        value[at[higher]], angle[at[higher]] = best.value[higher], best.angle[higher]
+        value[at[higher]], angle[at[higher]] = best[higher], best_angle[higher]
         bound[place] = np.nan_to_num(reach - value, posinf=np.inf)[place]
     known = np.where(np.isfinite(value[place]), bound[place], 0.0)  # nothing is above an infinite peak
     bound[place] = np.where(np.isnan(value[place]), np.nan, known)
-    samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, best.samples, len(value))[place]
+    samples[place] = np.nan_to_num(samples[place]) + np.bincount(at, taken, len(value))[place]
 
 
 # ------------------------------------------------------------------------------------- lanes about summits
@@ -135,10 +126,12 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
     best, samples = np.empty((search.BEST_ROWS, tags)), np.full(count_of_paths, per_path)
     run = search_functions(rows.size)
     with np.errstate(all="ignore"):
-        where = paths.x, paths.before, paths.after, paths.joined
+        where = paths.x, paths.before, paths.after, paths.ends == "meet"
         count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
         best[search.PEAK] = np.fmax(best[search.PEAK], standing.ravel())
-        count = _keep(lanes, _promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
+        kept = np.flatnonzero(_promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
+        count = len(kept)
+        lanes[:, :count] = lanes[:, kept]
         for _ in range(search.ROUNDS):
             if not count:
                 break
@@ -152,7 +145,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
             count = run["advance"](lanes, trials, count, best)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
-    return Best(value, angle, bound, np.broadcast_to(samples[:, None], value.shape))
+    return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)
 
 
 def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
@@ -168,13 +161,6 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
     return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
 
 
-def _keep(lanes: Array, which: Array) -> int:
-    """Move some lanes to the front, and return how many they are."""
-    kept = np.flatnonzero(which)
-    lanes[:, : len(kept)] = lanes[:, kept]
-    return len(kept)
-
-
 # ------------------------------------------------------------------------------------- limits at ends of arcs
 
 
@@ -187,7 +173,7 @@ def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Bes
         edge = paths.middle + side * paths.half
         value, bound = np.where(raised, limit, value), np.where(raised, error, bound)
         angle = np.where(raised, angle_in_period(edge, group.scene.period)[:, None], angle)
-    return Best(value, angle, bound, samples + 2 * (NODES + 2))
+    return value, angle, bound, samples + 2 * (NODES + 2)
 
 
 def _limits(

@@ -8,7 +8,6 @@ the approach is the zero of that slope.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -112,14 +111,9 @@ def with_narrow_approaches(scene: Scene, threads: int | None = None) -> Array:
     # at a sample δ away from an approach the width is √(w² + δ²), which is at most w + δ
     seen = [_below(reduced[least[width]][0], WIDE + np.radians(STEP)) for width in widths]
     hidden = [_below(field, NARROW_NEAR_TOGGLE) for field in near_toggles.values()]
-    return np.flatnonzero(_any_true([*seen, *hidden], sizes))
+    dims, shape = tuple(sizes), tuple(sizes.values())
+    return np.flatnonzero(np.any([np.broadcast_to(aligned(field, dims), shape) for field in (*seen, *hidden)], axis=0))
 
 
 def _below(field: Field, limit: float) -> Field:
     return Field(field.dims, ~(field.values >= limit))  # a NaN counts as below
-
-
-def _any_true(fields: list[Field], sizes: Mapping[str, int]) -> Array:
-    """Return for each design whether any of these fields is true there."""
-    shape = tuple(sizes.values())
-    return np.any([np.broadcast_to(aligned(field, tuple(sizes)), shape) for field in fields], axis=0)

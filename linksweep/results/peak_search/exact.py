@@ -29,15 +29,7 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
-from linksweep.results.peak_search.between import (
-    EVERYWHERE,
-    NEVER,
-    PARTLY,
-    Array,
-    assembled_groups,
-    empty,
-    groups,
-)
+from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY, Array, assembled_groups, empty, groups
 from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.poles import may_have_poles
 from linksweep.scene.dimensions import aligned
@@ -86,9 +78,8 @@ def _by_paths(
         follow(group, peaks, paths or _paths(scene, kind), threads)
     if scene.quick.all:
         return peaks
-    return {
-        signal: with_unknown_bound(peak) if _is_over_angle(scene, signal) else peak for signal, peak in peaks.items()
-    }
+    over_angle = {signal: peak for signal, peak in peaks.items() if _is_over_angle(scene, signal)}
+    return peaks | {signal: with_unknown_bound(peak) for signal, peak in over_angle.items()}
 
 
 def _is_over_angle(scene: Scene, signal: str) -> bool:

@@ -68,11 +68,6 @@ class Paths(NamedTuple):
         picked = {name: numbers[which] for name, numbers in self._asdict().items() if isinstance(numbers, np.ndarray)}
         return self._replace(**picked)
 
-    @property
-    def joined(self) -> bool:
-        """Return whether the last sample is a neighbour of the first."""
-        return self.ends == "meet"
-
     def angles(self, path: Array, x: Array) -> Array:
         """Return θ2 [degree] at places x of these paths."""
         return x if self.middle is None or self.half is None else self.middle[path] + self.half[path] * np.sin(x)
@@ -90,21 +85,16 @@ def turns(group: Any) -> Paths:
     """Return the whole period of each design as a path."""
     period, turn = group.scene.period, group.scene.mechanism.period
     even = (np.arange(PER_TURN * round(period / turn)) + OFF_ROUND) * (turn / PER_TURN)
-    even = np.broadcast_to(even, (len(group.designs), len(even)))
+    even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
     sides, jumps = both_sides(breaks(group)), both_sides(jump_angles(group))
-    quick, close = _quick(group), approach_samples(group)[:, ::7]
+    close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (even, graded, sides, quick), (even[:, ::30], graded[:, ::2], jumps, close, thinned(quick))
     x, cuts = (in_order(in_period(np.concatenate(parts, axis=1), period)) for parts in (samples, edges))
     before, after = neighbours(x, period)
     cuts = np.concatenate([cuts, cuts[:, :1] + period], axis=1)
     return Paths(np.arange(len(x)), x, before, after, cuts)
-
-
-def _quick(group: Group) -> Array:
-    """Return crank angles (design, angle) at which loads or speeds over the angle change quickly."""
-    return np.broadcast_to(group.quick, (len(group.designs), len(group.quick)))
 
 
 def thinned(angles: Array) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from functools import singledispatch
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -42,14 +42,6 @@ Candidates = tuple[Array, Array, Array]
 """Possible poles: the row of its design in a group, the angle, and the distance of the closest sample [degree]."""
 
 
-class Poles(NamedTuple):
-    """Possible poles: rows of designs in a group, angles [degree], and which signals are inf there (pole, signal)."""
-
-    row: Array
-    angle: Array
-    infinite: Array
-
-
 def may_have_poles(scene: Scene, signals: tuple[str, ...]) -> bool:
     """Return whether any of these quantities may grow without bound inside a turn or an arc."""
     return "unbounded" in scene.mechanism.round_meanings and (_of_output(signals) or not surely_ok(scene))
@@ -71,18 +63,21 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
     return Field(tuple(map(str, status.dims)), status.values)
 
 
-def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> Poles:
-    """Return the poles of these designs, inside the angles at which they can be assembled."""
+def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> tuple[Array, Array, Array]:
+    """Return the possible poles of these designs, where they can be assembled, and the signals that are inf there.
+
+    That is the row of the design in the group, the angle [degree], and a truth value (pole, signal).
+    """
     row, angle, step = pole_candidates(group, signals)
     if not len(row):
-        return Poles(row, angle, np.zeros((0, len(signals)), dtype=bool))
+        return row, angle, np.zeros((0, len(signals)), dtype=bool)
     side = np.array([-1.0, 1.0])
     angles = angle[:, None, None] + step[:, None, None] * side[:, None] * BESIDE
     rows = np.repeat(row, angles[:1].size)
     with np.errstate(invalid="ignore"):
         values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
-    return Poles(row, angle, np.any(infinite, axis=-1).T)
+    return row, angle, np.any(infinite, axis=-1).T
 
 
 @singledispatch

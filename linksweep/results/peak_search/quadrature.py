@@ -18,7 +18,6 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.run import Field
-from linksweep.results.compute import changing_pace
 from linksweep.results.peak_search.arcs import arc_ends, arcs, within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY, Array, Group, assembled_groups, empty_over_all
 from linksweep.results.peak_search.paths import Part, Paths, turns
@@ -105,13 +104,11 @@ class Rules(NamedTuple):
     blur: Array
 
 
-def means(scene: Scene, powers: tuple[Power, ...], threads: int | None = None) -> dict[Power, Field]:
-    """Return the mean over time of each power of a quantity, for every design; NaN where no angle is ok."""
-    return means_at(changing_pace(scene, scene.at_one_angle.inputs), scene, powers, threads)
+def means(scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], threads: int | None) -> dict[Power, Field]:
+    """Return the mean over time of each power of a quantity, for every design; NaN where no angle is ok.
 
-
-def means_at(pace: tuple[str, ...], scene: Any, powers: tuple[Power, ...], threads: int | None) -> dict[Power, Field]:
-    """Return means over time where `pace` names the quantity that is the rate of the crank angle, or none if steady."""
+    `pace` names the quantity that is the rate of the crank angle, if it changes over the revolution.
+    """
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
     totals = integrals(scene, weighted | times, threads=threads)
