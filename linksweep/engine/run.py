@@ -20,8 +20,8 @@ import numpy as np
 from linksweep.base.memory import require_memory
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
-from linksweep.engine.kernel.fuse import Fused, fuse, reductions_source
-from linksweep.engine.kernel.writer import TILE, Reduction
+from linksweep.engine.kernel.fuse import fuse, reductions_source
+from linksweep.engine.kernel.writer import TILE, Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -106,7 +106,7 @@ class Runner:
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
     @cached_property
-    def fused(self) -> Fused:
+    def fused(self) -> Writer:
         return fuse(self.plan, self.reductions, self.room)
 
     def should_interpret(self, samples: int) -> bool:
@@ -116,7 +116,7 @@ class Runner:
     def layout(self, sizes: Mapping[str, int]) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
-            reduced = (self.plan.outputs[r.name] for r in self.fused.reductions for _ in range(2))  # two numbers each
+            reduced = (self.plan.outputs[r.name] for r in self.reductions for _ in range(2))  # two numbers each
             rows = slots(self.plan, self.fused.rows, sizes)
             singles = slots(self.plan, (*self.fused.singles, *reduced), sizes)
             self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), rows, singles)
@@ -207,14 +207,8 @@ def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[N
 
 def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, Numbers]:
     """Return the plan's inputs as arrays that broadcast, one axis per loop, then the index; scalars without dims."""
-    rows = dict(zip(grid.names, grid.table, strict=True))
-    return {
-        node: _align(
-            plan, node.dims, Field((grid.dim,), rows[node.value]) if node.value in rows else inputs[node.value]
-        )
-        for node in plan.nodes
-        if node.operator == "input"
-    }
+    fields = {**inputs, **{name: Field((grid.dim,), row) for name, row in zip(grid.names, grid.table, strict=True)}}
+    return {node: _align(plan, node.dims, fields[node.value]) for node in plan.nodes if node.operator == "input"}
 
 
 def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
@@ -231,9 +225,8 @@ def _field(plan: Plan, node: Node, value: Numbers, grid: Grid, sizes: Mapping[st
 
 
 def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[Field, Field]:
-    dims, shape = (
-        (field.dims[:-1], field.values.shape[:-1]) if grid.dim in field.dims else (field.dims, field.values.shape)
-    )
+    last = -1 if grid.dim in field.dims else None
+    dims, shape = field.dims[:last], field.values.shape[:last]
     rows = np.broadcast_to(field.values.reshape(math.prod(shape), -1), (math.prod(shape), len(grid.angles)))
     function, work, angles = getattr(reduce, reduction.kind), np.empty(reduce.WORK), grid.angles.tolist()
     both = np.array([function(row, angles, work) for row in rows.tolist()])
@@ -253,7 +246,7 @@ def _execute(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused = ready.plan, ready.fused
-    kernel = compiled(fused.source, reductions_source() if fused.reductions else "")
+    kernel = compiled(fused.source, reductions_source() if ready.reductions else "")
     samples = len(grid.angles)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
@@ -271,7 +264,7 @@ def _execute(
 
     length = int(layout.sizes[0]) if plan.loops else samples
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD
-    over_threads(work, length, 1 if fused.reductions and not plan.loops else workers, threads)
+    over_threads(work, length, 1 if ready.reductions and not plan.loops else workers, threads)
     return block, single
 
 

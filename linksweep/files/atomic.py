@@ -74,8 +74,8 @@ def remove_abandoned(folder: Path) -> None:
     """Remove from a folder the temporary files of processes that were killed."""
     with contextlib.suppress(OSError):
         for abandoned in folder.glob(f"{PREFIX}*{SUFFIX}"):
-            with contextlib.suppress(OSError), _locked(abandoned, wait=False) as locked:
-                if locked:
+            with contextlib.suppress(OSError), locked(abandoned, wait=False) as has_lock:
+                if has_lock:
                     shutil.rmtree(abandoned)
 
 
@@ -95,7 +95,7 @@ def _folder_beside(target: Path) -> Iterator[Path]:
     while True:
         folder = Path(tempfile.mkdtemp(SUFFIX, PREFIX, target.parent))
         try:
-            with _locked(folder, wait=True):
+            with locked(folder, wait=True):
                 if folder.exists():  # else another process removed it before it was locked
                     yield folder
                     return
@@ -104,22 +104,22 @@ def _folder_beside(target: Path) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def _locked(folder: Path, wait: bool) -> Iterator[bool]:
-    """Lock a folder; yield False where another process has the lock, or the system has no such locks."""
-    try:
-        import fcntl
-    except ImportError:
-        yield False
-        return
+def locked(folder: Path, wait: bool) -> Iterator[bool | None]:
+    """Lock a folder until the end, or until the process ends, however it does.
+
+    Yields False where another process has the lock, None where the folder or the system has no such locks.
+    """
     with contextlib.ExitStack() as stack:
         try:
+            import fcntl
+
             handle = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
             stack.callback(os.close, handle)
             fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-        except OSError:
-            yield False
-        else:
-            yield True
+            has_lock: bool | None = True
+        except (ImportError, OSError) as error:
+            has_lock = False if isinstance(error, BlockingIOError) else None
+        yield has_lock
 
 
 @contextlib.contextmanager

@@ -61,8 +61,10 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
     ...         assert ls.load_scene(os.path.join(folder, name)) == scene
     """
     refuse([] if isinstance(ds, Scene) else dataset_problems(ds))
-    if isinstance(ds, Scene):
-        _save_scene(ds, path)
+    if isinstance(ds, Scene) and ending_of(path, SCENES) == ".toml":
+        write_text(ds.to_toml(), path)
+    elif isinstance(ds, Scene):
+        _save_dataset(_as_dataset(ds), path)
     elif ending_of(path, RESULTS) == ".csv":
         to_csv(ds, path)
     else:
@@ -72,13 +74,6 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
 def dataset_problems(ds: Any) -> list[str]:
     """Return a problem unless an object is a Dataset."""
     return [] if isinstance(ds, xr.Dataset) else [f"ds is a {type(ds).__name__}: must be a Dataset, or a Scene"]
-
-
-def _save_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
-    if ending_of(path, SCENES) == ".toml":
-        write_text(scene.to_toml(), path)
-    else:
-        _save_dataset(_as_dataset(scene), path)
 
 
 def _save_dataset(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:

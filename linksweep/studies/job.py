@@ -26,20 +26,6 @@ STEP = 0.05
 """Step of the angles [degree] at which a function of theta2 is sampled for the scene's digest."""
 
 
-def chunk_of_peaks(
-    scene: Scene, of: Iterable[str] | None, block: Block, threads: int | None = None, **options: Any
-) -> xr.Dataset:
-    """Return the peaks of some designs of a scene, as `linksweep.peaks` does; a pure function of its arguments.
-
-    Examples
-    --------
-    >>> import linksweep as ls
-    >>> chunk_of_peaks(ls.example("press"), ["T12"], {}).equals(ls.peaks(ls.example("press"), of=["T12"]))
-    True
-    """
-    return peaks(selected(scene, block), of, threads=threads, **options)
-
-
 @dataclass(frozen=True, eq=False)
 class Job:
     """The peaks requested of a scene (`of` and other options of `linksweep.peaks`), in chunks of `chunk` designs."""
@@ -74,7 +60,8 @@ class Job:
         return prod(block[dim].stop - block[dim].start if dim in block else n for dim, n in self.sizes.items())
 
     def compute(self, block: Block, threads: int | None) -> xr.Dataset:
-        return chunk_of_peaks(self.scene, self.of, block, threads, **self.options)
+        """Return the peaks of the designs of a block, which depend on nothing else."""
+        return peaks(selected(self.scene, block), self.of, threads=threads, **self.options)
 
     def chunks(self, numbers: Iterable[int], threads: int | None) -> Generator[tuple[int, xr.Dataset], None, None]:
         """Yield number and peaks of these chunks, one after the other."""

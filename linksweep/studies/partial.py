@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import os
 import re
 import shutil
 from collections.abc import Iterator, Mapping
@@ -20,7 +19,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.base.validate import quote, refuse
-from linksweep.files.atomic import SUFFIX, whole
+from linksweep.files.atomic import SUFFIX, locked, whole
 from linksweep.files.packed import packed, unpacked
 
 MANIFEST = "manifest.json"
@@ -34,17 +33,14 @@ class Partial:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.assembled = folder / ASSEMBLED
+        """Path at which the finished study is assembled."""
         self.kept: dict[int, Path] = {}
         for path in folder.iterdir():
             if named := CHUNK.fullmatch(path.name):
                 self.kept[int(named[1])] = path
             elif path.name.endswith(PART):
                 _remove(path)  # it was being written when the study was killed
-
-    @property
-    def assembled(self) -> Path:
-        """Path at which the finished study is assembled."""
-        return self.folder / ASSEMBLED
 
     def keep(self, number: int, ds: xr.Dataset) -> None:
         data = packed(ds)
@@ -100,7 +96,9 @@ def partial(folder: Path, manifest: Mapping[str, Any]) -> Iterator[Partial]:
     """
     manifest_file = folder / MANIFEST
     folder.mkdir(exist_ok=True)
-    with _alone(folder):
+    with locked(folder.resolve(), wait=False) as alone:
+        if alone is False:
+            raise ValueError(f"{folder}: another process is at work on this study; wait for it, or stop it")
         if manifest_file.exists():
             refuse(_other(manifest_file, manifest))
         elif any(not path.name.endswith(PART) for path in folder.iterdir()):
@@ -129,22 +127,3 @@ def _other(manifest_file: Path, manifest: Mapping[str, Any]) -> list[str]:
 def differing(old: Any, new: Any) -> str:
     """Return both values that differ, in brackets; nothing for digests."""
     return "" if len(str(new)) == 64 else f" ({quote(old)}, not {quote(new)})"
-
-
-@contextlib.contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Lock the folder where the system has locks; the system releases it when the process ends, however it ends."""
-    try:
-        import fcntl
-
-        handle = os.open(folder, os.O_RDONLY)
-    except ImportError:
-        yield
-        return
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield
-    except BlockingIOError:
-        raise ValueError(f"{folder}: another process is at work on this study; wait for it, or stop it") from None
-    finally:
-        os.close(handle)

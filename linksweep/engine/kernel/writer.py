@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
+from functools import cached_property
 
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
@@ -112,7 +113,9 @@ class Writer:
     def write(self, depth: int, line: str) -> None:
         self.lines.append("    " * depth + line)
 
-    def kernel(self) -> str:
+    @cached_property
+    def source(self) -> str:
+        """Return the source of the kernel."""
         self._begin()
         for level in range(self.innermost + 1):
             if level:
@@ -153,13 +156,8 @@ class Writer:
         self._reductions(level)
 
     def _work(self, level: int, per_sample: bool) -> list[Node]:
-        return [
-            node
-            for node in self.nodes
-            if self.level(node) == level
-            and self.per_sample(node) == per_sample
-            and node.operator not in ("input", "constant")
-        ]
+        work = (node for node in self.nodes if node.operator not in ("input", "constant"))
+        return [node for node in work if self.level(node) == level and self.per_sample(node) == per_sample]
 
     def _single_values(self, level: int) -> None:
         """Write the operations that depend on no angle."""

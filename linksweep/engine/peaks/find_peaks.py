@@ -49,10 +49,6 @@ class Searcher:
     def writer(self) -> SearchWriter:
         return SearchWriter(self.plan, self.signals)
 
-    @cached_property
-    def source(self) -> str:
-        return self.writer.kernel()
-
     def layout(self, sizes: Mapping[str, int]) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
@@ -64,13 +60,13 @@ class Searcher:
         """Return the kernel as Python for the first designs, then compiled."""
         self.interpreted += designs
         if self.interpreted > INTERPRETED_DESIGNS:
-            return compiled(self.source, search_source(), SEARCH_SIGNATURE)
+            return compiled(self.writer.source, search_source(), SEARCH_SIGNATURE)
         return self.in_python
 
     @cached_property
     def in_python(self) -> Callable:
         namespace = vars(search) | {"sqrt": np.sqrt, "atan2": math.atan2}
-        exec(self.source, namespace)
+        exec(self.writer.source, namespace)
         return namespace["kernel"]
 
 

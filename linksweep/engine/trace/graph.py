@@ -8,7 +8,6 @@ prescribes, never contracted or reordered, so every path that evaluates the grap
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 COMMUTATIVE = {"+", "*"}
 FOLDABLE: dict[str, Callable[..., float]] = {
@@ -79,18 +78,12 @@ class Node:
         return self.operator == "constant" and self.value == value
 
 
-class Key(NamedTuple):
-    operator: str
-    operands: tuple[int, ...]
-    value: object
-
-
 class Graph:
     """Nodes in order of creation, so that operands precede the operations that use them."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
-        self._known: dict[Key, Node] = {}
+        self._known: dict[tuple[str, tuple[int, ...], object], Node] = {}
 
     def node(self, value: Node | float) -> Node:
         return value if isinstance(value, Node) else self.constant(float(value))
@@ -115,7 +108,7 @@ class Graph:
 
     def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
         positions = tuple(x.position for x in operands)
-        key = Key(operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value)
+        key = (operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value)
         if key not in self._known:
             self._known[key] = Node(self, operator, operands, dims, value)
         return self._known[key]

@@ -75,24 +75,18 @@ def _propagated(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> No
     return _OPERATIONS[z.operator](z, *z.operands, *errors) + UNIT * abs(z)
 
 
-def _sum(z: Node, x: Node, y: Node, dx: Node, dy: Node) -> Node:
-    return dx + dy
-
-
-def _product(z: Node, x: Node, y: Node, dx: Node, dy: Node) -> Node:
-    return abs(x) * dy + (abs(y) + dy) * dx
-
-
 def _quotient(z: Node, x: Node, y: Node, dx: Node, dy: Node) -> Node:
     divisor = abs(y) - dy
     return (divisor > 0.0).where((dx + abs(z) * dy) / divisor, math.inf)
 
 
-def _root(z: Node, x: Node, dx: Node) -> Node:
-    return dx / z
-
-
-_OPERATIONS: dict[str, Callable[..., Node]] = {"+": _sum, "-": _sum, "*": _product, "/": _quotient, "sqrt": _root}
+_OPERATIONS: dict[str, Callable[..., Node]] = {
+    "+": lambda z, x, y, dx, dy: dx + dy,
+    "-": lambda z, x, y, dx, dy: dx + dy,
+    "*": lambda z, x, y, dx, dy: abs(x) * dy + (abs(y) + dy) * dx,
+    "/": _quotient,
+    "sqrt": lambda z, x, dx: dx / z,
+}
 
 
 def _zero(node: Node) -> Node:

@@ -98,39 +98,32 @@ class MultiCylinder(ByContent):
     def __post_init__(self) -> None:
         refuse(_engine_problems(self.engine))
         for word, rule in {"crank_angles": ANGLE, "bank_angles": ANGLE, "positions": LENGTH}.items():
-            refuse(self._take(word, rule))
-        refuse(self._take_mains())
+            refuse(self._take(word, rule, "cylinder"))
+        refuse(self._take("main_positions", LENGTH, "main bearing") or self._main_problems())
 
-    def _take(self, word: str, rule: Rule) -> list[str]:
-        """Store one number for each cylinder as a tuple, and return its problems."""
+    def _take(self, word: str, rule: Rule, owner: str) -> list[str]:
+        """Store one number for each owner as a tuple, and return its problems."""
         value: Any = getattr(self, word)
-        if _no_list(value):
-            return [f"{word} = {quote(value)}: must be a list of numbers, one for each cylinder"]
+        if is_array(value) or isinstance(value, str) or not isinstance(value, Iterable):
+            return [f"{word} = {quote(value)}: must be a list of numbers, one for each {owner}"]
         numbers = tuple(to_float64(number, rule.kind) for number in value)
-        if word != "crank_angles":
+        if word in ("bank_angles", "positions"):
             numbers = numbers or (0.0,) * len(self.crank_angles)
         normalise(self, **{word: numbers})
-        problems = [] if numbers else [f"{word} is empty: give one for each cylinder"]
-        if len(numbers) != len(self.crank_angles):
-            problems.append(
-                f"{word} has {len(numbers)} numbers: must have one for each of {len(self.crank_angles)} cylinders"
-            )
+        problems = [] if numbers or owner != "cylinder" else [f"{word} is empty: give one for each cylinder"]
+        if len(numbers) != len(self.crank_angles) and owner == "cylinder":
+            count = f"{word} has {len(numbers)} numbers"
+            problems.append(f"{count}: must have one for each of {len(self.crank_angles)} cylinders")
         return problems + [p for k, n in enumerate(numbers, 1) for p in _plain_problems(f"{word}[{k}]", n, rule)]
 
-    def _take_mains(self) -> list[str]:
-        """Store the places of the main bearings, and return their problems."""
-        value: Any = self.main_positions
-        if _no_list(value):
-            return [f"main_positions = {quote(value)}: must be a list of numbers, one for each main bearing"]
-        places = tuple(to_float64(number, LENGTH.kind) for number in value)
-        normalise(self, main_positions=places)
-        problems = [p for k, n in enumerate(places, 1) for p in _plain_problems(f"main_positions[{k}]", n, LENGTH)]
-        if problems or not places:
-            return problems
+    def _main_problems(self) -> list[str]:
+        """Return the problems of the places of the main bearings."""
+        places = self.main_positions
+        if not places:
+            return []
         if len(places) < 2 or not np.all(np.diff(places) > 0.0):
-            return [
-                f"main_positions = {quote(list(places))}: must be two places or more, in order along the crankshaft"
-            ]
+            wrong = f"main_positions = {quote(list(places))}"
+            return [f"{wrong}: must be two places or more, in order along the crankshaft"]
         return [
             f"positions[{k}] = {z:g} m: must lie between the first and the last main bearing, at {places[0]:g} m and "
             f"{places[-1]:g} m"
@@ -221,21 +214,19 @@ class MultiCylinder(ByContent):
         names = list(SHAKING) if quantities is None else requested(word, quantities)
         refuse([problem for name in names for problem in name_problems(word, name, [*self.quantity, "status"])])
         grid = crank_grid(theta2, self.period)
-        wanted = dict.fromkeys((*names, "status"))
-        sources = sources_of(wanted, self.rules)
+        needed = dict.fromkeys((*names, "status"))
+        sources = sources_of(needed, self.rules)
         cycles = [
             _bare(sweep(scene, np.mod(grid.angles + throw.ahead, self.period), of=sources, threads=threads))
             for scene, throw in zip(self.cylinders, self.throws, strict=True)
         ]
-        found = combined(wanted, self.rules, self.throws, cycles)
-        status = found.pop("status").assign_attrs(cycles[0]["status"].attrs)
-        labelled = {name: self._labelled(name, values.where(status == 0)) for name, values in found.items()}
+        sums = combined(needed, self.rules, self.throws, cycles)
+        status = sums.pop("status").assign_attrs(cycles[0]["status"].attrs)
+        labels = {name: {"units": q.units, "long_name": q.long_name} for name, q in self.quantity.items()}
+        labelled = {name: values.where(status == 0).assign_attrs(labels[name]) for name, values in sums.items()}
         command = f"linksweep.MultiCylinder(...).sweep(theta2={quote(theta2)})"
         ds = xr.Dataset(labelled | {"status": status}, attrs=origin_attributes(self.engine, command))
         return ds.assign_coords(index_coordinate(self.engine, grid))
-
-    def _labelled(self, name: str, values: xr.DataArray) -> xr.DataArray:
-        return values.assign_attrs(units=self.quantity[name].units, long_name=self.quantity[name].long_name)
 
 
 def _bare(cycle: xr.Dataset) -> xr.Dataset:
@@ -271,20 +262,13 @@ def _engine_problems(engine: Any) -> list[str]:
         return [f"engine is a {type(engine).__name__}: must be a Scene"]
     if missing := lack(engine.mechanism, "cylinder"):
         return [f"engine is of {missing}"]
-    moving = [word for word in ("omega2", "alpha2") if _over_angle(getattr(engine, word))]
+    over_angle = {*engine.functions, *(path for path, array in engine.arrays.items() if "theta2" in array.dims)}
+    moving = [word for word in ("omega2", "alpha2") if word in over_angle]
     problems = [
         f"engine.{word} = {quote(getattr(engine, word))}: must be the same at every crank angle" for word in moving
     ]
     wrong = f'engine.drive = "{engine.drive}": must be "crank", which all cylinders share'
     return problems + ([wrong] if engine.drive != "crank" else [])
-
-
-def _no_list(value: Any) -> bool:
-    return is_array(value) or isinstance(value, str) or not isinstance(value, Iterable)
-
-
-def _over_angle(value: Any) -> bool:
-    return (callable(value) and not is_array(value)) or "theta2" in getattr(value, "dims", ())
 
 
 def _plain_problems(path: str, number: Any, rule: Rule) -> list[str]:
