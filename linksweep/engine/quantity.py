@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -80,7 +81,7 @@ class Table:
         """Return the row that makes each name, including the negative of each quantity (its largest is minus the
         least)."""
         made = {name: row for row in self.rows for name in row.outputs}
-        negatives = (Row(_opposite, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
+        negatives = (Row(operator.neg, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
         return made | {name: row for row in negatives for name in row.outputs}
 
     @cached_property
@@ -90,7 +91,3 @@ class Table:
 
 def opposite_of(name: str) -> str:
     return f"-{name}"
-
-
-def _opposite(x):
-    return -x

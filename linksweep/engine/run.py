@@ -133,9 +133,8 @@ def slots(plan: Plan, nodes: Iterable[Node], sizes: Mapping[str, int]) -> tuple[
     return tuple(places)
 
 
-@lru_cache(maxsize=256)
-def runner(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Runner:
-    return Runner(plan, reductions, room)
+runner = lru_cache(maxsize=256)(Runner)
+"""Return the `Runner` of these arguments, one for all requests."""
 
 
 def room_for(samples: int) -> int:
@@ -159,14 +158,10 @@ def evaluate(
     block, single = _execute(ready, layout, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
+    stored |= {node: Field((), np.asarray(node.value)) for node in plan.nodes if node.operator == "constant"}
     if plan.late:
-        values = {node: _align(plan, node.dims, field) for node, field in stored.items()}
-        values |= {node: np.asarray(node.value) for node in plan.nodes if node.operator == "constant"}
-        values = interpret(plan.late, values)
+        values = interpret(plan.late, {node: _align(plan, node.dims, field) for node, field in stored.items()})
         stored |= {node: _field(plan, node, values[node], grid, sizes) for node in plan.late}
-    for node in plan.outputs.values():
-        if node.operator == "constant":
-            stored[node] = Field((), np.asarray(node.value))
     return {name: stored[node] for name, node in plan.outputs.items()}
 
 

@@ -148,11 +148,7 @@ def blank(fields: dict[str, Field], status: Field) -> None:
 
 def only_where(good: Field, field: Field) -> Field:
     """Return a field, NaN where no design that shares the number is good."""
-    return Field(field.dims, np.where(_for_any(good, field.dims), field.values, np.nan))
-
-
-def _for_any(good: Field, dims: tuple[str, ...]) -> np.ndarray:
-    """Return whether any design that shares a number of these dims is good, with an axis for each dim."""
-    others = tuple(k for k, dim in enumerate(good.dims) if dim not in dims)
-    shared = tuple(dim for dim in good.dims if dim in dims)
-    return aligned(Field(shared, np.any(good.values, axis=others)), dims)
+    others = tuple(k for k, dim in enumerate(good.dims) if dim not in field.dims)
+    shared = tuple(dim for dim in good.dims if dim in field.dims)
+    any_good = aligned(Field(shared, np.any(good.values, axis=others)), field.dims)
+    return Field(field.dims, np.where(any_good, field.values, np.nan))

@@ -176,8 +176,7 @@ def _dataset(scene: Scene, items: list[Request], result: Result, command: str, t
 
 def labelled(items: list[Request], result: Result) -> dict[str, xr.Variable]:
     """Return the variables of all requests, with units and meanings."""
-    spot, order = result.sampled.mechanism.spot, tuple(result.sampled.inputs.sizes)
-    named = chain.from_iterable(_named(item, result.largest, result.averages, spot) for item in items)
+    order, named = tuple(result.sampled.inputs.sizes), chain.from_iterable(_named(item, result) for item in items)
     return {name: variable(field, units, meaning, order) for name, field, units, meaning in named}
 
 
@@ -320,17 +319,15 @@ def _blank(ok: xr.Variable, largest: dict[str, SignalPeak], averages: Averages) 
         averages |= {power: only_where(good, field) for power, field in averages.items()}
 
 
-def _named(
-    item: Request, extremes: dict[str, SignalPeak], averages: Averages, spot: str
-) -> Iterator[tuple[str, Field, str, str]]:
+def _named(item: Request, result: Result) -> Iterator[tuple[str, Field, str, str]]:
     """Yield name, field, unit and meaning of each variable of a request."""
-    quantity, summary = item.quantity, item.summary
+    quantity, summary, spot = item.quantity, item.summary, result.sampled.mechanism.spot
     name, units, meaning = quantity.name, quantity.units, quantity.long_name
-    largest = [extremes[signal] for signal in item.signals]
+    largest = [result.largest[signal] for signal in item.signals]
     if summary == "mean":
-        yield f"{name}_mean", averages[item.powers[0]], units, f"mean over time of: {meaning}"
+        yield f"{name}_mean", result.averages[item.powers[0]], units, f"mean over time of: {meaning}"
     elif summary == "rms":
-        mean_square = averages[item.powers[0]]
+        mean_square = result.averages[item.powers[0]]
         yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over time of: {meaning}"
     elif summary == "bound":
         bound = _map(_largest, *(_bound(peak, quantity) for peak in largest))

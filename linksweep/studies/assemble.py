@@ -40,8 +40,8 @@ class Layout:
     like: dict[str, xr.Variable] = field(default_factory=dict)
     attributes: dict[str, Any] = field(default_factory=dict)
 
-    def shape(self, name: str) -> list[int]:
-        return [self.sizes[dim] for dim in self.dims[name]]
+    def sizes_of(self, name: str) -> dict[str, int]:
+        return {dim: self.sizes[dim] for dim in self.dims[name]}
 
 
 def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks, command: str) -> None:
@@ -53,7 +53,8 @@ def assemble(path: Path, scene: Scene, sizes: Mapping[str, int], chunks: Chunks,
     layout = layout_of(chunks(), sizes)
     layout.attributes = provenance(scene, command, coordinates)
     layout.sizes |= {str(dim): n for values in coordinates.values() for dim, n in values.sizes.items()}
-    needed = ROOM + sum(like.dtype.itemsize * prod(layout.shape(name)) for name, like in layout.like.items())
+    numbers = (like.dtype.itemsize * prod(layout.sizes_of(name).values()) for name, like in layout.like.items())
+    needed = ROOM + sum(numbers)
     if shutil.disk_usage(path.parent).free < needed:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     try:
@@ -110,35 +111,28 @@ def _define_all(file: Any, layout: Layout, coordinates: Mapping[str, xr.Variable
     beside = {name: {*values.dims} for name, values in coordinates.items() if name not in layout.sizes}
     for name, dims in layout.dims.items():
         named = " ".join(path for path, over in beside.items() if over <= {*dims})
-        _define(file, name, layout.like[name], dims, layout.shape(name), {"coordinates": named} if named else {})
+        _define(file, name, layout.like[name], layout.sizes_of(name), {"coordinates": named} if named else {})
     for name, values in coordinates.items():
         encoded = encode_cf_variable(values, name=name)
-        _define(file, name, values, values.dims, values.shape)[...] = encoded.values
+        _define(file, name, values, values.sizes, {})[...] = encoded.values
     alone = [path for path, over in beside.items() if not any(over <= {*dims} for dims in layout.dims.values())]
     file.setncatts(layout.attributes | ({"coordinates": " ".join(alone)} if alone else {}))
 
 
-def _define(
-    file: Any,
-    name: str,
-    like: xr.Variable,
-    dims: Iterable[Any],
-    shape: Iterable[int],
-    more: Mapping[str, str] | None = None,
-) -> Any:
-    """Return a new, empty variable of the file, with the attributes that xarray writes for one like it."""
+def _define(file: Any, name: str, like: xr.Variable, sizes: Mapping[Any, int], more: Mapping[str, str]) -> Any:
+    """Return a new, empty variable of the file, with the attributes that xarray writes for one like it, and more."""
     encoded = encode_cf_variable(like, name=name)
-    attributes = dict(encoded.attrs) | dict(more or {})
-    for dim, n in zip(dims, shape, strict=True):
+    attributes = {**encoded.attrs, **more}
+    for dim, n in sizes.items():
         if dim not in file.dimensions:
             file.createDimension(dim, n)
     number = encoded.dtype.kind in "iuf"
     stored = file.createVariable(
         name,
         encoded.dtype.newbyteorder("=") if number else str,
-        tuple(dims),
-        fletcher32=number and bool(tuple(shape)),
-        chunksizes=tile(shape) or None,
+        tuple(sizes),
+        fletcher32=number and bool(sizes),
+        chunksizes=tile(sizes.values()) or None,
         fill_value=attributes.pop("_FillValue", None),
     )
     stored.setncatts(attributes)

@@ -15,7 +15,7 @@ import contextlib
 import hashlib
 import os
 import sys
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from importlib.metadata import version
 from itertools import chain
 from math import prod
@@ -180,12 +180,12 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
             yield block, ds
 
     try:
-        with _progress(prod(job.sizes.values())) as advance:
+        with _progress(prod(job.sizes.values())) as bar:
             stored = [number for number in range(len(job.blocks)) if kept.holds(number)]
             missing = sorted({*range(len(job.blocks))} - {*stored})
             with contextlib.closing(compute(missing)) as computed:
                 for number in chain(stored, computed):
-                    advance(job.designs(job.blocks[number]))
+                    bar.update(job.designs(job.blocks[number]))
         assemble(kept.assembled, job.scene, job.sizes, chunks, f"linksweep.study({job.words})")
         seal(kept.assembled, job.result)
         os.replace(kept.assembled, target)
@@ -205,14 +205,10 @@ def _advising(folder: Path) -> Iterator[None]:
         raise OSError(error.errno, advice, str(folder)) from error
 
 
-@contextlib.contextmanager
-def _progress(designs: int) -> Iterator[Callable[[int], Any]]:
-    """Show a progress bar in a notebook and on a terminal; elsewhere nothing."""
-    if sys.stderr is None:
-        yield lambda count: None
-        return
+def _progress(designs: int) -> Any:
+    """Return a progress bar that shows in a notebook and on a terminal."""
     from tqdm.auto import tqdm  # here: only studies need it
 
+    disable = True if sys.stderr is None else None  # None: only on a terminal
     words = {"unit": " designs", "unit_scale": True, "delay": SHOWN_AFTER, "file": sys.stderr}
-    with tqdm(total=designs, disable=None, **words) as bar:  # None: only on a terminal
-        yield bar.update
+    return tqdm(total=designs, disable=disable, **words)

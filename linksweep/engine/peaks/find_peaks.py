@@ -70,9 +70,8 @@ class Searcher:
         return namespace["kernel"]
 
 
-@lru_cache(maxsize=256)
-def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
-    return Searcher(plan, signals)
+searcher = lru_cache(maxsize=256)(Searcher)
+"""Return the `Searcher` of these arguments, one for all requests."""
 
 
 @lru_cache(maxsize=1)

@@ -134,16 +134,15 @@ def main(k: int) -> str:
 
 def main_quantities(count: int) -> tuple[Quantity, ...]:
     """Return the quantities of so many main bearings: their forces."""
-    return tuple(
-        Quantity(name, "N", long_name, squared)
-        for k in range(1, count + 1)
-        for force in [f"force of main bearing {k} on its journal"]
-        for name, long_name, squared in (
-            (f"F_{main(k)}x", f"{force}, component along x (positive to the right)", None),
-            (f"F_{main(k)}y", f"{force}, component along y (positive upwards)", None),
-            (f"F_{main(k)}", f"magnitude of the {force}", f"F_{main(k)}_squared"),
-        )
-    )
+    quantities: list[Quantity] = []
+    for k in range(1, count + 1):
+        name, force = f"F_{main(k)}", f"force of main bearing {k} on its journal"
+        quantities += [
+            Quantity(f"{name}x", "N", f"{force}, component along x (positive to the right)"),
+            Quantity(f"{name}y", "N", f"{force}, component along y (positive upwards)"),
+            Quantity(name, "N", f"magnitude of the {force}", squared=f"{name}_squared"),
+        ]
+    return tuple(quantities)
 
 
 def rules_of(mains: int) -> dict[str, Sum | Derived]:

@@ -228,8 +228,8 @@ def by_row(rows: Array, values: Array, count: int) -> Array:
 
 def _inputs_along(dim: str, request: Plan, inputs: Inputs, places: Places) -> dict[str, Field]:
     """Return the inputs that a plan takes, those with dims as one number for each place along `dim`."""
-    fields = {name: inputs.fields[name] for name in request.inputs if name in inputs.fields}
     return {
         name: Field((dim,), field.values[tuple(places[own] for own in field.dims)]) if field.dims else field
-        for name, field in fields.items()
+        for name, field in inputs.fields.items()
+        if name in request.inputs
     }
