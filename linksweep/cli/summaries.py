@@ -114,19 +114,16 @@ def drive_table(work: xr.Dataset, wheel: xr.Dataset) -> str:
         effort = {"N": " force", "N m": " torque"}.get(work[name].attrs["units"], "")
         rows.append((words + effort, _digits(float(work[name]), abs(float(work[beside]))), work[name].attrs["units"]))
     speed, constant = wheel["speed"], _digits(float(wheel["drive_torque"]), float(abs(work["effort_peak"])))
-    return _table(
-        [
-            *rows,
-            ("", "", ""),
-            ("with a flywheel", "", ""),
-            ("its inertia", f"{float(wheel['flywheel_inertia']):.5g}", "kg m²"),
-            ("fluctuation", f"{float(wheel['fluctuation']):.5g}", ""),
-            ("least speed", f"{float(speed.min()):.5g}", "rad/s"),
-            ("largest speed", f"{float(speed.max()):.5g}", "rad/s"),
-            ("constant torque", constant, "N m"),
-        ],
-        right=(1,),
-    )
+    rows += [
+        ("", "", ""),
+        ("with a flywheel", "", ""),
+        ("its inertia", f"{float(wheel['flywheel_inertia']):.5g}", "kg m²"),
+        ("fluctuation", f"{float(wheel['fluctuation']):.5g}", ""),
+        ("least speed", f"{float(speed.min()):.5g}", "rad/s"),
+        ("largest speed", f"{float(speed.max()):.5g}", "rad/s"),
+        ("constant torque", constant, "N m"),
+    ]
+    return _table(rows, right=(1,))
 
 
 def _digits(value: float, beside: float) -> str:

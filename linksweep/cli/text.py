@@ -138,16 +138,10 @@ def _of_acceleration(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 
 def _of_one(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
-    arcs = [
-        f"{start:.4f}° to {end:.4f}°"
-        for start, end in zip(ds.arc_start.values, ds.arc_end.values, strict=True)
-        if np.isfinite(start)
-    ]
-    toggles = [
-        f"{angle:.4f}° ({str(name).replace('_', ', ')})"
-        for name, angle in zip(ds.toggle.values, ds.toggle_angle.values, strict=True)
-        if np.isfinite(angle)
-    ]
+    ends = zip(ds.arc_start.values, ds.arc_end.values, strict=True)
+    arcs = [f"{start:.4f}° to {end:.4f}°" for start, end in ends if np.isfinite(start)]
+    angles = zip(ds.toggle.values, ds.toggle_angle.values, strict=True)
+    toggles = [f"{angle:.4f}° ({str(name).replace('_', ', ')})" for name, angle in angles if np.isfinite(angle)]
     yield "Grashof class", _words(ds.grashof)[int(ds.grashof)]
     yield "can be assembled", _words(ds.assembly)[int(ds.assembly)]
     yield "at theta2 from", " and ".join(arcs) or "nowhere"

@@ -57,6 +57,12 @@ class Field(NamedTuple):
     values: np.ndarray
 
 
+Fields = Mapping[str, Field]
+"""Inputs of a plan by name."""
+Sizes = Mapping[str, int]
+"""Sizes of the design dims."""
+
+
 class Grid(NamedTuple):
     """Samples of the index dim `dim`: its values, its period (0: none), and the named rows of numbers that depend on it
     alone."""
@@ -113,7 +119,7 @@ class Runner:
         self.interpreted += samples
         return self.interpreted <= COMPILE_AFTER
 
-    def layout(self, sizes: Mapping[str, int]) -> Layout:
+    def layout(self, sizes: Sizes) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
             reduced = (self.plan.outputs[r.name] for r in self.reductions for _ in range(2))  # two numbers each
@@ -123,7 +129,7 @@ class Runner:
         return self.layouts[key]
 
 
-def slots(plan: Plan, nodes: Iterable[Node], sizes: Mapping[str, int]) -> tuple[Slot, ...]:
+def slots(plan: Plan, nodes: Iterable[Node], sizes: Sizes) -> tuple[Slot, ...]:
     """Return consecutive places for the results of nodes."""
     places, start = [], 0
     for node in nodes:
@@ -145,9 +151,7 @@ def room_for(samples: int) -> int:
     return max(1024, 1 << (samples - 1).bit_length()) + 8
 
 
-def evaluate(
-    plan: Plan, inputs: Mapping[str, Field], grid: Grid, sizes: Mapping[str, int], threads: int | None = None
-) -> dict[str, Field]:
+def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
     ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else TILE))
     if ready.should_interpret(_samples(plan, grid, sizes)):
@@ -155,7 +159,7 @@ def evaluate(
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
         return {name: stored[node] for name, node in plan.outputs.items()}
     layout = ready.layout(sizes)
-    block, single = _execute(ready, layout, inputs, grid, sizes, threads)
+    block, single = _execute(ready, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
     stored |= {node: Field((), np.asarray(node.value)) for node in plan.nodes if node.operator == "constant"}
@@ -166,12 +170,7 @@ def evaluate(
 
 
 def reduce_rows(
-    plan: Plan,
-    reductions: tuple[Reduction, ...],
-    inputs: Mapping[str, Field],
-    grid: Grid,
-    sizes: Mapping[str, int],
-    threads: int | None = None,
+    plan: Plan, reductions: tuple[Reduction, ...], inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None
 ) -> dict[Reduction, tuple[Field, Field]]:
     """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
     index."""
@@ -181,7 +180,7 @@ def reduce_rows(
         fields = {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
     layout = ready.layout(sizes)
-    _, single = _execute(ready, layout, inputs, grid, sizes, threads)
+    _, single = _execute(ready, inputs, grid, sizes, threads)
     pairs = zip(reductions, layout.singles[::2], layout.singles[1::2], strict=True)
     return {r: (single_of(value, single), single_of(at, single)) for r, value, at in pairs}
 
@@ -200,7 +199,7 @@ def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[N
     return values
 
 
-def aligned(plan: Plan, inputs: Mapping[str, Field], grid: Grid) -> dict[Node, Numbers]:
+def aligned(plan: Plan, inputs: Fields, grid: Grid) -> dict[Node, Numbers]:
     """Return the plan's inputs as arrays that broadcast, one axis per loop, then the index; scalars without dims."""
     fields = {**inputs, **{name: Field((grid.dim,), row) for name, row in zip(grid.names, grid.table, strict=True)}}
     return {node: _align(plan, node.dims, fields[node.value]) for node in plan.nodes if node.operator == "input"}
@@ -213,7 +212,7 @@ def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
     return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)])
 
 
-def _field(plan: Plan, node: Node, value: Numbers, grid: Grid, sizes: Mapping[str, int]) -> Field:
+def _field(plan: Plan, node: Node, value: Numbers, grid: Grid, sizes: Sizes) -> Field:
     dims = plan.dims(node)
     shape = tuple(len(grid.angles) if dim == grid.dim else sizes[dim] for dim in dims)
     return Field(dims, np.reshape(value, shape))
@@ -232,15 +231,10 @@ def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[
 
 
 def _execute(
-    ready: Runner,
-    layout: Layout,
-    inputs: Mapping[str, Field],
-    grid: Grid,
-    sizes: Mapping[str, int],
-    threads: int | None,
+    ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
-    plan, fused = ready.plan, ready.fused
+    plan, fused, layout = ready.plan, ready.fused, ready.layout(sizes)
     kernel = compiled(fused.source, reductions_source() if ready.reductions else "")
     samples = len(grid.angles)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
@@ -274,7 +268,7 @@ def over_threads(work: Callable[[int, int], None], length: int, workers: int, th
         list(pool.map(work, bounds[:-1], bounds[1:]))
 
 
-def _samples(plan: Plan, grid: Grid, sizes: Mapping[str, int]) -> int:
+def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:
     return len(grid.angles) * math.prod(sizes[dim] for dim in plan.loops)
 
 
@@ -292,7 +286,7 @@ def flat(arrays: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     return (np.concatenate(arrays, axis=None) if arrays else np.empty(0)), at
 
 
-def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Mapping[str, Field], grid: Grid):
+def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Fields, grid: Grid):
     """Return the rows of all inputs that depend on the index; the grid's own table is used uncopied."""
     rows, at, blocks = len(grid.table), [], [grid.table]
     for node in nodes:

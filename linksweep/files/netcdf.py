@@ -102,9 +102,8 @@ def _unstorable(ds: xr.Dataset) -> list[str]:
     names = {name: name_problem(name) for name in (*ds.dims, *ds.variables)}
     problems = [f"ds has {quote(name)}: {problem}; rename it" for name, problem in names.items() if problem]
     labels = {name: label_problem(values.variable) for name, values in ds.coords.items()}
-    return problems + [
-        f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem
-    ]
+    problems += [f"ds has along {name} {problem}; change its labels" for name, problem in labels.items() if problem]
+    return problems
 
 
 def load_scene(path: str | os.PathLike[str]) -> Scene:

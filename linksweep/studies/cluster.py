@@ -28,7 +28,9 @@ def client_of(client: Any) -> Any:
     Raises ValueError for an object that is no client.
     """
     if client is not None:
-        refuse([] if hasattr(client, "submit") and hasattr(client, "nthreads") else [_no_client(client)])
+        must = "must be a client of dask.distributed; make one with distributed.Client(...)"
+        sound = hasattr(client, "submit") and hasattr(client, "nthreads")
+        refuse([] if sound else [f"client = {quote(client)}: {must}"])
         return client
     if "distributed" not in sys.modules:  # then no client exists
         return None
@@ -38,10 +40,6 @@ def client_of(client: Any) -> Any:
         return default_client()
     except ValueError:
         return None
-
-
-def _no_client(value: Any) -> str:
-    return f"client = {quote(value)}: must be a client of dask.distributed; make one with distributed.Client(...)"
 
 
 def on_cluster(

@@ -14,7 +14,7 @@ import numpy as np
 from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled, compiled_functions
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.search_kernel import STORED, SearchWriter
-from linksweep.engine.run import Field, Layout, flat, ordered, over_threads, single_of, slots
+from linksweep.engine.run import Field, Fields, Layout, Sizes, flat, ordered, over_threads, single_of, slots
 from linksweep.engine.trace.plan import Plan
 
 INTERPRETED_DESIGNS = 40
@@ -49,7 +49,7 @@ class Searcher:
     def writer(self) -> SearchWriter:
         return SearchWriter(self.plan, self.signals)
 
-    def layout(self, sizes: Mapping[str, int]) -> Layout:
+    def layout(self, sizes: Sizes) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
         if key not in self.layouts:
             nodes = [node for node in self.writer.signals for _ in STORED]
@@ -85,7 +85,7 @@ def grades() -> np.ndarray:
 
 
 def find_peaks(
-    plan: Plan, signals: tuple[str, ...], inputs: Mapping[str, Field], sizes: Mapping[str, int], threads: int | None
+    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, threads: int | None
 ) -> dict[str, Peak]:
     """Return the largest value of each signal over the turn, for every design."""
     ready = searcher(plan, signals)

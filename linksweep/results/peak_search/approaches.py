@@ -17,7 +17,7 @@ from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
-from linksweep.results.peak_search.between import Array, Group, by_row, crossing, positions_at
+from linksweep.results.peak_search.between import Array, Group, crossing, positions_at
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -49,10 +49,6 @@ class Approaches(NamedTuple):
         """Return crank angles (approach, sample) [degree] on a sinh grade about each approach."""
         grade = np.linspace(-1.0, 1.0, SAMPLES) * np.arcsinh(REACH / self.width)[:, None]
         return self.angle[:, None] + self.width[:, None] * np.sinh(grade)
-
-    def by_design(self, designs: int) -> Array:
-        """Return the samples (design, sample), NaN where other designs have more approaches."""
-        return by_row(self.row, self.samples(), designs).reshape(designs, -1)
 
 
 def approaches(group: Group, angles: Array, joined: bool = True) -> Approaches:

@@ -178,10 +178,11 @@ def approach_samples(group: Group, angles: Array | None = None) -> Array:
 
     Approaches are those of the whole period, or those between the first and last of angles (design, angle) [degree].
     """
+    designs = len(group.designs)
     if not group.scene.approaches():
-        return np.empty((len(group.designs), 0))
+        return np.empty((designs, 0))
     close = _approaches(group) if angles is None else approaches(group, angles, joined=False)
-    return close.by_design(len(group.designs))
+    return by_row(close.row, close.samples(), designs).reshape(designs, -1)
 
 
 def _approaches(group: Group) -> Approaches:
