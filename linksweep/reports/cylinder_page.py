@@ -18,7 +18,7 @@ from linksweep.reports import inputs as page_inputs
 from linksweep.reports import tables as page_tables
 from linksweep.reports.figures import ORDERS, SIZE, SQUARE, Picture, pictures
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, section, symbol, table, tag, tiny
-from linksweep.reports.results_of_page import FLUCTUATIONS
+from linksweep.reports.results_of_page import fluctuations
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.choose import design_labels
@@ -95,7 +95,7 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
 
 def _drive(machine: MultiCylinder, threads: int | None) -> Markup:
     work = duty(machine, threads=threads)
-    size = flywheel(machine, fluctuation=FLUCTUATIONS, threads=threads)["flywheel_inertia"]
+    size = flywheel(machine, fluctuation=fluctuations(), threads=threads)["flywheel_inertia"]
     rows = [
         ("mean torque", number(float(work["effort_mean"]), "N m")),
         ("mean power", number(float(work["power_mean"]), "W")),

@@ -19,10 +19,14 @@ STEPS = 10  # samples in a degree
 SHAKING = ("Fs", "Ms")
 BESIDE_FORCES = (*SHAKING, "power", "transmission_angle")
 """Quantities whose peaks the page shows of any machine that has them, besides its own highlights."""
-FLUCTUATIONS = xr.DataArray([0.02, 0.1], dims="target", coords={"target": [0.02, 0.1]})
 
 Range = tuple[float, float]
 """First and last crank angle [degree] of a machine that moves over part of a turn."""
+
+
+def fluctuations() -> xr.DataArray:
+    """Return the fluctuations of speed [1] for which a page sizes flywheels; the first DataArray imports pint."""
+    return xr.DataArray([0.02, 0.1], dims="target", coords={"target": [0.02, 0.1]})
 
 
 class Results(NamedTuple):
@@ -86,7 +90,7 @@ def results_of(scene: Scene, part: Range | None = None, threads: int | None = No
     results = results._replace(geometry=geometry(scene, threads=threads))
     if turning_problems(scene) or not results.whole:
         return results
-    wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=FLUCTUATIONS, threads=threads)
+    wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=fluctuations(), threads=threads)
     return results._replace(duty=duty(scene, threads=threads), flywheel=wheel)
 
 
