@@ -1,4 +1,4 @@
-"""linksweep: how hard are my pins loaded, and where is the worst of it?"""
+"""Sweep planar linkages over whole revolutions: motion, pin forces and torques of many designs, and exact peaks."""
 
 from typing import TYPE_CHECKING
 

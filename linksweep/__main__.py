@@ -1,3 +1,5 @@
+"""Run the command line as ``python -m linksweep``."""
+
 import sys
 
 from linksweep.cli.main import main

@@ -89,13 +89,13 @@ figure = ls.plot.balance(scene, balanced)
 # %% [markdown]
 # ## Every force is linear in the masses
 #
-# With the geometry and the motion given, each force is a sum: coefficients that change with θ2, times the links' masses, first
-# moments and moments of inertia. `regressor` lays the coefficients open. Of the torque only three are not zero. Whatever hangs on
+# For a known geometry and motion, each force is a sum: coefficients that change with θ2, times the links' masses, first
+# moments and moments of inertia. `regressor` returns the coefficients. Only three of the torque's are not zero. Whatever hangs on
 # the crank, and the coupler's mass at B, takes none at constant speed: these go round and round. Remember it.
 
 # %%
-found = ls.regressor(scene, ["T12", "F32x"])
-shares = found.T12 * found.value
+coefficients = ls.regressor(scene, ["T12", "F32x"])
+shares = coefficients.T12 * coefficients.value
 fig, ax = plt.subplots(figsize=(8, 3.2), layout="constrained")
 for parameter in shares.parameter.values[abs(shares).max("theta2") > 1e-9]:
     ax.plot(shares.theta2, shares.sel(parameter=parameter), label=parameter)

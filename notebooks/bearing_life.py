@@ -63,12 +63,12 @@ for ax, frame, link in zip(panels, ("journal", "bearing"), ("crank (journal)", "
 
 # %%
 pins = {"A": "12", "B": "32", "C": "43", "D": "14"}
-found = ls.bearings(conveyor, {pin: ls.Bearing(capacity=14_000.0) for pin in pins})
-turned = found.rotation_share.cumsum("theta2") * found.rotation  # degrees since θ2 = 0, to and fro added up
+loads = ls.bearings(conveyor, {pin: ls.Bearing(capacity=14_000.0) for pin in pins})
+turned = loads.rotation_share.cumsum("theta2") * loads.rotation  # degrees since θ2 = 0, to and fro added up
 fig, (left, right) = plt.subplots(1, 2, figsize=(10, 3.8), sharey=True, layout="constrained")
 for pin in pins:
-    left.plot(found.theta2, found.F.sel(pin=pin), label=f"pin {pin}")
-    right.plot(turned.sel(pin=pin), found.F.sel(pin=pin), label=f"pin {pin}: {float(found.rotation.sel(pin=pin)):.0f}°")
+    left.plot(loads.theta2, loads.F.sel(pin=pin), label=f"pin {pin}")
+    right.plot(turned.sel(pin=pin), loads.F.sel(pin=pin), label=f"pin {pin}: {float(loads.rotation.sel(pin=pin)):.0f}°")
 left.set(xlabel="crank angle θ₂ [°]", ylabel="force [N]", title="over the crank angle", xlim=(0, 360), ylim=(0, None))
 right.set(xlabel="turned in its bearing [°]", title="over the rotation of the pin", xlim=(0, 360))
 for ax in (left, right):
@@ -93,12 +93,12 @@ P = float(((pin_c.F43**3 * turns).sum() / turns.sum()) ** (1 / 3))
 L10 = (14_000 / P) ** 3  # million revolutions
 hours = L10 * 1e6 / (float(turns.sum()) / 360) / 240 / 60
 print(f"P = {P:.1f} N, L10 = {L10:.0f} million revolutions of the pin = {hours:,.0f} h")
-print(f"ls.bearings: {float(found.equivalent_load.sel(pin='C')):.1f} N, {float(found.L10h.sel(pin='C')):,.0f} h")
+print(f"ls.bearings: {float(loads.equivalent_load.sel(pin='C')):.1f} N, {float(loads.L10h.sel(pin='C')):,.0f} h")
 
 # %%
-table = found[["rotation", "equivalent_load", "L10", "L10h"]].to_dataframe()
-table.insert(1, "largest load", found.F.max("theta2"))
-table.insert(2, "mean over θ2", found.F.mean("theta2"))
+table = loads[["rotation", "equivalent_load", "L10", "L10h"]].to_dataframe()
+table.insert(1, "largest load", loads.F.max("theta2"))
+table.insert(2, "mean over θ2", loads.F.mean("theta2"))
 table.round(1)
 
 # %% [markdown]
@@ -109,9 +109,9 @@ table.round(1)
 # just where it is loaded most, pin C where it is loaded least:
 
 # %%
-over_crank = (found.F**3).mean("theta2") ** (1 / 3)
+over_crank = (loads.F**3).mean("theta2") ** (1 / 3)
 for pin in pins:
-    ratio = float(over_crank.sel(pin=pin) / found.equivalent_load.sel(pin=pin))
+    ratio = float(over_crank.sel(pin=pin) / loads.equivalent_load.sel(pin=pin))
     print(f"pin {pin}: P is off by {100 * (ratio - 1):+5.1f} %, the life by {100 * (ratio**-3 - 1):+5.1f} %")
 
 # %% [markdown]
@@ -119,7 +119,7 @@ for pin in pins:
 # the damage.
 
 # %%
-spectrum = ls.load_spectrum(found, classes=12)
+spectrum = ls.load_spectrum(loads, classes=12)
 damage = spectrum.share * spectrum.class_load**3
 damage = damage / damage.sum("load_class")
 fig, panels = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
@@ -127,7 +127,7 @@ for ax, pin in zip(panels, ("A", "C"), strict=True):
     load, width = spectrum.class_load.sel(pin=pin), float(spectrum.class_load.sel(pin=pin)[0]) * 0.8
     ax.bar(load - width / 2, 100 * spectrum.share.sel(pin=pin), width, label="of the rotation")
     ax.bar(load + width / 2, 100 * damage.sel(pin=pin), width, label="of the damage")
-    ax.axvline(float(found.equivalent_load.sel(pin=pin)), color="k", linestyle="--", linewidth=1, label="P")
+    ax.axvline(float(loads.equivalent_load.sel(pin=pin)), color="k", linestyle="--", linewidth=1, label="P")
     ax.set(xlabel=f"load of pin {pin} [N]", ylabel="share [%]")
     ax.legend(fontsize="small")
 
@@ -189,6 +189,6 @@ ax.grid(alpha=0.3)
 # is so small that the rollers do not reach each other's tracks, lubrication decides and not fatigue.
 
 # %%
-assert abs(hours / float(found.L10h.sel(pin="C")) - 1) < 1e-4  # half degrees miss where the pin turns round
+assert abs(hours / float(loads.L10h.sel(pin="C")) - 1) < 1e-4  # half degrees miss where the pin turns round
 assert abs(pump.equivalent_load / 1000 - printed).max() < 0.005
 assert abs(float(roller.L10h) / 50_000 - 1) < 0.002

@@ -162,9 +162,9 @@ def refined(least_swing):
     start = np.stack([enough[path][:40] for path in may_be], axis=1)
     at_once = {"vectorized": True, "updating": "deferred", "polish": False}
     steps = {"maxiter": 40, "mutation": (0.3, 0.7), "recombination": 0.9}  # small ones: the start is good
-    found = differential_evolution(load, load.bounds, init=start, tol=1e-6, rng=1, **at_once, **steps)
-    print(f"{len(start) * (found.nit + 1)} designs more")
-    return load.scene(found.x)
+    result = differential_evolution(load, load.bounds, init=start, tol=1e-6, rng=1, **at_once, **steps)
+    print(f"{len(start) * (result.nit + 1)} designs more")
+    return load.scene(result.x)
 
 
 start = time.perf_counter()
@@ -173,7 +173,7 @@ print(f"{time.perf_counter() - start:.1f} s")
 
 
 # %%
-def told(scene):
+def summary(scene):
     """What one wants to know of a design."""
     machine, worst, rocker = scene.mechanism, ls.peaks(scene), ls.sweep(scene, of=["theta4"]).theta4
     return {
@@ -187,7 +187,7 @@ def told(scene):
 
 
 designs = {"textbook": first, "best of 100 000": best, "refined": winner}
-table = pd.DataFrame({name: told(scene) for name, scene in designs.items()})
+table = pd.DataFrame({name: summary(scene) for name, scene in designs.items()})
 table.round(2)
 
 # %% [markdown]
@@ -245,11 +245,11 @@ print(f"{100 * float((made_swing < 60).mean()):.0f} % swing less than 60°")
 
 # %% [markdown]
 # The load hardly minds the lengths. But an optimum leans on its limits: it uses just 60°, so about half of the machines fall
-# short. A margin of three standard deviations cures that, and the same search tells what it costs:
+# short. A margin of three standard deviations cures that, and the same search shows its cost:
 
 # %%
 safe = refined(least_swing=60 + 3 * float(made_swing.std()))
-table["with margin"] = told(safe)
+table["with margin"] = summary(safe)
 table.round(2)
 
 # %%

@@ -199,10 +199,10 @@ sweeps = {name: machine.sweep() for name, machine in machines.items()}
 harmonics = {name: ls.orders(ds, ["Fsx", "Fsy"], n=4).sel(order=[1, 2, 3, 4]) for name, ds in sweeps.items()}
 
 fig, panels = plt.subplots(1, 4, figsize=(13, 3.4), sharey=True, layout="constrained")
-for ax, (name, found) in zip(panels, harmonics.items(), strict=True):
-    ax.bar(found.order - 0.2, found.Fsx_amplitude / 1e3, 0.4, label="sideways")
-    ax.bar(found.order + 0.2, found.Fsy_amplitude / 1e3, 0.4, label="up and down")
-    ax.set(title=name, xlabel="order", xticks=found.order)
+for ax, (name, force) in zip(panels, harmonics.items(), strict=True):
+    ax.bar(force.order - 0.2, force.Fsx_amplitude / 1e3, 0.4, label="sideways")
+    ax.bar(force.order + 0.2, force.Fsy_amplitude / 1e3, 0.4, label="up and down")
+    ax.set(title=name, xlabel="order", xticks=force.order)
     ax.grid(alpha=0.3)
 panels[0].set_ylabel("shaking force [kN]")
 legend = panels[0].legend(fontsize="small")

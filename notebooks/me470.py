@@ -61,9 +61,9 @@ at = ["5 in", 0]
 """)
 pusher = ls.load_scene(project)
 machine = pusher.mechanism
-found = ls.check(pusher)
-print("Grashof class:", found.grashof.attrs["flag_meanings"].split()[int(found.grashof)])
-print(f"least transmission angle: {float(found.transmission_angle_min):.1f}°")
+checks = ls.check(pusher)
+print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
+print(f"least transmission angle: {float(checks.transmission_angle_min):.1f}°")
 
 # %% [markdown]
 # The file becomes SI at the door. In the sheet's letters:
@@ -86,7 +86,7 @@ pd.DataFrame({"kg": [m2, m3, m4], "blob": [m2 / blob, m3 / blob, m4 / blob], "kg
 # ## Position
 #
 # Freudenstein's equations give two solutions, ±, and the sheet does not say which is which. linksweep calls them open and
-# crossed. `ls.position_equation` lays K1 … K5 and A … F out as the sheet has them; the roots are taken here, by the sheet's
+# crossed. `ls.position_equation` has K1 … K5 and A … F as on the sheet; the roots are taken here, by the sheet's
 # formula.
 
 # %%
@@ -252,7 +252,7 @@ for step in (30, 10, 1):
 #
 # ## Why there?
 #
-# `breakdown` tells each source's share in a force, over the cycle:
+# `breakdown` splits a force into the parts of its sources, over the cycle:
 
 # %%
 shares = ls.breakdown(heavy, "F12")
@@ -268,8 +268,8 @@ first = min(fastest, key=fastest.get)
 print({pin: f"{rpm:.0f} rpm" for pin, rpm in fastest.items()})
 ls.plot.over_speed(heavy, pins[first], speeds=np.linspace(0, 1.3, 27) * fastest[first] * np.pi / 30, below=limit)
 # %% [markdown]
-# Five times as fast, before inertia, which at first even relieves it, has brought pin A to its 60 lbf. The sheet's question is
-# answered, for this speed and the others.
+# Inertia at first even relieves pin A; only at five times the speed does it reach 60 lbf. The sheet's question is answered,
+# for this speed and the others.
 
 # %%
 assert first == "A" and 700 < fastest[first] < 800

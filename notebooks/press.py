@@ -49,10 +49,10 @@ scene = ls.Scene(
 # First: does it go round, and how well does it transmit? `check` answers in closed form, before anything is swept.
 
 # %%
-found = ls.check(scene)
-print("Grashof class:", found.grashof.attrs["flag_meanings"].split()[int(found.grashof)])
-print("assembles:", found.assembly.attrs["flag_meanings"].split()[int(found.assembly)])
-print(f"least transmission angle: {float(found.transmission_angle_min):.1f}°")
+checks = ls.check(scene)
+print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
+print("assembles:", checks.assembly.attrs["flag_meanings"].split()[int(checks.assembly)])
+print(f"least transmission angle: {float(checks.transmission_angle_min):.1f}°")
 
 # %% [markdown]
 # Now one revolution. The result is an xarray Dataset indexed by the crank angle, in degrees; every variable says its unit and its
@@ -84,7 +84,7 @@ print(f"T12: {float(worst.T12_min):.2f} … {float(worst.T12_max):.2f} N m")
 # %% [markdown]
 # ## Can we trust them?
 #
-# The fast path eliminates the 9×9 Newton–Euler system by hand. `system` lays that system out as the textbook prints it,
+# The fast path eliminates the 9×9 Newton–Euler system by hand. `system` returns it as the textbook prints it,
 # `solver="dense"` solves it with partial pivoting, and the power balance checks the torque against energy, which no residual of
 # one's own equations can do.
 

@@ -15,9 +15,9 @@
 # # A worked example, line by line
 #
 # Every course on machines has this page: a four-bar at one crank angle, three free-body diagrams, nine equations, a 9×9 matrix,
-# nine numbers. Here is one such page, *Matrix Dynamic Analysis for Four Bar*, laid beside what linksweep makes of the same
+# nine numbers. Here is one such page, *Matrix Dynamic Analysis for Four Bar*, compared with linksweep's results for the same
 # machine. Its third digits do not hold, a velocity points the wrong way, a row of its matrix has the wrong signs, and one
-# dimension is not given at all. All of this can be found out without knowing the right answer, and that is what this notebook is
+# dimension is missing. All of this can be seen without knowing the right answer, and that is what this notebook is
 # about.
 
 # %%
@@ -29,7 +29,7 @@ from matplotlib.patches import Rectangle
 import linksweep as ls
 
 # %% [markdown]
-# ## What is given, and what is not
+# ## The numbers that the page states, and those that it lacks
 #
 # Three uniform bars of stainless steel, 2 × 2 cm, of 7.75 g/cm³, in a vertical plane. The crank stands at 45°, turns clockwise at
 # 20 rad/s and is accelerated counter-clockwise by 100 rad/s². The page gives masses, and no lengths. But a bar of known section
@@ -91,7 +91,7 @@ ours.matrix.to_pandas().round(5)
 
 # %% [markdown]
 # The page takes F23 and F34 as unknowns where most books take F32 and F43, so four columns change sign; and it counts in cm. Its
-# own numbers, brought to newtons and metres in our order:
+# own numbers, in newtons and metres and in our order:
 
 # %%
 printed_matrix = np.array(
@@ -186,9 +186,9 @@ draw(ax, as_in_symbols, "row 3 as the symbols have it", marked=[2])
 # %%
 balance = ls.sweep(page, theta2=[45.0], of=["power", "inertia_power", "gravity_power"]).isel(theta2=0)
 taken_up = -float(balance.inertia_power + balance.gravity_power)
-for said, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symbols}.items():
+for label, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symbols}.items():
     torque = np.linalg.solve(system, rhs)[8]
-    print(f"{said}: T12 = {100 * torque:7.3f} N cm, feeds {torque * page.omega2:7.3f} W of {taken_up:7.3f} W")
+    print(f"{label}: T12 = {100 * torque:7.3f} N cm, feeds {torque * page.omega2:7.3f} W of {taken_up:7.3f} W")
 
 # %% [markdown]
 # 16 W flow back into the motor at this instant, and only the first torque says so. linksweep makes this check for every sample of
@@ -200,9 +200,9 @@ for said, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symbo
 # where coupler and rocker lie in one line, and near there everything grows without bound:
 
 # %%
-found = ls.check(page)
-print("Grashof class:", found.grashof.attrs["flag_meanings"].split()[int(found.grashof)])
-print(f"assembles from {float(found.arc_start[0]):.3f}° to {float(found.arc_end[0]):.3f}°")
+checks = ls.check(page)
+print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
+print(f"assembles from {float(checks.arc_start[0]):.3f}° to {float(checks.arc_end[0]):.3f}°")
 torques = ls.sweep(page, theta2=[45.0, 80.0, 86.0]).T12.values
 print("T12 at 45°, 80°, 86°:", *(f"{torque:.1f} N m" for torque in torques))
 ls.sweep(page).linksweep.forces(["F12", "F43"])

@@ -6,6 +6,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
+import linksweep as ls
+
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
@@ -33,3 +35,9 @@ def test_its_links_lead_somewhere():
     missing = [link for link in links if not (Path(__file__).parents[2] / link).exists()]
     assert links
     assert not missing
+
+
+def test_the_tree_names_every_room():
+    tree = README.split("linksweep/\n", 1)[1].split("```", 1)[0]
+    rooms = {path.parent.name for path in Path(ls.__file__).parent.rglob("*/__init__.py")}
+    assert {*re.findall(r"(\w+)/", tree)} == rooms
