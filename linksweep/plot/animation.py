@@ -21,8 +21,9 @@ from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.plot import track as track_plot
 from linksweep.plot.curves import HEADROOM, forces
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLACK, BLUE, FORCE_COLORS, GREY, force_color
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.style import BLACK, BLUE, FORCE_COLORS, GREY, force_color, small_type
+from linksweep.plot.kit.style import small_type
 from linksweep.plot.machine import ARROW, CURVE, Shape, draw_ground, draw_links, positions, shape_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.sweep import sweep

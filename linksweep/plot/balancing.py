@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLUE, GREY, VERMILION
 from linksweep.plot.kit.drawings import joints_of
-from linksweep.plot.kit.style import BLUE, GREY, VERMILION, crank_angles, grid, small_type
+from linksweep.plot.kit.style import crank_angles, grid, small_type
 from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene

@@ -14,20 +14,9 @@ import xarray as xr
 
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, VERMILION
 from linksweep.plot.kit.drawings import drawing_of_results
-from linksweep.plot.kit.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SHADE,
-    VERMILION,
-    axes_or_new,
-    crank_angles,
-    grid,
-)
+from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.plot.kit.with_peaks import with_peaks
 
 if TYPE_CHECKING:

@@ -12,18 +12,8 @@ from linksweep.analysis.drive.motor import Motor
 from linksweep.base.validate import refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    SHADE,
-    SKY,
-    VERMILION,
-    axes_or_new,
-    crank_angles,
-    grid,
-    small_type,
-)
+from linksweep.plot.kit.colors import BLUE, GREY, ORANGE, SHADE, SKY, VERMILION
+from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, small_type
 from linksweep.results.sweep import sweep
 
 if TYPE_CHECKING:
@@ -64,8 +54,7 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     signals.require_angles(ds)
     angles, speed = signals.revolution(ds, ds["speed"])
     refuse([] if np.isfinite(speed).all() else ["ds has no speed at some angle: it stalls, or does not turn fully"])
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     middle = 0.5 * (np.max(speed) + np.min(speed))
     ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
     ax.plot(angles, speed, color=BLUE, label="_speed")
@@ -131,7 +120,7 @@ def _torques(ax: Axes, wheel: xr.Dataset) -> None:
     crank_angles(ax, angles)
     ax.margins(y=0.12)
     ax.set_ylabel("torque on the crank [N m]")
-    ax.legend(fontsize="small", frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2)
+    legend_above(ax, ncols=4)
 
 
 def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
@@ -175,8 +164,7 @@ def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
     refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])
     signals.require_angles(ds)
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
     curve = side * np.asarray(motor.speeds, dtype=float), np.asarray(motor.torques, dtype=float)
     ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can give")

@@ -7,22 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.design.pareto import has_peaks
+from linksweep.analysis.design.pareto import has_peaks, require_study, variable_problems
 from linksweep.base.validate import name_problems, quote, refuse
-from linksweep.plot.kit import signals
-from linksweep.plot.kit.designs import (
-    color_bar,
-    column,
-    heading,
-    in_words,
-    levels,
-    none_ok,
-    norm,
-    require_study,
-    span,
-    variable_problems,
-)
-from linksweep.plot.kit.style import BLACK, GREY, SHADE, axes_or_new
+from linksweep.plot.kit import scales, signals
+from linksweep.plot.kit.colors import BLACK, GREY, SHADE
+from linksweep.plot.kit.designs import column, heading, in_words, none_ok
+from linksweep.plot.kit.style import axes_or_new, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,29 +92,28 @@ def heat_map(
     across, up = _sides(ds, of, x, y)
     _require_on_map(ds, contours, across, up)
     values = _field(ds[of], across, up)
-    status = _status(ds, across, up)
-    ok = np.isfinite(values) & _kept(ds, across, up)
+    ok = np.isfinite(values) & (_field(~has_peaks(ds), across, up) == 0.0)
     refuse([] if ok.any() else [none_ok(ds, [of])])
     ax = axes_or_new(ax)
-    limits = span(values[ok])
+    limits = scales.span(values[ok])
     colored = np.ma.masked_where(~ok, values)
-    mesh = ax.pcolormesh(across.edges, up.edges, colored, cmap="viridis", norm=norm(limits), rasterized=True)
-    color_bar(ax, mesh, column(ds[of], values[ok]), limits)
+    mesh = ax.pcolormesh(across.edges, up.edges, colored, cmap="viridis", norm=scales.norm(limits), rasterized=True)
+    scales.color_bar(ax, mesh, column(ds[of], values[ok]), limits)
     handles = [_best(ax, ds[of], across, up, np.where(ok, values, np.nan), maximize)]
     if contours is True:  # the colour bar has their unit
         _contours(ax, ds[of], across, up, ok)
     elif contours:
         handles.append(_contours(ax, ds[contours], across, up, ok))
-    handles += _not_ok(ax, across, up, _reasons(ds, status, ok))
+    handles += _not_ok(ax, across, up, _reasons(ds, across, up, ok))
     _axes(ax, across, up)
-    _legend(ax, handles)
+    legend_above(ax, handles=handles)
     return ax
 
 
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
     """Return the axes x and y."""
     require_study(ds)
-    refuse(variable_problems(ds, "of", name, numbers=True))
+    refuse(variable_problems(ds, "of", name, numbers="fiub"))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])
     known = {**{dim: dim for dim in dims}, **_along(ds, dims)}
@@ -174,27 +163,17 @@ def _parameter(ds: xr.Dataset, dim: str) -> str:
 
 
 def _field(item: xr.DataArray, across: Side, up: Side) -> np.ndarray:
-    """Return a result at the cells (y, x), repeated along a dim that it does not depend on."""
+    """Return a result at the cells (y, x): the largest over other dims, repeated along a dim it does not depend on."""
+    item = item.max([dim for dim in item.dims if dim not in (across.dim, up.dim)])
     shape = {up.dim: len(up.order), across.dim: len(across.order)}
     values = item.variable.set_dims(shape).transpose(*shape).values.astype(float)
     return values[np.ix_(up.order, across.order)]
 
 
-def _status(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
-    """Return the status at the cells, the worst over other dims."""
-    status = ds["status"] if "status" in ds.variables else xr.DataArray(0)
-    return _field(status.max([dim for dim in status.dims if dim not in (across.dim, up.dim)]), across, up)
-
-
-def _kept(ds: xr.Dataset, across: Side, up: Side) -> np.ndarray:
-    """Return whether all designs of a cell have peaks."""
-    sound = has_peaks(ds)
-    return _field(sound.all([dim for dim in sound.dims if dim not in (across.dim, up.dim)]), across, up) > 0.0
-
-
-def _reasons(ds: xr.Dataset, status: np.ndarray, ok: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the cells without colour, by the word of their status."""
-    words = str(ds["status"].attrs.get("flag_meanings", "")).split() if "status" in ds.variables else []
+def _reasons(ds: xr.Dataset, across: Side, up: Side, ok: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the cells without colour, by the word of their status, the worst over other dims."""
+    item = ds.get("status", xr.DataArray(0))
+    status, words = _field(item, across, up), str(item.attrs.get("flag_meanings", "")).split()
     cells_of = {word: (status == code) & ~ok for code, word in enumerate(words) if code}
     cells_of[LEFT_OUT] = ~ok & ~np.any([np.zeros(ok.shape, dtype=bool), *cells_of.values()], axis=0)
     return {word: cells for word, cells in cells_of.items() if cells.any()}
@@ -206,12 +185,8 @@ def _not_ok(ax: Axes, across: Side, up: Side, reasons: dict[str, np.ndarray]) ->
 
     handles = []
     for word, cells in reasons.items():
-        style: dict[str, Any] = {
-            "facecolor": SHADE,
-            "edgecolor": GREY,
-            "linewidth": 0.0,
-            "hatch": HATCHES.get(word, ""),
-        }
+        hatch = HATCHES.get(word, "")
+        style: dict[str, Any] = {"facecolor": SHADE, "edgecolor": GREY, "linewidth": 0.0, "hatch": hatch}
         patch = PathPatch(_outline(across.edges, up.edges, cells), label=f"_{word}", **style)
         ax.add_patch(patch)
         handles.append(Patch(label=word.replace("_", " "), **style))
@@ -236,21 +211,15 @@ def _best(ax: Axes, item: xr.DataArray, across: Side, up: Side, values: np.ndarr
     at = float(across.places[col]), float(up.places[row])
     text = f"{'largest' if maximize else 'least'}: {signals.number(values[row, col])} {item.attrs.get('units', '')}"
     where = f"{text.strip()} at {across.text_at(at[0])}, {up.text_at(at[1])}"
-    style: dict[str, Any] = {
-        "marker": "*",
-        "markersize": 13.0,
-        "color": "white",
-        "markeredgecolor": BLACK,
-        "linestyle": "none",
-    }
-    (star,) = ax.plot(*([place] for place in at), label=where, zorder=3.0, clip_on=False, **style)
+    style: dict[str, Any] = {"markersize": 13.0, "color": "white", "markeredgecolor": BLACK, "zorder": 3.0}
+    (star,) = ax.plot([at[0]], [at[1]], "*", label=where, clip_on=False, **style)
     return star
 
 
 def _require_on_map(ds: xr.Dataset, contours: Any, across: Side, up: Side) -> None:
     if isinstance(contours, bool):
         return
-    refuse(variable_problems(ds, "contours", contours, numbers=True))
+    refuse(variable_problems(ds, "contours", contours, numbers="fiub"))
     extra = [str(dim) for dim in ds[contours].dims if dim not in (across.dim, up.dim)]
     refuse([f"contours: {contours} depends on {', '.join(extra)} as well, and the map does not"] if extra else [])
 
@@ -262,7 +231,7 @@ def _contours(ax: Axes, item: xr.DataArray, across: Side, up: Side, ok: np.ndarr
 
     values = np.ma.masked_invalid(np.ma.masked_where(~ok, _field(item, across, up)))
     halo: list[Any] = [withStroke(linewidth=2.0, foreground=GREY)]
-    lines = levels(span(values.compressed())) if values.count() else np.array([])
+    lines = scales.levels(scales.span(values.compressed())) if values.count() else np.array([])
     if len(lines):
         drawn = ax.contour(across.places, up.places, values, lines, colors="white", linewidths=0.9)
         drawn.set_path_effects(halo)
@@ -272,15 +241,8 @@ def _contours(ax: Axes, item: xr.DataArray, across: Side, up: Side, ok: np.ndarr
 
 
 def _axes(ax: Axes, across: Side, up: Side) -> None:
-    ax.set_xlabel(across.text)
-    ax.set_ylabel(up.text)
+    ax.set(xlabel=across.text, ylabel=up.text)
     if across.words:
         ax.set_xticks(across.places, across.words)
     if up.words:
         ax.set_yticks(up.places, up.words)
-
-
-def _legend(ax: Axes, handles: list[Any]) -> None:
-    """Draw the legend above the map."""
-    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
-    ax.legend(handles=handles, ncols=1, fontsize="small", frameon=False, **place)

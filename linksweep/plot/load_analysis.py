@@ -12,8 +12,9 @@ from linksweep.analysis.pins.speed_limit import speed_limit
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.validate import name_problems, refuse
 from linksweep.plot.curves import shade_gaps
-from linksweep.plot.kit import signals, style
-from linksweep.plot.kit.style import BLUE, GREY, VERMILION, axes_or_new, crank_angles, grid
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.results.compute import require
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
@@ -21,7 +22,7 @@ from linksweep.scene.scene import Scene
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLORS = (BLUE, style.ORANGE, style.GREEN, style.SKY, VERMILION, style.PURPLE, "#F0E442")
+COLORS = (BLUE, ORANGE, GREEN, SKY, VERMILION, PURPLE, "#F0E442")
 ROOM = 1.3  # of the largest value, for the legend
 HATCHES = ("", "///", "\\\\\\", "...")
 
@@ -61,8 +62,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     refuse(name_problems("of", of, known))
     signals.require_one_design([ds[of].isel(source=0)])
     signals.require_angles(ds)
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     rows = [(str(s), signals.revolution(ds, ds[of].sel(source=s))) for s in ds["source"].values]
     rows = [(source, row) for source, row in rows if np.nanmax(np.abs(row[1]), initial=0.0) > 0.0]
     bases: dict[float, Any] = {1.0: 0.0, -1.0: 0.0}
@@ -73,7 +73,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
             ax.fill_between(angles, base, top, **look, linewidth=0.0, label=source if sign > 0.0 else None, alpha=0.85)
             bases[sign] = top
     angles, whole = signals.revolution(ds, ds[of].sum("source", skipna=False))
-    ax.plot(angles, whole, color=style.BLACK, linewidth=1.6, label="sum")
+    ax.plot(angles, whole, color=BLACK, linewidth=1.6, label="sum")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     crank_angles(ax, angles)
     _usual_size(ax, angles, whole, {sign: np.asarray(base) for sign, base in bases.items()})
@@ -136,8 +136,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     refuse([] if np.isfinite(worst).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
     rest = float(peaks(at_rest, of=[of])[name])
     limit = None if below is None else float(speed_limit(scene, of, below=below).omega2_limit)
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     symbol, units = signals.symbol(of) or of, signals.unit(worst, "N")
     ax.plot(omega2.values, worst.values, color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")

@@ -12,8 +12,9 @@ from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLUE, GREY, VERMILION, force_color
 from linksweep.plot.kit.drawings import drawing_of_results
-from linksweep.plot.kit.style import BLUE, GREY, VERMILION, axes_or_new, force_color, grid, small_type
+from linksweep.plot.kit.style import axes_or_new, grid, small_type
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
 

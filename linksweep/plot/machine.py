@@ -14,8 +14,9 @@ from linksweep.base.degrees import cos_sin
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Block, Drawing, Guide
 from linksweep.plot.kit import machine_parts, signals
+from linksweep.plot.kit.colors import BLACK, GREY, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.style import BLACK, GREY, SKY, axes_or_new, force_color, grid
+from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 

@@ -10,7 +10,8 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, axes_or_new, grid
+from linksweep.plot.kit.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
 
 if TYPE_CHECKING:
@@ -142,8 +143,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     refuse([f"{a.name} is over {a.dims}: plot one design, as ds.isel(...)" for a in chosen if a.ndim > 1])
     from matplotlib.ticker import MaxNLocator
 
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     order = ds["order"].values
     step = order[1] - order[0] if len(order) > 1 else 1.0
     width = 0.8 * step / len(names)

@@ -13,23 +13,12 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import front as front_of
+from linksweep.analysis.design.pareto import require_study, variable_problems
 from linksweep.base.validate import count_problems, refuse
-from linksweep.plot.kit.designs import (
-    ROUND,
-    Column,
-    Designs,
-    by_chance,
-    color_bar,
-    designs_of,
-    levels,
-    many_sizes,
-    norm,
-    require_study,
-    span,
-    variable_problems,
-    whole,
-)
-from linksweep.plot.kit.style import BLACK, BLUE, VERMILION, axes_or_new, grid
+from linksweep.plot.kit import scales
+from linksweep.plot.kit.colors import BLACK, BLUE, VERMILION
+from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, whole
+from linksweep.plot.kit.style import axes_or_new, grid, legend_above
 from linksweep.results.compute import requested
 
 if TYPE_CHECKING:
@@ -99,23 +88,15 @@ def scatter(
     best = _front(designs, (x, y), better) if front else np.array([], dtype=int)
     drawn = by_chance(designs.number, DOTS, best)
     across, up = designs.columns[x], designs.columns[y]
-    ax = axes_or_new(ax)
-    grid(ax)
+    ax = grid(axes_or_new(ax))
     _dots(ax, across.values[drawn], up.values[drawn], designs, drawn, color)
     if front:
-        steps: dict[str, Any] = {
-            "color": VERMILION,
-            "drawstyle": "steps-post",
-            "linewidth": 1.2,
-            "marker": "o",
-            "markersize": 3.5,
-        }
+        steps: dict[str, Any] = {"drawstyle": "steps-post", "linewidth": 1.2, "marker": "o", "markersize": 3.5}
         text = f"Pareto front: {whole(len(best))} design{'s' * (len(best) > 1)}"
-        ax.plot(across.values[best], up.values[best], label=text, zorder=2.5, **steps)
+        ax.plot(across.values[best], up.values[best], label=text, color=VERMILION, zorder=2.5, **steps)
     _scale(ax, "x", across, best)
     _scale(ax, "y", up, best)
-    legend = _legend(ax)
-    legend.legend_handles[0].set_sizes([20.0])
+    legend_above(ax).legend_handles[0].set_sizes([20.0])
     return ax
 
 
@@ -126,9 +107,9 @@ def _dots(ax: Axes, x: np.ndarray, y: np.ndarray, designs: Designs, drawn: np.nd
         ax.scatter(x, y, color=BLUE, alpha=0.6, **dots)
         return
     third = designs.columns[color]
-    limits = span(third.values)
-    cloud = ax.scatter(x, y, c=third.values[drawn], norm=norm(limits), cmap="viridis", **dots)
-    color_bar(ax, cloud, third, limits)
+    limits = scales.span(third.values)
+    cloud = ax.scatter(x, y, c=third.values[drawn], norm=scales.norm(limits), cmap="viridis", **dots)
+    scales.color_bar(ax, cloud, third, limits)
 
 
 def _front(designs: Designs, names: tuple[str, str], better: list[str]) -> np.ndarray:
@@ -141,14 +122,14 @@ def _scale(ax: Axes, which: str, item: Column, keep: np.ndarray) -> None:
     """Scale and label of the axis x or y, on which the designs to be kept are seen in any case."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    low, high = span(item.values)
+    low, high = scales.span(item.values)
     kept = item.values[keep]
     low, high = min([low, *kept]), max([high, *kept])
-    if many_sizes((low, high)):
+    if scales.many_sizes((low, high)):
         room = (high / low) ** ROOM
         ax.set(**{f"{which}scale": "log", f"{which}lim": (low / room, high * room)})
         axis = getattr(ax, f"{which}axis")
-        axis.set_major_locator(LogLocator(subs=ROUND))
+        axis.set_major_locator(LogLocator(subs=scales.ROUND))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(NullFormatter())
     else:
@@ -224,7 +205,7 @@ def parallel_coordinates(
     ax.tick_params(axis="x", length=0.0)
     ax.set(xlim=(-0.3, len(axes) - 0.7), ylim=(-1.2 * ROOM, 1.0 + 1.2 * ROOM), yticks=[])
     ax.spines[:].set_visible(False)
-    _legend(ax)
+    legend_above(ax)
     return ax
 
 
@@ -246,15 +227,15 @@ def _axis_names(ds: xr.Dataset) -> list[str]:
 
 
 def _limits(item: Column) -> tuple[float, float]:
-    low, high = span(item.values)
+    low, high = scales.span(item.values)
     return (low, high) if low < high else (low - 0.5, high + 0.5)
 
 
 def _fractions(item: Column, values: np.ndarray | None = None) -> np.ndarray:
     """Return heights on an axis that runs from 0 to 1; of values off its scale, just beyond the end."""
     limits, values = _limits(item), item.values if values is None else values
-    low, high = np.log(limits) if many_sizes(limits) else limits
-    values = np.log(np.maximum(values, limits[0] / 2.0)) if many_sizes(limits) else values
+    low, high = np.log(limits) if scales.many_sizes(limits) else limits
+    values = np.log(np.maximum(values, limits[0] / 2.0)) if scales.many_sizes(limits) else values
     return np.clip((values - low) / (high - low), -ROOM, 1.0 + ROOM)
 
 
@@ -262,14 +243,14 @@ def _lines(ax: Axes, points: np.ndarray, objective: Column, drawn: np.ndarray, t
     """Draw a line for each design, coloured by the objective."""
     from matplotlib.collections import LineCollection
 
-    limits = span(objective.values)
+    limits = scales.span(objective.values)
     places = np.broadcast_to(np.arange(points.shape[1]), points.shape)
     alpha = float(np.clip(30.0 / np.sqrt(len(drawn)), 0.25, 0.9))
     style: dict[str, Any] = {"linewidths": 0.8, "alpha": alpha, "rasterized": True, "label": text, "zorder": 1.5}
-    lines = LineCollection(list(np.stack([places, points], axis=-1)), norm=norm(limits), cmap="viridis", **style)
+    lines = LineCollection(list(np.stack([places, points], axis=-1)), norm=scales.norm(limits), cmap="viridis", **style)
     lines.set_array(objective.values[drawn])
     ax.add_collection(lines, autolim=False)
-    color_bar(ax, lines, objective, limits)
+    scales.color_bar(ax, lines, objective, limits)
 
 
 def _mark(ax: Axes, points: np.ndarray, text: str) -> None:
@@ -283,7 +264,7 @@ def _axis(ax: Axes, place: int, item: Column) -> None:
     from matplotlib.patheffects import withStroke
 
     halo: list[Any] = [withStroke(linewidth=2.5, foreground=ax.get_facecolor())]
-    ticks = np.arange(len(item.words)) if item.words else levels(_limits(item))
+    ticks = np.arange(len(item.words)) if item.words else scales.levels(_limits(item))
     heights = _fractions(item, ticks)
     ax.plot([place, place], [0.0, 1.0], color=BLACK, linewidth=0.9, zorder=2.4)
     ax.plot(np.full(len(ticks), place), heights, "_", color=BLACK, markersize=6.0, zorder=2.4)
@@ -294,9 +275,3 @@ def _axis(ax: Axes, place: int, item: Column) -> None:
     for end, marker, off in ((0.0, "v", item.values < _limits(item)[0]), (1.0, "^", item.values > _limits(item)[1])):
         if off.any():
             ax.plot([place], [end], marker, color=BLACK, markersize=5.0, zorder=2.4, label=f"_beyond {item.name}")
-
-
-def _legend(ax: Axes) -> Any:
-    """Draw the legend above the axes, where there are no designs."""
-    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
-    return ax.legend(ncols=1, fontsize="small", frameon=False, **place)

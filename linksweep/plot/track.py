@@ -9,8 +9,9 @@ import xarray as xr
 
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLACK, BLUE, GREY, SHADE, VERMILION
 from linksweep.plot.kit.drawings import machine_of_results
-from linksweep.plot.kit.style import BLACK, BLUE, GREY, SHADE, VERMILION, grid, small_type
+from linksweep.plot.kit.style import grid, small_type
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
 

@@ -55,6 +55,14 @@ def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> 
     return result.transpose(*(dim for dim in dict.fromkeys(order) if dim in field.dims))
 
 
+def with_units(results: Mapping[str, tuple[Any, str, str]]) -> dict[str, xr.DataArray]:
+    """Return arrays by name, of values, unit and description each."""
+    return {
+        name: xr.DataArray(values).assign_attrs(units=units, long_name=text)
+        for name, (values, units, text) in results.items()
+    }
+
+
 def flags(long_name: str, meanings: Iterable[str]) -> dict:
     """Return the CF attributes of a variable whose small integers stand for words."""
     words = list(meanings)

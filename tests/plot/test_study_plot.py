@@ -8,7 +8,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.patches import PathPatch
 
 import linksweep as ls
-from linksweep.plot.kit.designs import span, whole
+from linksweep.plot.kit.designs import whole
+from linksweep.plot.kit.scales import span
 
 MEANINGS = "ok partial_revolution cannot_assemble unbounded"
 FLAGS = {"flag_values": np.arange(4, dtype=np.int8), "flag_meanings": MEANINGS}

@@ -127,10 +127,10 @@ def best_counterweights(
     grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]
     radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
     refuse([p for link in radii for p in name_problems("radius", link, carriers)])
-    bounds = _bounds(most, list(radii))
+    bounds = dict.fromkeys(radii, np.inf) if most is None else by_link("most", most, list(radii), MOST)
     spokes = {link: _spokes(float(r)) for link, r in radii.items()}
     aims = _aims(scene, sizes, list(spokes), theta2, threads)
-    masses = _best(aims, list(spokes.values()), np.array([bounds[link] for link in spokes]))
+    masses = _best(aims, list(spokes.values()), np.array([float(bounds[link]) for link in spokes]))
     parts = masses.reshape(len(spokes), DIRECTIONS)
     return [_as_one(link, part, spokes[link]) for link, part in zip(spokes, parts, strict=True)]
 
@@ -142,12 +142,6 @@ def _weights(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
     sizes = sizes_named("minimize", scene, minimize)
     weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
     return dict(zip(sizes, map(float, weights), strict=True))
-
-
-def _bounds(most: Any, links: list[str]) -> dict[str, float]:
-    if most is None:
-        return dict.fromkeys(links, np.inf)
-    return {link: float(number) for link, number in by_link("most", most, links, MOST).items()}
 
 
 def _spokes(radius: float) -> Array:
@@ -162,10 +156,8 @@ def _aims(
 ) -> list[Aim]:
     components = {name: scene.table.quantity[name].components for name, _ in sizes}
     names = [name for pair in components.values() for name in pair]
-    coefficients, cycle = (
-        regressor(scene, names, theta2=theta2, threads=threads),
-        sweep(scene, theta2, of=names, threads=threads),
-    )
+    coefficients = regressor(scene, names, theta2=theta2, threads=threads)
+    cycle = sweep(scene, theta2, of=names, threads=threads)
     labels = [f"{link}.{word}" for link in links for word in OF_LINK]
     ok = np.broadcast_to(cycle["status"].values == 0, cycle.sizes["theta2"])
     share = _over_angles(1.0 / abs(cycle.get("omega2", xr.DataArray(1.0))), cycle)[ok]
@@ -173,8 +165,8 @@ def _aims(
     aims = []
     for (name, word), weight in sizes.items():
         base = np.stack([_over_angles(cycle[part], cycle)[ok] for part in components[name]])
-        rows = [_over_angles(coefficients[part].sel(parameter=labels), cycle)[ok] for part in components[name]]
-        change = np.stack(rows)
+        of_added = [coefficients[part].sel(parameter=labels) for part in components[name]]
+        change = np.stack([_over_angles(rows, cycle)[ok] for rows in of_added])
         if word == "ripple":
             base = base - (base * share).sum(axis=1, keepdims=True)
             change = change - (change * share[:, None]).sum(axis=1, keepdims=True)

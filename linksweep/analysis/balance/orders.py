@@ -9,7 +9,6 @@ Internal-Combustion Engine in Theory and Practice, volume 2.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,6 +17,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested
+from linksweep.results.dataset import with_units
 from linksweep.scene.grid import whole_turns
 
 TURN = 360.0
@@ -86,16 +86,13 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
 def _named(name: str, signal: xr.DataArray, cos: xr.DataArray, sin: xr.DataArray) -> dict[str, xr.DataArray]:
     units, name_of = signal.attrs.get("units", ""), signal.attrs.get("long_name", name)
     amplitude, phase = np.hypot(cos, sin), np.degrees(np.arctan2(sin, cos))
-    parts: dict[str, tuple[Any, str, str]] = {
-        f"{name}_amplitude": (amplitude, units, "amplitude of each order"),
-        f"{name}_phase": (phase, "degree", "order times crank angle at which each order is largest"),
-        f"{name}_cos": (cos, units, "coefficient of the cosine of each order"),
-        f"{name}_sin": (sin, units, "coefficient of the sine of each order"),
+    parts = {
+        f"{name}_amplitude": (amplitude, units, f"amplitude of each order of: {name_of}"),
+        f"{name}_phase": (phase, "degree", f"order times crank angle at which each order is largest of: {name_of}"),
+        f"{name}_cos": (cos, units, f"coefficient of the cosine of each order of: {name_of}"),
+        f"{name}_sin": (sin, units, f"coefficient of the sine of each order of: {name_of}"),
     }
-    return {
-        key: values.transpose(..., "order").assign_attrs(units=unit, long_name=f"{words} of: {name_of}")
-        for key, (values, unit, words) in parts.items()
-    }
+    return {key: values.transpose(..., "order") for key, values in with_units(parts).items()}
 
 
 def _period(angles: np.ndarray, index: str) -> float:

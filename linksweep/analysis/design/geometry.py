@@ -29,7 +29,7 @@ from linksweep.base.validate import choice_problems, refuse
 from linksweep.physics.algebra import planar
 from linksweep.results.check import evaluated
 from linksweep.results.compute import compute, require
-from linksweep.results.dataset import design_coordinates, provenance, variable
+from linksweep.results.dataset import design_coordinates, provenance, variable, with_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
@@ -138,27 +138,24 @@ def coupler_curve(
     refuse(choice_problems("link", role, bodies))
     at = checked_pair("at", at, POLAR_POINT)
     body, cycle = bodies[role], sweep(scene, theta2, of=["status"], threads=threads)
-    k = body.number
-    position, velocity, acceleration = (
-        _numbers(scene, theta2, pair, threads) for pair in (body.pin_position, body.pin_velocity, body.pin_acceleration)
-    )
-    line = _numbers(scene, theta2, (f"r{k}x", f"r{k}y"), threads)
-    omega, alpha = _numbers(scene, theta2, (f"omega{k}", f"alpha{k}"), threads)
+    k, of_pin = body.number, (*body.pin_position, *body.pin_velocity, *body.pin_acceleration)
+    motion = _numbers(scene, theta2, (*of_pin, f"r{k}x", f"r{k}y", f"omega{k}", f"alpha{k}"), threads)
+    x, y, vx, vy, ax, ay, *line, omega, alpha = motion
     length = scene.mechanism.parameters()[f"{role}_length"]
     cos, sin = cos_sin(at[1])
     arm = planar.to_ground_axes(at[0] * cos, at[0] * sin, length, *line)
     vectors = {
-        "P": planar.vector_sum(*position, *arm),
-        "vP": planar.point_velocity(*velocity, omega, *arm),
-        "aP": planar.point_acceleration(*acceleration, omega, alpha, *arm),
+        "P": planar.vector_sum(x, y, *arm),
+        "vP": planar.point_velocity(vx, vy, omega, *arm),
+        "aP": planar.point_acceleration(ax, ay, omega, alpha, *arm),
     }
-    variables = {
-        f"{name}{axis}": xr.DataArray(part).where(cycle["status"] == 0).assign_attrs(_attributes(name, role, axis))
-        for name, pair in vectors.items()
-        for axis, part in zip("xy", pair, strict=True)
+    results = {
+        f"{name}{axis}": (part, units, f"{text} of the {role}, component along {axis}")
+        for name, (units, text) in CURVE.items()
+        for axis, part in zip("xy", vectors[name], strict=True)
     }
-    command = f"linksweep.coupler_curve(scene, at=..., link={role!r})"
-    return xr.Dataset({**variables, "status": cycle["status"]}, cycle.coords, cycle.attrs | {"command": command})
+    variables = xr.Dataset(with_units(results)).where(cycle["status"] == 0).data_vars
+    return cycle.assign(variables).assign_attrs(command=f"linksweep.coupler_curve(scene, at=..., link={role!r})")
 
 
 def _floating(scene: Scene) -> str:
@@ -167,20 +164,12 @@ def _floating(scene: Scene) -> str:
     return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
 
 
-def _attributes(name: str, role: str, axis: str) -> dict[str, str]:
-    units, text = CURVE[name]
-    return {"units": units, "long_name": f"{text} of the {role}, component along {axis}"}
-
-
-def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, Any], threads: int | None) -> tuple[Any, Any]:
-    """Return two quantities of the table by name, internal ones too; a number is returned as it is."""
+def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, ...], threads: int | None) -> list[Any]:
+    """Return quantities of the table by name, internal ones too; a number is returned as it is."""
     grid = crank_grid(theta2, scene.period, scene.mechanism.index)
     sampled = scene.at(grid)
     names = tuple(source for source in sources if isinstance(source, str))
-    fields = compute(sampled, grid, names, threads) if names else {}
     order = (*sampled.inputs.sizes, grid.dim)
-
-    def number(source: Any) -> Any:
-        return xr.DataArray(variable(fields[source], "", "", order)) if isinstance(source, str) else source
-
-    return number(sources[0]), number(sources[1])
+    fields = compute(sampled, grid, tuple(dict.fromkeys(names)), threads)
+    arrays = {name: xr.DataArray(variable(field, "", "", order)) for name, field in fields.items()}
+    return [arrays[source] if isinstance(source, str) else source for source in sources]

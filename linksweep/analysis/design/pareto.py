@@ -116,24 +116,32 @@ def _of_more(costs: np.ndarray) -> np.ndarray:
 
 def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
     """Return the objectives, all to be small."""
-    refuse(
-        [] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"]
-    )
+    require_study(ds)
     objectives = [("minimize", name) for name in requested("minimize", minimize)]
     objectives += [("maximize", name) for name in requested("maximize", maximize)]
     refuse([] if objectives else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
-    names = list(map(str, ds.variables))
-    refuse([problem for path, name in objectives for problem in name_problems(path, name, names)])
-    refuse([problem for path, name in objectives for problem in _variable_problems(path, ds[name])])
+    refuse([problem for path, name in objectives for problem in variable_problems(ds, path, name, numbers="fiu")])
     return [-ds[name] if path == "maximize" else ds[name] for path, name in objectives]
 
 
-def _variable_problems(path: str, values: xr.DataArray) -> list[str]:
-    if values.dtype.kind not in "fiu":
-        return [f"{path}: {values.name} holds {values.dtype} values, which must be numbers"]
-    over = [dim for dim in indices() if dim in values.dims]
-    advice = f'ls.peaks(scene, of=["{values.name}"]) has one number for each design; take those'
-    return [f"{path}: {values.name} depends on {over[0]}, and must not; {advice}"] if over else []
+def require_study(ds: Any) -> None:
+    """Raise ValueError for anything but a Dataset."""
+    dataset = isinstance(ds, xr.Dataset)
+    refuse([] if dataset else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"])
+
+
+def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: str = "") -> list[str]:
+    """Return the problems of a name that must stand for one value for each design.
+
+    `numbers` are the kinds of dtype that are allowed; "" allows all.
+    """
+    if problems := name_problems(path, name, map(str, ds.variables)):
+        return problems
+    if numbers and ds[name].dtype.kind not in numbers:
+        return [f"{path}: {name} holds {ds[name].dtype} values, which must be numbers"]
+    over = [dim for dim in indices() if dim in ds[name].dims]
+    advice = f'ls.peaks(scene, of=["{name}"]) has one number for each design; take those'
+    return [f"{path}: {name} depends on {over[0]}, and must not; {advice}"] if over else []
 
 
 def _at(ds: xr.Dataset, designs: dict[str, np.ndarray]) -> xr.Dataset:

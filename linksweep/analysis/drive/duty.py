@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,6 +10,7 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
+from linksweep.results.dataset import with_units
 from linksweep.results.peak_search.quadrature import cycle_time
 from linksweep.results.peaks import peaks
 from linksweep.scene.grid import crank_grid
@@ -28,6 +29,7 @@ class Entry(NamedTuple):
     work: bool = False
 
 
+REGENERATED = "work that the drive takes back in a cycle, where its power is negative, counted positive"
 ENTRIES = (
     Entry("effort_mean", "{drive}_mean", "mean over time of the drive's torque or force"),
     Entry("effort_rms", "{drive}_rms", "root mean square over time of the drive's torque or force"),
@@ -37,11 +39,7 @@ ENTRIES = (
     Entry("power_min", "power_min", "least power of the drive; negative where the mechanism drives it"),
     Entry("work", "power_mean", "work of the drive in a cycle", work=True),
     Entry("work_fed", "power_fed_mean", "work that the drive feeds in a cycle, where its power is positive", work=True),
-    Entry(
-        *("work_regenerated", "power_regenerated_mean"),
-        "work that the drive takes back in a cycle, where its power is negative, counted positive",
-        work=True,
-    ),
+    Entry("work_regenerated", "power_regenerated_mean", REGENERATED, work=True),
     Entry("work_of_loads", "load_power_mean", "work of all loads in a cycle, positive when they feed", work=True),
 )
 LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a cycle, never positive", work=True)
@@ -87,21 +85,16 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     refuse(turning_problems(one))
     drive = one.mechanism.drives[one.drive]
     entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
-    sources = {entry.source.format(drive=drive): entry for entry in entries}
+    sources = [entry.source.format(drive=drive) for entry in entries]
     names = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
     worst = peaks(scene, of=list(dict.fromkeys(names)), threads=threads)
-    time = cycle_time(one, threads)
-    variables = {entry.name: _value(entry, worst[entry.source.format(drive=drive)], time) for entry in entries}
-    whole = worst["status"] == 0
-    for entry in entries:
-        if entry.work and not bool(whole.all()):
-            variables[entry.name] = variables[entry.name].where(whole)
-    return worst[["status"]].assign(variables).assign_attrs(command="linksweep.duty(scene)")
-
-
-def _value(entry: Entry, source: xr.DataArray, time: Any) -> xr.DataArray:
-    value = source * time if entry.work else source
-    return value.assign_attrs(units="J" if entry.work else source.units, long_name=entry.long_name)
+    time, whole = xr.DataArray(cycle_time(one, threads)), worst["status"] == 0
+    time = time if bool(whole.all()) else time.where(whole)
+    results = {
+        entry.name: (value * time, "J", entry.long_name) if entry.work else (value, value.units, entry.long_name)
+        for entry, value in zip(entries, (worst[source] for source in sources), strict=True)
+    }
+    return worst[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.duty(scene)")
 
 
 def turning_problems(scene: Scene) -> list[str]:

@@ -25,11 +25,13 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
+from linksweep.results.dataset import with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
 FLUCTUATION = Rule("dimensionless", above=0.0)
 INERTIA = Rule("inertia", at_least=0.0)
+ENERGY = "greatest less least work of the drive's constant torque ahead of the work needed at constant speed"
 BISECTIONS = 60
 
 
@@ -91,7 +93,8 @@ def flywheel(
     refuse(_problems(one_cylinder(scene), fluctuation, inertia))
     if inertia is None:
         fluctuation = checked_number("fluctuation", fluctuation, FLUCTUATION)
-        refuse(_too_large(fluctuation))
+        stalls = [f"fluctuation = {quote(fluctuation)}: must be less than 2"]  # else it stands still, or turns back
+        refuse(stalls if np.any(fluctuation >= 2.0) else [])
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
     cycle, one = _at_constant_speed(scene, theta2, threads), one_cylinder(scene)
@@ -101,22 +104,16 @@ def flywheel(
     E = stored + 0.5 * mean**2 * J
     size = _inertia(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
     speed = _speed(E, J, size, mean, index)
-    spread = (speed.max(index, skipna=False) - speed.min(index, skipna=False)) / mean
+    (fastest, slowest), (most, least) = _extremes(speed, index), _extremes(stored, index)
+    spread = (fastest - slowest) / mean
     results = {
         "flywheel_inertia": (size, "kg m2", "moment of inertia of the flywheel about the crank's axis"),
         "speed": (np.sign(one.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
         "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
         "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
-        "energy_fluctuation": (
-            *(stored.max(index, skipna=False) - stored.min(index, skipna=False), "J"),
-            "greatest less least work of the drive's constant torque ahead of the work needed at constant speed",
-        ),
+        "energy_fluctuation": (most - least, "J", ENERGY),
     }
-    variables = {
-        name: xr.DataArray(v).assign_attrs(units=unit, long_name=text) for name, (v, unit, text) in results.items()
-    }
-    attributes = cycle.attrs | {"command": "linksweep.flywheel(scene, ...)"}
-    return cycle[["status"]].assign(variables).assign_attrs(attributes)
+    return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.flywheel(scene, ...)")
 
 
 def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:
@@ -131,11 +128,6 @@ def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
     if (fluctuation is None) == (inertia is None):
         problems.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
     return problems
-
-
-def _too_large(fluctuation: Number) -> list[str]:
-    """Return the problem of a fluctuation of 2 or more, with which the crank would stand still or turn back."""
-    return [f"fluctuation = {quote(fluctuation)}: must be less than 2"] if np.any(fluctuation >= 2.0) else []
 
 
 def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:
@@ -176,5 +168,10 @@ def _speed(E: xr.DataArray, J: xr.DataArray, size: xr.DataArray, mean: Number, i
 
 def _middle(energy: xr.DataArray, total: xr.DataArray, index: str) -> xr.DataArray:
     """Return the mean of largest and least speed."""
-    speed = (2.0 * energy.clip(min=0.0) / total) ** 0.5
-    return 0.5 * (speed.max(index, skipna=False) + speed.min(index, skipna=False))
+    fastest, slowest = _extremes((2.0 * energy.clip(min=0.0) / total) ** 0.5, index)
+    return 0.5 * (fastest + slowest)
+
+
+def _extremes(values: xr.DataArray, index: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the largest and the least over the index; NaN where one value is."""
+    return values.max(index, skipna=False), values.min(index, skipna=False)

@@ -14,6 +14,7 @@ from linksweep.base.conversion import all_to_float64, to_float64
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
 from linksweep.results.compute import require
+from linksweep.results.dataset import with_units
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -163,12 +164,10 @@ def motor_load(
         "motor_torque": (needed, "N m", "torque of the motor, in the direction of the torque on the driven link"),
         "available_torque": (available, "N m", "largest torque of the motor at its speed"),
         "torque_margin": (available - abs(needed), "N m", "available torque less the magnitude of the motor's"),
-        "reflected_inertia": (xr.DataArray(motor.inertia * ratio**2), "kg m2", "rotor inertia at the driven link"),
+        "reflected_inertia": (motor.inertia * ratio**2, "kg m2", "rotor inertia at the driven link"),
         "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
     }
-    variables = {name: v.assign_attrs(units=unit, long_name=words) for name, (v, unit, words) in results.items()}
-    attributes = cycle.attrs | {"command": "linksweep.motor_load(scene, ...)"}
-    return cycle[["status"]].assign(variables).assign_attrs(attributes)
+    return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.motor_load(scene, ...)")
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:

@@ -22,7 +22,7 @@ from linksweep.base.validate import Number, choice_problems, count_problems, nam
 from linksweep.physics import bearing as plain
 from linksweep.results.compute import angles_missing, require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.dataset import flags, joined
+from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
@@ -172,10 +172,12 @@ def bearings(
     cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)], threads=threads)
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
     forces, exponents = {pin: _force(pair) for pin, pair in links.items()}, {p: b.exponent for p, b in fitted.items()}
-    rotation, reach = rotation_under_load(scene, forces, exponents, part, threads), _reach(cycle["theta2"], part)
+    rotation = rotation_under_load(scene, forces, exponents, part, threads)
+    reach, speeds = _reach(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
-        _of_pin(cycle, links[pin], cycle[f"omega_{pin}"], bearing, reach)
+        {"F": cycle[forces[pin]]}
         | _in_frames(cycle, *links[pin], scene.mechanism.journals[pin])
+        | on_journal(cycle, forces[pin], speeds[pin], abs(speeds[pin] / cycle["omega2"]) * reach, bearing)
         | of_life(rotation, pin, bearing)
         for pin, bearing in fitted.items()
     ]
@@ -217,7 +219,7 @@ def bearing_problems(pins: Any, known: Iterable[str]) -> list[str]:
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     i, j = links
-    force = f"F{i}{j}"
+    force = _force(links)
     frames = [f"{force}{axis}_link{k}" for k in (i, j) if k != 1 for axis in "xy"]
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
 
@@ -233,33 +235,25 @@ def _force(links: tuple[int, int]) -> str:
     return "F{}{}".format(*links)
 
 
-def _of_pin(
-    cycle: xr.Dataset, links: tuple[int, int], speed: xr.DataArray, bearing: Bearing, reach: xr.DataArray
+def on_journal(
+    cycle: xr.Dataset, name: str, speed: xr.DataArray, turns: xr.DataArray, bearing: Bearing
 ) -> dict[str, xr.DataArray]:
-    """Return load, motion and friction at each sample."""
-    force = cycle[_force(links)]
-    motion = {"rotation_speed": speed, "rotation_share": _share(cycle, speed, reach)}
-    return {"F": force} | motion | on_journal(force, speed, bearing)
+    """Return rotation, pressure, sliding and friction of a journal under a load of this name at each sample.
 
-
-def on_journal(force: xr.DataArray, speed: xr.DataArray, bearing: Bearing) -> dict[str, xr.DataArray]:
-    """Return pressure, sliding and friction of a journal under a load at each sample."""
-    diameter, length = _or_nan(bearing.diameter), _or_nan(bearing.length)
+    `turns` is proportional to the rotation for which each sample stands.
+    """
+    force, diameter, length = cycle[name], _or_nan(bearing.diameter), _or_nan(bearing.length)
     sliding = plain.sliding_speed(speed, diameter)
     pressure = plain.projected_pressure(force, diameter, length)
     loss = plain.friction_loss(plain.friction_circle(bearing.friction, diameter), force, speed)
-    return {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding, "friction_loss": loss}
+    turns = turns.where(cycle["status"] == 0)
+    motion = {"rotation_speed": speed, "rotation_share": turns / turns.sum("theta2", skipna=True, min_count=1)}
+    return motion | {"pressure": pressure, "sliding_speed": sliding, "pv": pressure * sliding, "friction_loss": loss}
 
 
 def of_life(rotation: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.DataArray]:
     """Return rotation, equivalent load and life of the bearing in a pin."""
     return rotation.life(pin, _or_nan(bearing.capacity), bearing.exponent)
-
-
-def _share(cycle: xr.Dataset, speed: xr.DataArray, reach: xr.DataArray) -> xr.DataArray:
-    """Return the share of each sample in the relative rotation of all that are ok."""
-    turns = abs(speed / cycle["omega2"]).where(cycle["status"] == 0) * reach
-    return turns / turns.sum("theta2", skipna=True, min_count=1)
 
 
 def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
@@ -276,15 +270,10 @@ def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
 def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.DataArray]:
     """Return Fx and Fy in the axes of the ground, of the journal's link and of the bearing's."""
     force, bearing = f"F{i}{j}", i + j - journal
-    suffixes = [_link_axes(k) for k in (1, journal, bearing)]
+    suffixes = ["" if link == 1 else f"_link{link}" for link in (1, journal, bearing)]
     return {
         f"F{axis}": joined([cycle[f"{force}{axis}{suffix}"] for suffix in suffixes], "frame", FRAMES) for axis in "xy"
     }
-
-
-def _link_axes(link: int) -> str:
-    """Return the ending of a force component's name in a link's axes; the ground's have none."""
-    return "" if link == 1 else f"_link{link}"
 
 
 def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
@@ -329,9 +318,11 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     bounded = ds["life_status"] != UNBOUNDED
     share, largest = share.where(bounded), largest.where(bounded)
     middle = (xr.DataArray(np.arange(classes), dims="load_class") + 0.5) / classes
-    share.attrs = {"units": "1", "long_name": "share of the rotation of the journal in its bearing under such loads"}
-    load = (largest * middle).assign_attrs(units="N", long_name="load in the middle of the class")
-    return xr.Dataset({"share": share, "class_load": load}, attrs=ds.attrs)
+    results = {
+        "share": (share, "1", "share of the rotation of the journal in its bearing under such loads"),
+        "class_load": (largest * middle, "N", "load in the middle of the class"),
+    }
+    return xr.Dataset(with_units(results), attrs=ds.attrs)
 
 
 def _histogram(force: np.ndarray, share: np.ndarray, classes: int) -> tuple[np.ndarray, float]:

@@ -18,6 +18,7 @@ import xarray as xr
 from linksweep.base.validate import count_problems, refuse
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
+from linksweep.results.dataset import joined
 from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
@@ -89,10 +90,10 @@ def breakdown(
     if has_friction(scene):
         whole, smooth = (quantities_with(changed, sampled, grid, parts, threads) for changed in ({}, FRICTIONLESS))
         shares["friction"] = {part: whole[part] - smooth[part] for part in parts}
-    stacked = {part: _stacked(part, shares) for part in parts}
+    stacked = {part: joined([forces[part] for forces in shares.values()], "source", shares) for part in parts}
     described = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
-    ds = cycle[["status"]].assign(described).transpose("source", ...).assign_coords(source=list(shares))
-    return ds.assign_attrs(cycle.attrs | {"command": f"linksweep.breakdown(scene, {list(names)}, ...)"})
+    ds = cycle[["status"]].assign(described).transpose("source", ...)
+    return ds.assign_attrs(command=f"linksweep.breakdown(scene, {list(names)}, ...)")
 
 
 def _names(scene: Scene, of: Any) -> tuple[str, ...]:
@@ -133,11 +134,6 @@ def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
 
 def _massless(links: Iterable[str]) -> dict[str, float]:
     return {f"{link}_{kind}": 0.0 for link in links for kind in ("mass", "inertia")}
-
-
-def _stacked(name: str, shares: Mapping[str, dict[str, xr.DataArray]]) -> xr.DataArray:
-    arrays = xr.broadcast(*(forces[name] for forces in shares.values()))
-    return xr.concat(arrays, "source", coords="minimal", compat="override", join="override")
 
 
 def _share(cycle: xr.Dataset, name: str, stacked: Mapping[str, xr.DataArray]) -> xr.DataArray:

@@ -50,17 +50,15 @@ def main_bearings(
     parts = [
         {"F": cycle[force], "F_peak": highest[f"{force}_peak"], "F_peak_at": highest[f"{force}_peak_at"]}
         | _in_frames(cycle, force)
-        | {"rotation_speed": speed, "rotation_share": _share(cycle["status"])}
-        | on_journal(cycle[force], speed, fitted[name])
+        | on_journal(cycle, force, speed, xr.ones_like(cycle["theta2"]), fitted[name])
         | of_life(rotation, name, fitted[name])
         for name, force in mains.items()
     ]
     results = {n: joined([part[n] for part in parts], "main", mains).assign_attrs(_attributes(n)) for n in parts[0]}
     place = xr.DataArray(list(machine.mains), dims="main", attrs={"units": "m", "long_name": "place along the shaft"})
     attributes = cycle.attrs | {"command": f"linksweep.bearings(engine, ..., theta2={theta2})"}
-    return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes).assign_coords(
-        main_position=place
-    )
+    coordinates = {**cycle.coords, "main_position": place}
+    return xr.Dataset({**results, "status": cycle["status"]}, coordinates, attributes)
 
 
 def _attributes(name: str) -> dict[str, Any]:
@@ -75,8 +73,3 @@ def _in_frames(cycle: xr.Dataset, force: str) -> dict[str, xr.DataArray]:
         "Fx": joined([x, cos * x + sin * y], "frame", FRAMES),
         "Fy": joined([y, cos * y - sin * x], "frame", FRAMES),
     }
-
-
-def _share(status: xr.DataArray) -> xr.DataArray:
-    turns = xr.ones_like(status, dtype=float).where(status == 0)
-    return turns / turns.sum("theta2", min_count=1)

@@ -21,7 +21,7 @@ import xarray as xr
 from linksweep.analysis.pins.bearings import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.physics.bearing import friction_circle
-from linksweep.results.dataset import flags, joined
+from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.loads.load import Load
 from linksweep.scene.scene import Scene
@@ -101,14 +101,20 @@ def pin_friction(
     """
     rubbing = _rubbing(scene, pins)
     refuse(count_problems("theta2", theta2) + count_problems("iterations", iterations))
-    senses = _senses(scene, rubbing, theta2, threads)
+    speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in rubbing], threads=threads)
+    speed = {pin: xr.DataArray(speeds[f"omega_{pin}"]) for pin in rubbing}
+    senses = {pin: xr.DataArray(-np.sign(omega)).fillna(0.0) for pin, omega in speed.items()}  # of moments on link j
     with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations, threads)
     names = None if of is None else [of] if isinstance(of, str) else list(of)
     cycle = sweep(with_friction, theta2, of=names, threads=threads)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
-    moment = {"units": "N m", "long_name": "moment of friction on link j of the pin force Fij, counter-clockwise"}
-    cycle["friction_torque"] = joined(torques.values(), "pin", torques).assign_attrs(moment)
-    cycle["friction_loss"] = _losses(scene, torques, theta2, threads)
+    losses = [abs(torque * speed[pin]) for pin, torque in torques.items()]
+    moment = "moment of friction on link j of the pin force Fij, counter-clockwise"
+    results = {
+        "friction_torque": (joined(torques.values(), "pin", torques), "N m", moment),
+        "friction_loss": (joined(losses, "pin", torques), "W", "power that friction in the pin takes, never negative"),
+    }
+    cycle = cycle.assign(with_units(results))
     forces = [name for name in cycle.data_vars if name not in (*scene.mechanism.kinematics(), "status")]
     cycle = cycle.assign({name: cycle[name].where(~fast).assign_attrs(cycle[name].attrs) for name in forces})
     agreement = flags("whether pin friction and pin forces agree; forces are NaN where they do not", MEANINGS)
@@ -126,13 +132,6 @@ def _rubbing(scene: Scene, pins: Mapping[str, Bearing]) -> dict[str, RubbingPin]
     both = bool(scene.mechanism.coordinates())
     refuse(['branch = "both": pin friction must know one; choose it with ls.scene_at(scene, branch="open")'] * both)
     return {pin: RubbingPin(*links[pin], friction_circle(b.friction, b.diameter)) for pin, b in rubs.items()}
-
-
-def _senses(scene: Scene, pins: Mapping[str, RubbingPin], theta2: int, threads: int | None) -> Arrays:
-    """Return −1, 0 or 1 of the moment on link j, against its rotation; 0 where nothing is known."""
-    names = [f"omega_{pin}" for pin in pins]
-    speeds = sweep(scene, theta2, of=names, threads=threads)
-    return {pin: xr.DataArray(-np.sign(speeds[name])).fillna(0.0) for pin, name in zip(pins, names, strict=True)}
 
 
 def _converged(
@@ -173,16 +172,9 @@ def _bare(array: xr.DataArray) -> xr.DataArray:
 
 
 def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
-    return xr.concat(xr.broadcast(*(abs(array) for array in arrays)), "pin", coords="minimal", compat="override").max(
-        "pin", skipna=False
-    )
-
-
-def _losses(scene: Scene, torques: Arrays, theta2: int, threads: int | None) -> xr.DataArray:
-    speeds = sweep(scene, theta2, of=[f"omega_{pin}" for pin in torques], threads=threads)
-    losses = [abs(torque * speeds[f"omega_{pin}"]) for pin, torque in torques.items()]
-    attributes = {"units": "W", "long_name": "power that friction in the pin takes, never negative"}
-    return joined(losses, "pin", torques).assign_attrs(attributes)
+    """Return the largest magnitude of all; NaN where one is."""
+    every = xr.broadcast(*map(abs, arrays))
+    return xr.concat(every, "pin", coords="minimal", compat="override").max("pin", skipna=False)
 
 
 def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:

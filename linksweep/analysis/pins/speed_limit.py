@@ -21,7 +21,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
-from linksweep.results.dataset import design_coordinates
+from linksweep.results.dataset import design_coordinates, with_units
 from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -91,11 +91,10 @@ def speed_separation(
     for ending, (changed, units, words) in TERMS.items():
         forces = quantities_with(changed, sampled if ending == "static" else bare, grid, names, threads)
         for name in names:
-            attributes = {"units": f"{cycle[name].units} {units}".strip()}
-            attributes["long_name"] = f"{words}: {cycle[name].long_name}"
-            terms[f"{name}_{ending}"] = forces[name].where(cycle["status"] == 0).assign_attrs(attributes)
+            term, whole = forces[name].where(cycle["status"] == 0), cycle[name]
+            terms[f"{name}_{ending}"] = (term, f"{whole.units} {units}".strip(), f"{words}: {whole.long_name}")
     command = f"linksweep.speed_separation(scene, {list(names)}, ...)"
-    return cycle[["status"]].assign(terms).assign_attrs(cycle.attrs | {"command": command})
+    return cycle[["status"]].assign(with_units(terms)).assign_attrs(command=command)
 
 
 def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = None) -> xr.Dataset:
@@ -139,7 +138,8 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     require(scene, "drives")
     (name,) = requested("of", of)[:1] or [""]
     refuse(_problems(scene))
-    refuse(_branch_problems(scene))
+    several = 'mechanism.branch = "both": must be one of open, crossed; ask for each'
+    refuse([several] if "branch" in scene.mechanism.coordinates() else [])
     refuse(quantity_problems("of", name, forces_of(scene), scene))
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components
@@ -154,16 +154,11 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
         if not bool(over.any()):
             break
     long_name = f"highest angular velocity of the crank at which {name} stays below {below:g}"
-    results = {
-        "omega2_limit": (squared**0.5).assign_attrs(units="rad s-1", long_name=long_name),
-        "omega2_limit_at": angle.where(np.isfinite(squared)).assign_attrs(
-            units="degree", long_name=f"crank angle of the largest {name} at that speed"
-        ),
-    }
-    ds = xr.Dataset({name: item.reset_coords(drop=True) for name, item in results.items()})
-    return ds.assign_coords(design_coordinates(scene)).assign_attrs(
-        command=f"linksweep.speed_limit(scene, {name!r}, below={below:g})"
-    )
+    at = angle.where(np.isfinite(squared)), "degree", f"crank angle of the largest {name} at that speed"
+    results = with_units({"omega2_limit": (squared**0.5, "rad s-1", long_name), "omega2_limit_at": at})
+    command = f"linksweep.speed_limit(scene, {name!r}, below={below:g})"
+    variables = {name: item.reset_coords(drop=True) for name, item in results.items()}
+    return xr.Dataset(variables, design_coordinates(scene), {"command": command})
 
 
 def _problems(scene: Scene) -> list[str]:
@@ -172,11 +167,6 @@ def _problems(scene: Scene) -> list[str]:
     problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
     dampers = [k for k, load in enumerate(scene.loads, 1) if load.form.damps]
     return problems + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
-
-
-def _branch_problems(scene: Scene) -> list[str]:
-    both = "branch" in scene.mechanism.coordinates()
-    return ['mechanism.branch = "both": must be one of open, crossed; ask for each'] if both else []
 
 
 def _one_each(scene: Scene) -> xr.DataArray:

@@ -1,25 +1,16 @@
-"""Designs of a study for plots: names in words, one number for each design, the designs that are ok, the ends of a
-scale."""
+"""Designs of a study for plots: names in words, one number for each design, the designs that are ok."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import has_peaks
-from linksweep.base.validate import name_problems, quote, refuse
-from linksweep.mechanisms import indices
+from linksweep.base.validate import refuse
 from linksweep.plot.kit.signals import symbol
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
-ROUND = (1.0, 2.0, 5.0)  # numbers on a logarithmic scale
-DECADE = 10.0  # how many times as large as the least the largest of a linear scale may be
 
 
 class Column(NamedTuple):
@@ -75,23 +66,6 @@ def designs_of(ds: xr.Dataset, names: Iterable[str]) -> Designs:
     return Designs(kept, labels, len(sound))
 
 
-def require_study(ds: Any) -> None:
-    refuse(
-        [] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"]
-    )
-
-
-def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: bool = False) -> list[str]:
-    """Return the problems of a name that must stand for one number, or one word, for each design."""
-    if problems := name_problems(path, name, map(str, ds.variables)):
-        return problems
-    if numbers and ds[name].dtype.kind not in "fiub":
-        return [f"{path}: {name} holds {ds[name].dtype} values, which must be numbers"]
-    over = [dim for dim in indices() if dim in ds[name].dims]
-    advice = f'ls.peaks(scene, of=["{name}"]) has one number for each design; take those'
-    return [f"{path}: {name} depends on {over[0]}, and must not; {advice}"] if over else []
-
-
 def none_ok(ds: xr.Dataset, names: Iterable[str]) -> str:
     """Return the message where there is nothing to draw, with the counts of each status."""
     nothing = f"no design is ok and has a finite {' and '.join(names)}"
@@ -133,58 +107,6 @@ def label(value: Any) -> str:
 def whole(count: int) -> str:
     """Format a count in groups of three digits: 100 000."""
     return f"{count:_}".replace("_", "\N{THIN SPACE}")
-
-
-def span(values: np.ndarray) -> tuple[float, float]:
-    """Return the ends of a scale that shows all designs, but for a few that lie far from the others.
-
-    Near toggles peaks grow without bound, and one such design would flatten all the others. A design
-    is off the scale where it is farther from the middle nine tenths than these are wide.
-    """
-    low, high = float(values.min()), float(values.max())
-    least, most = (float(end) for end in np.quantile(values, (0.05, 0.95)))
-    width = most - least
-    return (least if low < least - width else low), (most if high > most + width else high)
-
-
-def many_sizes(limits: tuple[float, float]) -> bool:
-    """Return whether a scale is better logarithmic: above zero, with a largest number many times the least."""
-    return 0.0 < DECADE * limits[0] < limits[1]
-
-
-def norm(limits: tuple[float, float]) -> Any:
-    """Return matplotlib's map from numbers to colours."""
-    from matplotlib.colors import LogNorm, Normalize
-
-    return (LogNorm if many_sizes(limits) else Normalize)(*limits)
-
-
-def levels(limits: tuple[float, float]) -> np.ndarray:
-    """Return a few round numbers on a scale."""
-    from matplotlib.ticker import LogLocator, MaxNLocator
-
-    locator: Any = LogLocator(subs=ROUND) if many_sizes(limits) else MaxNLocator(6)
-    ticks = locator.tick_values(*limits)
-    return ticks[(ticks >= limits[0]) & (ticks <= limits[1])]
-
-
-def color_bar(ax: Axes, colored: Any, item: Column, limits: tuple[float, float]) -> None:
-    """Add a colour bar with round numbers, and with a pointed end where values are off its scale."""
-    round_numbers: dict[str, Any] = {"ticks": levels(limits), "format": "%g"} if many_sizes(limits) else {}
-    if item.words:
-        round_numbers = {"ticks": range(len(item.words)), "format": lambda value, _: item.words[round(value)]}
-    bar = ax.figure.colorbar(colored, ax=ax, label=item.text, extend=beyond(item.values, limits), **round_numbers)
-    bar.minorticks_off()
-    if bar.solids is not None:
-        bar.solids.set(alpha=1.0)
-
-
-def beyond(values: np.ndarray, limits: tuple[float, float]) -> str:
-    """Return the ends of a scale beyond which there are values, in matplotlib's words for colour bars."""
-    below, above = (values < limits[0]).any(), (values > limits[1]).any()
-    return {(False, False): "neither", (True, False): "min", (False, True): "max"}.get(
-        (bool(below), bool(above)), "both"
-    )
 
 
 def by_chance(count: int, most: int, keep: np.ndarray) -> np.ndarray:

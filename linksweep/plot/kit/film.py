@@ -18,8 +18,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from linksweep.files.atomic import ending_of, whole
+from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.machine_parts import BAR, EDGE
-from linksweep.plot.kit.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION, small_type
+from linksweep.plot.kit.style import small_type
 
 PAUSE = 40  # milliseconds between frames: a GIF counts in hundredths of a second
 INKS = (BLACK, GREY, EDGE, BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE)

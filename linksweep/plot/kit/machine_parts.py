@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from linksweep.plot.kit.style import GREY, SKY
+from linksweep.plot.kit.colors import GREY, SKY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

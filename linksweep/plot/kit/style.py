@@ -1,4 +1,4 @@
-"""Colours of Okabe and Ito, which colour-blind readers tell apart, two greys, and the look of axes."""
+"""The look of axes, legends and figures."""
 
 from __future__ import annotations
 
@@ -8,18 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from linksweep.plot.kit.colors import SHADE
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-BLUE, VERMILION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
-GREY, SHADE = "#666666", "#EBEBEB"
-FORCE_COLORS = {"F12": BLUE, "F32": VERMILION, "F43": GREEN, "F14": PURPLE}
-
-
-def force_color(force: str) -> str:
-    """Return the colour of a force, such as F12; orange for a pair of links without one of its own."""
-    return FORCE_COLORS.get(force, ORANGE)
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
@@ -57,7 +49,14 @@ def crank_angles(ax: Axes, angles: np.ndarray) -> None:
     ax.set_xlabel("crank angle $\\theta_2$ [°]")
 
 
-def grid(ax: Axes) -> None:
-    """Draw faint grid lines below everything."""
+def grid(ax: Axes) -> Axes:
+    """Draw faint grid lines below everything; return the axes."""
     ax.grid(color=SHADE, linewidth=0.6)
     ax.set_axisbelow(True)
+    return ax
+
+
+def legend_above(ax: Axes, **options: Any) -> Any:
+    """Draw the legend above the axes, where there are no curves."""
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
+    return ax.legend(fontsize="small", frameon=False, **place | options)
