@@ -270,8 +270,7 @@ def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, n
     ax.update_datalim([(x0 - room, y0 - 2.5 * room), (x1 + room, y1 + room)])
     ax.margins(0.0)
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
 
 
 def scale(ax: Axes, top: float, longest: float) -> None:

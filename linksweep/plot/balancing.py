@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLUE, GREY, VERMILION
+from linksweep.plot.kit.colors import BLUE, VERMILION
 from linksweep.plot.kit.drawings import joints_of
+from linksweep.plot.kit.locus import draw_cross
 from linksweep.plot.kit.style import crank_angles, grid, small_type
 from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
@@ -83,16 +84,11 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
 
 def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
     """Draw the shaking force's components against each other."""
-    grid(ax)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.axhline(0.0, color=GREY, linewidth=0.8)
-    ax.axvline(0.0, color=GREY, linewidth=0.8)
+    draw_cross(ax)
     for name, cycle in cycles.items():
         _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
         ax.plot(x, y, label=_legend_text(name, np.hypot(x, y)), **STYLES[name])
-    ax.plot([0.0], [0.0], "+", color="black", markersize=9.0)
-    ax.set_xlabel("$F_{sx}$ [N]")
-    ax.set_ylabel("$F_{sy}$ [N]")
+    ax.set(xlabel="$F_{sx}$ [N]", ylabel="$F_{sy}$ [N]")
     ax.set_title("Shaking force", loc="left")
     _legend(ax)
 

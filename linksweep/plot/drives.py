@@ -174,8 +174,7 @@ def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
         ax.plot(speed, np.where(margin < 0.0, torque, np.nan), color=VERMILION, linewidth=2.4, label="too much")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     _worst(ax, speed, torque, margin)
-    ax.set_xlabel("motor speed [rad/s]")
-    ax.set_ylabel("motor torque [N m]")
+    ax.set(xlabel="motor speed [rad/s]", ylabel="motor torque [N m]")
     ax.margins(y=0.12)
     ax.legend(fontsize="small", frameon=False)
     return ax

@@ -144,8 +144,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     ax.set_ylim(0.0, ROOM * max(float(worst.max()), below or 0.0) or 1.0)
     if limit is not None:
         _mark_limit(ax, limit, float(below or 0.0), units)
-    ax.set_xlabel("crank speed $\\omega_2$ [rad/s]")
-    ax.set_ylabel(f"largest {symbol} in the cycle [{units}]")
+    ax.set(xlabel="crank speed $\\omega_2$ [rad/s]", ylabel=f"largest {symbol} in the cycle [{units}]")
     ax.legend(fontsize="small", frameon=False, loc="upper left")
     return ax
 

@@ -12,19 +12,16 @@ from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLUE, GREY, VERMILION, force_color
+from linksweep.plot.kit.colors import force_color
 from linksweep.plot.kit.drawings import drawing_of_results
-from linksweep.plot.kit.style import axes_or_new, grid, small_type
+from linksweep.plot.kit.locus import BEYOND, SIZE, draw_cross, draw_locus, set_limits
+from linksweep.plot.kit.style import axes_or_new, small_type
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-TICK = 30.0  # degrees of the crank between marks on the locus
-LABELLED = 90.0  # degrees between marks with a number
-BEYOND = 1.1  # of the largest load on the scale: larger loads are off it
 
 
 def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes | None = None) -> Axes:
@@ -65,21 +62,9 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     angles, x, y = _locus(ds, of, frame)
     drawing = drawing_of_results(ds)
     link = drawing.link_of(of, frame)
-    ax = axes_or_new(ax, figsize=(5.6, 5.2))
-    size = np.hypot(x, y)
-    largest = signals.peak(angles, size)
-    usual = signals.scale([size], [largest])
-    _cross(ax)
-    ax.plot(x, y, color=BLUE, label=f"_locus {of}")
-    units = signals.unit(signals.components(ds, of)[0], "N")
-    tip = np.zeros(2)
-    if largest and largest.value > 0.0:
-        tip = _peak(ax, of, largest, signals.tip(x, y), units, usual)
-    _ticks(ax, angles, x, y, usual)
-    near = size <= BEYOND * usual
-    _limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
-    ax.set_xlabel(f"{_axis(drawing, of, link, 'x')} [{units}]")
-    ax.set_ylabel(f"{_axis(drawing, of, link, 'y')} [{units}]")
+    ax, units = axes_or_new(ax, figsize=SIZE), signals.unit(signals.components(ds, of)[0], "N")
+    draw_locus(ax, of, angles, x, y, units)
+    ax.set(xlabel=f"{_axis(drawing, of, link, 'x')} [{units}]", ylabel=f"{_axis(drawing, of, link, 'y')} [{units}]")
     return ax
 
 
@@ -132,14 +117,12 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
     """Draw the loci of all pins to one scale."""
     sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
     usual = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
-    _cross(ax)
+    draw_cross(ax)
     for force, (_, x, y) in loci.items():
         text = f"{signals.symbol(force)} ({drawing_of_results(ds).joint_text(force)})"
         ax.plot(x, y, color=force_color(force), label=text)
-    near = [np.hypot(x, y) <= BEYOND * usual for _, x, y in loci.values()]
-    _limits(
-        ax, *(np.concatenate([locus[k][kept] for locus, kept in zip(loci.values(), near, strict=True)]) for k in (1, 2))
-    )
+    points = np.concatenate([[x, y] for _, x, y in loci.values()], axis=1)
+    set_limits(ax, *points[:, np.hypot(*points) <= BEYOND * usual])
     ax.set_title("All to one scale [N]", loc="left")
     ax.legend(fontsize="small", frameon=False)
 
@@ -173,59 +156,3 @@ def _axis(drawing: Drawing, pin: str, link: int, axis: str) -> str:
         return f"{force[:-2]}{axis}}}$, ground axes"
     frame = drawing.frames[link]
     return f"{force} along the {frame.along}" if axis == "x" else f"{force} across the {frame.across}"
-
-
-def _cross(ax: Axes) -> None:
-    """Set equal scales, and draw a cross through the origin."""
-    from matplotlib.ticker import MaxNLocator
-
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))  # room for numbers of five digits
-    grid(ax)
-    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
-    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
-    ax.plot([0.0], [0.0], "+", color="black", markersize=11.0, markeredgewidth=1.6, zorder=2.6, label="_origin")
-
-
-def _limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
-    """Set limits around these points and the origin, which equal scales may still widen."""
-    for values, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
-        low, high = np.min(values, initial=0.0), np.max(values, initial=0.0)
-        room = 0.16 * ((high - low) or 1.0)
-        set_limits(low - room, high + room, auto=True)
-
-
-def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: float) -> None:
-    """Draw dots on the locus at round crank angles, some with the angle beside them."""
-    from linksweep.plot.kit.labels import label
-
-    at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
-    closed = (x[0], y[0]) == (x[-1], y[-1])
-    at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
-    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
-    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * usual)
-    at, points = at[there], points[:, there]
-    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
-    named = at % LABELLED == 0.0
-    if named.sum() < 3:
-        named[:] = True
-    for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):
-        label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
-
-
-def _peak(ax: Axes, pin: str, largest: signals.Peak, force: np.ndarray, units: str, usual: float) -> np.ndarray:
-    """Draw an arrow from the origin to the largest load, with value and angles; return its end."""
-    from linksweep.plot.kit.labels import arrow, label
-
-    beyond = largest.value > BEYOND * usual
-    tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
-    direction = np.degrees(np.arctan2(force[1], force[0]))
-    lines = (
-        f"{signals.symbol(pin)} = {signals.number(largest.value)} {units}",
-        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
-        f"direction {direction:.1f}°".replace("-", "−"),
-    )
-    arrow(ax, np.zeros(2), tip, VERMILION)
-    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {pin}")
-    label(ax, *tip, *((line, VERMILION) for line in lines))
-    return tip

@@ -93,8 +93,7 @@ def mechanism(
     ax.margins(0.2)
     _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting})
     _names(ax, shape, "P" if point else f"$G_{drawing.carrier.number}$")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
     ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
     return ax
 

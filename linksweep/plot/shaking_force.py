@@ -10,7 +10,8 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from linksweep.plot.kit.colors import BLUE, GREEN, ORANGE, PURPLE, VERMILION
+from linksweep.plot.kit.locus import SIZE, draw_locus
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 
 COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 ENDING = "_amplitude"
-TICK = 30.0  # degrees of the crank between dots
-BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
-LABELLED = 90.0  # degrees between dots with a number
 
 
 def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes:
@@ -57,50 +55,11 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
     ds = with_peaks(ds)
     angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])
-    ax = axes_or_new(ax, figsize=(5.6, 5.2))
-    ax.set_aspect("equal", adjustable="datalim")
-    grid(ax)
-    for line in (ax.axhline, ax.axvline):
-        line(0.0, color=GREY, linewidth=0.8, zorder=2.0)
-    size = np.hypot(x, y)
-    largest = signals.peak(angles, size)
-    usual = signals.scale([size], [largest])
-    near = [np.where(size <= BEYOND * usual, part, np.nan) for part in (x, y)]
-    ax.plot(*near, color=BLUE, label=f"_path {of}")
-    _dots(ax, angles, *near)
-    if largest and largest.value > 0.0:
-        _largest(ax, of, largest, signals.tip(x, y), usual, signals.unit(ds[f"{of}x"], "N"))
-    ax.margins(0.14)
-    for axis, set_label in (("x", ax.set_xlabel), ("y", ax.set_ylabel)):
-        words = "shaking force " if of == "Fs" else "force "
-        set_label(f"{words}$F_{{{of[1:]}{axis}}}$ [{signals.unit(ds[of + axis], 'N')}]")
+    ax, units = axes_or_new(ax, figsize=SIZE), signals.unit(ds[f"{of}x"], "N")
+    draw_locus(ax, of, angles, x, y, units)
+    words = "shaking force" if of == "Fs" else "force"
+    ax.set(xlabel=f"{words} $F_{{{of[1:]}x}}$ [{units}]", ylabel=f"{words} $F_{{{of[1:]}y}}$ [{units}]")
     return ax
-
-
-def _dots(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
-    from linksweep.plot.kit.labels import label
-
-    at = np.arange(np.ceil(angles[0] / TICK) * TICK, min(angles[-1], angles[0] + 359.0) + 1e-9, TICK)
-    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
-    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_dots")
-    for angle, point in zip(at, points.T, strict=True):
-        if angle % LABELLED == 0.0 and np.isfinite(point).all():
-            prefix = "$\\theta_2$ = " if angle == 0.0 else ""
-            label(ax, *point, (prefix + signals.angle_text(angle), BLUE))
-
-
-def _largest(ax: Axes, name: str, peak: signals.Peak, force: np.ndarray, usual: float, units: str) -> None:
-    from linksweep.plot.kit.labels import arrow, label
-
-    beyond = peak.value > BEYOND * usual
-    tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
-    arrow(ax, np.zeros(2), tip, VERMILION)
-    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")
-    lines = (
-        f"$F_{{{name[1:]}}}$ = {signals.number(peak.value)} {units}",
-        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(peak.angle)}",
-    )
-    label(ax, *tip, *((line, VERMILION) for line in lines))
 
 
 def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None = None) -> Axes:
@@ -151,8 +110,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
         place = order + (k - 0.5 * (len(names) - 1)) * width
         ax.bar(place, amplitude.values, width, color=COLORS[k], label=_legend_text(name, amplitude))
     ax.xaxis.set_major_locator(MaxNLocator(16, integer=True))
-    ax.set_xlabel("order [turns per turn of the crank]")
-    ax.set_ylabel(f"amplitude [{units.pop()}]")
+    ax.set(xlabel="order [turns per turn of the crank]", ylabel=f"amplitude [{units.pop()}]")
     ax.margins(y=0.12)
     ax.set_ylim(bottom=0.0)
     ax.legend(fontsize="small", frameon=False)

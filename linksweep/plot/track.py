@@ -92,8 +92,7 @@ def draw_force(ax: Axes, ds: xr.Dataset, scene: Scene) -> None:
         ax.plot([angle], [value], "o", color=BLUE, markersize=4.5, clip_on=False, label=f"_{end}")
         label(ax, angle, value, (f"{end} {signals.number(value)} N at {signals.angle_text(angle)}", BLUE))
     ax.margins(y=0.18)
-    ax.set_xlabel("position $\\theta$ [°]")
-    ax.set_ylabel("force of the track $F_N$ [N]")
+    ax.set(xlabel="position $\\theta$ [°]", ylabel="force of the track $F_N$ [N]")
 
 
 def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) -> dict[str, tuple[float, float]]:
@@ -129,8 +128,7 @@ def draw_track(ax: Axes, cycle: xr.Dataset, name: str, radius: float) -> np.ndar
     ax.plot(*place(outer, angles), color=BLUE, linewidth=1.0, label="_force")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
     return outer
 
 

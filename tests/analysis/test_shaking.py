@@ -167,13 +167,13 @@ def test_what_it_refuses():
 def test_the_hodograph_shows_the_path():
     ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), of=SHAKING)
     ax = ls.plot.hodograph(ds)
-    drawn = line(ax, "_path Fs").get_xydata()[:-1]
+    drawn = line(ax, "_locus Fs").get_xydata()[:-1]
     samples = {*map(tuple, np.stack([ds.Fsx, ds.Fsy], axis=-1).tolist())}
     assert samples <= {*map(tuple, drawn.tolist())}  # and the positions of the exact peaks
     (x,), (y,) = line(ax, "_peak Fs").get_data()
     exact = ls.peaks(ls.Scene(FOUR_BAR, OMEGA), of=["Fs"])
     assert np.hypot(x, y) == pytest.approx(exact.Fs_peak.item(), rel=1e-12)
-    assert len(line(ax, "_dots").get_xdata()) == 12
+    assert len(line(ax, "_ticks").get_xdata()) == 12
     text = "\n".join(texts(ax))
     assert f"{exact.Fs_peak_at.item():.2f}".rstrip("0").rstrip(".") + "°" in text
     assert ax.get_xlabel().endswith("[N]")

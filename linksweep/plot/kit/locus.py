@@ -1,0 +1,92 @@
+"""Locus of a force: the curve that the tip of its arrow draws over a revolution, with dots at round crank angles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import BLUE, GREY, VERMILION
+from linksweep.plot.kit.style import grid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SIZE = (5.6, 5.2)  # inches
+TICK = 30.0  # degrees of the crank between dots on the locus
+LABELLED = 90.0  # degrees between dots with a number
+BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
+APART = 1e-6  # of that largest force: least distance of two dots
+
+
+def draw_locus(ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.ndarray, units: str) -> None:
+    """Draw the locus of a force with its dots, and an arrow from the origin to the largest force."""
+    size = np.hypot(x, y)
+    largest = signals.peak(angles, size)
+    usual = signals.scale([size], [largest])
+    draw_cross(ax)
+    ax.plot(x, y, color=BLUE, label=f"_locus {name}")
+    tip = np.zeros(2)
+    if largest and largest.value > 0.0:
+        tip = _arrow(ax, name, largest, signals.tip(x, y), units, usual)
+    _ticks(ax, angles, x, y, usual)
+    near = size <= BEYOND * usual
+    set_limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
+
+
+def draw_cross(ax: Axes) -> None:
+    """Set equal scales, and draw a cross through the origin."""
+    from matplotlib.ticker import MaxNLocator
+
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))  # room for numbers of five digits
+    grid(ax)
+    ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    ax.axvline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
+    ax.plot([0.0], [0.0], "+", color="black", markersize=11.0, markeredgewidth=1.6, zorder=2.6, label="_origin")
+
+
+def set_limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
+    """Set limits around these points and the origin, which equal scales may still widen."""
+    for values, set_range in ((x, ax.set_xlim), (y, ax.set_ylim)):
+        low, high = np.min(values, initial=0.0), np.max(values, initial=0.0)
+        room = 0.16 * ((high - low) or 1.0)
+        set_range(low - room, high + room, auto=True)
+
+
+def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: float) -> None:
+    """Draw dots on the locus at round crank angles, some with the angle beside them, but none on top of another."""
+    from linksweep.plot.kit.labels import label
+
+    at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
+    points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
+    there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * usual)
+    at, points = at[there], points[:, there]
+    distances = np.hypot(*(points[:, :, None] - points[:, None, :]))
+    again = np.tril(distances < APART * usual, -1).any(axis=1)
+    at, points = at[~again], points[:, ~again]
+    ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
+    named = at % LABELLED == 0.0
+    if named.sum() < 3:
+        named[:] = True
+    for k, (angle, point) in enumerate(zip(at[named], points.T[named], strict=True)):
+        label(ax, *point, (("$\\theta_2$ = " if k == 0 else "") + signals.angle_text(angle), BLUE))
+
+
+def _arrow(ax: Axes, name: str, largest: signals.Peak, force: np.ndarray, units: str, usual: float) -> np.ndarray:
+    """Draw an arrow from the origin to the largest force, with value and angles; return its end."""
+    from linksweep.plot.kit.labels import arrow, label
+
+    beyond = largest.value > BEYOND * usual
+    tip = force * (BEYOND * usual / np.hypot(*force)) if beyond else force
+    direction = np.degrees(np.arctan2(force[1], force[0]))
+    lines = (
+        f"$F_{{{name[1:]}}}$ = {signals.number(largest.value)} {units}",
+        f"{'off scale ' * beyond}at $\\theta_2$ = {signals.angle_text(largest.angle)}",
+        f"direction {direction:.1f}°".replace("-", "−"),
+    )
+    arrow(ax, np.zeros(2), tip, VERMILION)
+    ax.plot(*tip, "o", color=VERMILION, markersize=4.5, zorder=2.7, label=f"_peak {name}")
+    label(ax, *tip, *((line, VERMILION) for line in lines))
+    return tip
