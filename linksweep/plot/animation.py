@@ -203,14 +203,11 @@ def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) ->
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
     parts = {force: _rows(cycle, force) for force in drawing.forces}
-    return [
-        Frame(
-            float(angles[k]),
-            shape_of(scene, drawing, places.isel({signals.INDEX: [*range(CURVE), CURVE + k]}), point),
-            {force: rows[:, k] for force, rows in parts.items()},
-        )
-        for k in good
-    ]
+    frames = []
+    for k in good:
+        shape = shape_of(scene, drawing, places.isel({signals.INDEX: [*range(CURVE), CURVE + k]}), point)
+        frames.append(Frame(float(angles[k]), shape, {force: rows[:, k] for force, rows in parts.items()}))
+    return frames
 
 
 def _rows(cycle: xr.Dataset, force: str) -> np.ndarray:

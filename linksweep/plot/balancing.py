@@ -11,7 +11,7 @@ from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, VERMILION
 from linksweep.plot.kit.drawings import joints_of
 from linksweep.plot.kit.locus import draw_cross
-from linksweep.plot.kit.style import crank_angles, grid, small_type
+from linksweep.plot.kit.style import crank_angles, grid, panels
 from linksweep.results.compute import require_scene
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -59,26 +59,21 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     >>> [ax.get_title(loc="left") for ax in figure.axes]
     ['Shaking force', 'Shaking moment about A', 'Drive torque', 'Load of pin C']
     """
-    import matplotlib.pyplot as plt
-
     require_scene(before)
     require_scene(after)
     drawing = joints_of(before.mechanism)
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces
-    cycles = {
-        name: sweep(scene, theta2, of=[*SHAKING, drive, *pins])
-        for name, scene in (("before", before), ("after", after))
-    }
+    scenes = {"before": before, "after": after}
+    cycles = {name: sweep(scene, theta2, of=[*SHAKING, drive, *pins]) for name, scene in scenes.items()}
     worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
-    with small_type():
-        figure, panels = plt.subplots(2, 2, figsize=(7.1, 6.0), layout="constrained")
-        _hodograph(panels[0, 0], cycles)
-        _over_angle(panels[0, 1], cycles, "Ms", "Shaking moment about A", "$M_s$ [N m]")
+    with panels(2, 2, figsize=(7.1, 6.0)) as (figure, ((above, beside), (below, last))):
+        _hodograph(above, cycles)
+        _over_angle(beside, cycles, "Ms", "Shaking moment about A", "$M_s$ [N m]")
         kind = signals.drive_kind(drive).capitalize()
         units = cycles["before"][drive].attrs["units"]
-        _over_angle(panels[1, 0], cycles, drive, kind, f"{signals.symbol(drive)} [{units}]".strip())
-        _over_angle(panels[1, 1], cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [N]")
+        _over_angle(below, cycles, drive, kind, f"{signals.symbol(drive)} [{units}]".strip())
+        _over_angle(last, cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [N]")
     return figure
 
 

@@ -78,7 +78,6 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     >>> ls.sweep(ls.example("press")).linksweep.forces(["F12", "F32"]).get_ylabel()
     'pin force [N]'
     """
-    signals.require_angles(ds)
     ds = with_peaks(ds)
     names = force_names(ds, of)
     by_name = {name: signals.magnitude(ds, name) for name in names}
@@ -98,12 +97,8 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     crank_angles(ax, curves[0].angles)
     runaway = any(peak and peak.value > HEADROOM * top for peak in peaks)
     _legend(ax, curves, widest, runaway)
-    marks = [
-        Mark(peak, curve, curve.name_at_peak)
-        for peak, curve in zip(peaks, curves, strict=True)
-        if peak and peak.value > 0.0
-    ]
-    _mark(ax, marks, units)
+    pairs = zip(peaks, curves, strict=True)
+    _mark(ax, [Mark(peak, curve, curve.name_at_peak) for peak, curve in pairs if peak and peak.value > 0.0], units)
     return ax
 
 
@@ -134,7 +129,6 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ls.sweep(ls.example("press")).linksweep.torque().get_ylabel()
     'drive torque $T_{12}$ [N m]'
     """
-    signals.require_angles(ds)
     ds = with_peaks(ds)
     name = signals.drive_name(ds)
     units = signals.unit(ds[name], "N m")

@@ -10,7 +10,7 @@ import xarray as xr
 from linksweep.plot.curves import force_names, forces, kind_of, torque
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import drawing_of_results, machine_of_results
-from linksweep.plot.kit.style import small_type
+from linksweep.plot.kit.style import panels
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.plot.load_diagrams import bearing
 from linksweep.plot.machine import mechanism
@@ -49,36 +49,33 @@ def cycle(ds: xr.Dataset) -> Figure:
     >>> [ax.get_title(loc="left") for ax in figure.axes[1:]]
     ['Pin forces', 'Load of pin C: $F_{43}$', 'Drive torque']
     """
-    import matplotlib.pyplot as plt
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     machine = machine_of_results(ds)
     if machine and machine.track:
         return loop(ds)
-    signals.require_angles(ds)
     samples, ds = ds, with_peaks(ds)
-    pin, angle = _most_loaded(ds)
+    pin, angle = most_loaded(ds)
     bounded = not np.isinf(signals.magnitude(ds, pin)).any()
-    angle = angle if bounded else _most_loaded(samples)[1]
+    angle = angle if bounded else most_loaded(samples)[1]
     drawing = drawing_of_results(ds)
-    with small_type():
-        layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
-        figure, panels = plt.subplots(2, 2, figsize=(A4_WIDTH, 6.4), layout=layout)
-        mechanism(ds, theta2=angle, ax=panels[0, 0], forces=True)
-        forces(ds, ax=panels[0, 1])
-        bearing(ds, pin, ax=panels[1, 0])
-        torque(ds, ax=panels[1, 1])
+    layout = ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08, wspace=0.02, hspace=0.02)
+    with panels(2, 2, figsize=(A4_WIDTH, 6.4), layout=layout) as (figure, grid):
+        mechanism(ds, theta2=angle, ax=grid[0, 0], forces=True)
+        forces(ds, ax=grid[0, 1])
+        bearing(ds, pin, ax=grid[1, 0])
+        torque(ds, ax=grid[1, 1])
         where = "Largest pin force, at" if bounded else "Beside infinite pin forces, at"
         where += f" $\\theta_2$ = {signals.angle_text(angle)}"
         kind = kind_of(drawing, force_names(ds, None)).capitalize()
         drive = signals.drive_kind(signals.drive_name(ds)).capitalize()
         titles = (where, f"{kind} forces", f"Load of {drawing.joint_text(pin)}: {signals.symbol(pin)}", drive)
-        for panel, title in zip(panels.flat, titles, strict=True):
+        for panel, title in zip(grid.flat, titles, strict=True):
             panel.set_title(title, loc="left")
     return figure
 
 
-def _most_loaded(ds: xr.Dataset) -> tuple[str, float]:
+def most_loaded(ds: xr.Dataset) -> tuple[str, float]:
     """Return the pin force that is largest, and the crank angle [degree] where it is."""
     peaks = {}
     for name in force_names(ds, None):

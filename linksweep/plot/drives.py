@@ -13,7 +13,7 @@ from linksweep.base.validate import refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, ORANGE, SHADE, SKY, VERMILION
-from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, small_type
+from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, panels
 from linksweep.results.sweep import sweep
 
 if TYPE_CHECKING:
@@ -93,10 +93,7 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['torque on the crank [N m]', 'crank speed $\\\\omega_2$ [rad/s]']
     """
-    import matplotlib.pyplot as plt
-
-    with small_type():
-        figure, (above, below) = plt.subplots(2, 1, figsize=(7.1, 5.4), layout="constrained")
+    with panels(2, 1, figsize=(7.1, 5.4)) as (figure, (above, below)):
         flywheel(ds, ax=below)
         _torques(above, ds)
     return figure

@@ -15,7 +15,7 @@ from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import force_color
 from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.locus import BEYOND, SIZE, draw_cross, draw_locus, set_limits
-from linksweep.plot.kit.style import axes_or_new, small_type
+from linksweep.plot.kit.style import axes_or_new, panels
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
 
@@ -57,7 +57,6 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     '$F_{32}$ along the crank, A→B [N]'
     """
     refuse(choice_problems("frame", frame, (*FRAMES, "link")))
-    signals.require_angles(ds)
     ds = with_peaks(ds)
     angles, x, y = _locus(ds, of, frame)
     drawing = drawing_of_results(ds)
@@ -96,20 +95,17 @@ def bearings(ds: xr.Dataset, *, frame: str = "ground") -> Figure:
     >>> [ax.get_title(loc="left") for ax in figure.axes][0]
     'Load of pin A: $F_{12}$'
     """
-    import matplotlib.pyplot as plt
-
     refuse(choice_problems("frame", frame, FRAMES))
     drawing, ds = drawing_of_results(ds), with_peaks(ds)
     forces = [force for force in drawing.pin_forces if signals.has_pin(ds, force)]
     refuse([] if forces else ["ds has no pin force: give what ls.sweep returns, with components such as F32x and F32y"])
     rows = (len(forces) + 1) // 2
-    with small_type():
-        figure, panels = plt.subplots(rows, 2, figsize=(7.1, 3.4 * rows), layout="constrained", squeeze=False)
-        for force, panel in zip(forces, panels.flat, strict=False):
+    with panels(rows, 2, figsize=(7.1, 3.4 * rows), squeeze=False) as (figure, grid):
+        for force, panel in zip(forces, grid.flat, strict=False):
             bearing(ds, force, frame=frame, ax=panel)
             panel.set_title(f"Load of {drawing.joint_text(force)}: {signals.symbol(force)}", loc="left")
         if len(forces) % 2:
-            _to_one_scale(panels[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
+            _to_one_scale(grid[-1, -1], ds, {force: _locus(ds, force, frame) for force in forces})
     return figure
 
 

@@ -50,13 +50,12 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     >>> ls.plot.hodograph(ls.sweep(ls.example("press"), of=["Fsx", "Fsy"])).get_xlabel()
     'shaking force $F_{sx}$ [N]'
     """
-    signals.require_angles(ds)
+    ds = with_peaks(ds)
     missing = [part for part in (f"{of}x", f"{of}y") if part not in ds]
     refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
-    ds = with_peaks(ds)
     angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])
     ax, units = axes_or_new(ax, figsize=SIZE), signals.unit(ds[f"{of}x"], "N")
-    draw_locus(ax, of, angles, x, y, units)
+    draw_locus(ax, of, angles, x, y, units, min(angles[-1], angles[0] + 359.0))  # inertia is the same in all turns
     words = "shaking force" if of == "Fs" else "force"
     ax.set(xlabel=f"{words} $F_{{{of[1:]}x}}$ [{units}]", ylabel=f"{words} $F_{{{of[1:]}y}}$ [{units}]")
     return ax

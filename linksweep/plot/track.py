@@ -8,11 +8,14 @@ import numpy as np
 import xarray as xr
 
 from linksweep.files.netcdf import scene_of
+from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLACK, BLUE, GREY, SHADE, VERMILION
+from linksweep.plot.kit.colors import BLACK, BLUE, GREY, VERMILION
 from linksweep.plot.kit.drawings import machine_of_results
-from linksweep.plot.kit.style import grid, small_type
+from linksweep.plot.kit.style import grid, panels
+from linksweep.results.compute import angles_missing
 from linksweep.results.peaks import peaks
+from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -50,8 +53,6 @@ def loop(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['y [m]', 'force of the track $F_N$ [N]']
     """
-    import matplotlib.pyplot as plt
-
     kind = machine_of_results(ds)
     track = kind.track if kind else None
     if kind is None or track is None or kind.index not in ds.dims or track.force not in ds:
@@ -59,8 +60,7 @@ def loop(ds: xr.Dataset) -> Figure:
     scene, ds = scene_of(ds), ds.rename({kind.index: signals.INDEX})
     signals.require_one_design([ds[track.force]])
     radius = float(getattr(scene.mechanism, track.radius))
-    with small_type():
-        figure, (left, right) = plt.subplots(1, 2, figsize=PAGE, layout="constrained", width_ratios=(1.0, 1.15))
+    with panels(1, 2, figsize=PAGE, width_ratios=(1.0, 1.15)) as (figure, (left, right)):
         outer = draw_track(left, ds, track.force, radius)
         _arrows(left, signals.by_angle(ds, ds[track.force])[0], outer, radius)
         draw_car(left, radius)
@@ -79,11 +79,7 @@ def draw_force(ax: Axes, ds: xr.Dataset, scene: Scene) -> None:
     grid(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     ax.plot(angles, force, color=BLUE, label=f"_{name}")
-    for gap in signals.gaps(ds, ds[name]):
-        ax.axvspan(gap.start, gap.stop, facecolor=SHADE, linewidth=0.0, zorder=0.4)
-        upright = "horizontal" if gap.stop - gap.start > 90.0 else "vertical"
-        middle, across = 0.5 * (gap.start + gap.stop), ax.get_xaxis_transform()
-        ax.text(middle, 0.5, gap.reason, transform=across, ha="center", va="center", color=GREY, rotation=upright)
+    shade_gaps(ax, ds, ds[name])
     if np.ptp(angles) >= 180.0:
         ax.xaxis.set_major_locator(MultipleLocator(90.0))
         ax.xaxis.set_minor_locator(MultipleLocator(30.0))
@@ -99,18 +95,11 @@ def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) ->
     """Return position and force of the extremes: exact for a whole lap, else of the samples; none of an even force."""
     if not np.nanmin(force, initial=np.inf) < np.nanmax(force, initial=-np.inf):
         return {}
-    exact = _exact_extremes(scene, name) if signals.full_turn(angles) else None
-    samples = {"max": int(np.nanargmax(force)), "min": int(np.nanargmin(force))}
-    return exact or {end: (angles[k], force[k]) for end, k in samples.items()}
-
-
-def _exact_extremes(scene: Scene, name: str) -> dict[str, tuple[float, float]] | None:
-    """Return position and force of the extremes of a scene; None for more than one design."""
-    try:
+    if signals.full_turn(angles) and not design_labels(scene) and not angles_missing(scene):
         worst = peaks(scene, of=[name])
         return {end: (worst[f"{name}_{end}_at"].item(), worst[f"{name}_{end}"].item()) for end in ("max", "min")}
-    except ValueError:
-        return None
+    samples = {"max": int(np.nanargmax(force)), "min": int(np.nanargmin(force))}
+    return {end: (angles[k], force[k]) for end, k in samples.items()}
 
 
 def draw_track(ax: Axes, cycle: xr.Dataset, name: str, radius: float) -> np.ndarray:

@@ -95,16 +95,14 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     """
     require(scene, "bodies")
     weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
-    refuse(
-        [f"counterweights = {quote(w)}: must be a Counterweight" for w in weights if not isinstance(w, Counterweight)]
-    )
+    strange = [weight for weight in weights if not isinstance(weight, Counterweight)]
+    refuse([f"counterweights = {quote(weight)}: must be a Counterweight" for weight in strange])
     carriers = scene.mechanism.parts()
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
     loaded = {weight.link for weight in weights}
     moving = [k for k, load in enumerate(scene.loads, 1) if load.on_centre_of in loaded]
-    refuse(
-        [f'loads[{k}].origin = "cg": would move with the counterweight; give its place from the pin' for k in moving]
-    )
+    why = "would move with the counterweight; give its place from the pin"
+    refuse([f'loads[{k}].origin = "cg": {why}' for k in moving])
     links = {role: _carrying(carriers[role], [w for w in weights if w.link == role]) for role in loaded}
     return replace(scene, mechanism=replace(scene.mechanism, **links))
 

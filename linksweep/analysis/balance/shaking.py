@@ -47,8 +47,7 @@ def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr
     refuse([f"ds has no {name}: {advice}" for name in missing])
     about = checked_pair("about", about, POINT)
     moment = ds["Ms"] - (about[0] * ds["Fsy"] - about[1] * ds["Fsx"])
-    where = (
-        "a point of each design" if any(hasattr(x, "dims") for x in about) else f"({about[0]:g}, {about[1]:g}) m from A"
-    )
+    several = any(hasattr(x, "dims") for x in about)
+    where = "a point of each design" if several else f"({about[0]:g}, {about[1]:g}) m from A"
     long_name = f"shaking moment of the moving links' inertia on the ground about {where}, counter-clockwise"
     return moment.rename("Ms").assign_attrs(units="N m", long_name=long_name)

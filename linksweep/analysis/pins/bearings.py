@@ -211,10 +211,10 @@ def bearing_problems(pins: Any, known: Iterable[str]) -> list[str]:
     """Return the problems of bearings by pin."""
     if not isinstance(pins, Mapping | None):
         return [f'pins = {quote(pins)}: must be as {{"B": ls.Bearing(...)}}']
-    wrong = [problem for pin in pins or {} for problem in name_problems("pins", pin, known)]
-    return wrong + [
-        f"pins.{pin} = {quote(b)}: must be a Bearing" for pin, b in (pins or {}).items() if not isinstance(b, Bearing)
-    ]
+    pins = pins or {}
+    wrong = [problem for pin in pins for problem in name_problems("pins", pin, known)]
+    strange = {pin: item for pin, item in pins.items() if not isinstance(item, Bearing)}
+    return wrong + [f"pins.{pin} = {quote(item)}: must be a Bearing" for pin, item in strange.items()]
 
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
@@ -271,9 +271,8 @@ def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.
     """Return Fx and Fy in the axes of the ground, of the journal's link and of the bearing's."""
     force, bearing = f"F{i}{j}", i + j - journal
     suffixes = ["" if link == 1 else f"_link{link}" for link in (1, journal, bearing)]
-    return {
-        f"F{axis}": joined([cycle[f"{force}{axis}{suffix}"] for suffix in suffixes], "frame", FRAMES) for axis in "xy"
-    }
+    parts = {f"F{axis}": [cycle[f"{force}{axis}{suffix}"] for suffix in suffixes] for axis in "xy"}
+    return {name: joined(arrays, "frame", FRAMES) for name, arrays in parts.items()}
 
 
 def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:

@@ -121,9 +121,7 @@ def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
     links = sampled.mechanism.links
     weightless = FRICTIONLESS | {"gravity_x": 0.0, "gravity_y": 0.0}
     bare = replace(sampled, loads=())
-    sources = {
-        f"{link} inertia": (bare, weightless | _massless(other for other in links if other != link)) for link in links
-    }
+    sources = {f"{link} inertia": (bare, weightless | _massless({*links} - {link})) for link in links}
     if any(np.any(component != 0.0) for component in sampled.gravity):
         sources["gravity"] = (bare, FRICTIONLESS | {"omega2": 0.0, "alpha2": 0.0})
     for k, load in enumerate(sampled.loads, 1):

@@ -41,9 +41,8 @@ def main_bearings(
     mains = {main(k): f"F_{main(k)}" for k in range(1, len(machine.mains) + 1)}
     refuse(bearing_problems(pins, mains))
     fitted = {name: (pins or {}).get(name, Bearing()) for name in mains}
-    cycle = machine.sweep(
-        theta2, threads=threads, of=[f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
-    )
+    components = [f"{force}{axis}" for force in mains.values() for axis in ("", "x", "y")]
+    cycle = machine.sweep(theta2, of=components, threads=threads)
     rotation = rotation_under_load(machine, mains, {name: b.exponent for name, b in fitted.items()}, threads=threads)
     highest = peaks(machine, of=mains.values(), threads=threads)
     speed = xr.DataArray(machine.engine.omega2)

@@ -105,8 +105,7 @@ def pin_friction(
     speed = {pin: xr.DataArray(speeds[f"omega_{pin}"]) for pin in rubbing}
     senses = {pin: xr.DataArray(-np.sign(omega)).fillna(0.0) for pin, omega in speed.items()}  # of moments on link j
     with_friction, torques, change = _converged(scene, rubbing, senses, theta2, iterations, threads)
-    names = None if of is None else [of] if isinstance(of, str) else list(of)
-    cycle = sweep(with_friction, theta2, of=names, threads=threads)
+    cycle = sweep(with_friction, theta2, of=of, threads=threads)
     fast = ~(change <= TOLERANCE) & (cycle["status"] == 0)
     losses = [abs(torque * speed[pin]) for pin, torque in torques.items()]
     moment = "moment of friction on link j of the pin force Fij, counter-clockwise"

@@ -209,8 +209,7 @@ def _roots(growing: list, standing: list, below: float) -> tuple[Any, Any]:
 
 def _peak(scene: Scene, name: str, threads: int | None) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the exact peak of a magnitude, or of a signed quantity's magnitude, and its angle."""
-    worst = peaks(scene, of=[name], threads=threads).drop_vars("status")
-    worst = worst.drop_vars([coordinate for coordinate in worst.coords if coordinate not in worst.dims])
+    worst = peaks(scene, of=[name], threads=threads).drop_vars("status").reset_coords(drop=True)
     if f"{name}_peak_at" in worst:
         return worst[f"{name}_peak"], worst[f"{name}_peak_at"]
     positive = worst[f"{name}_max"] >= -worst[f"{name}_min"]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import has_peaks
 from linksweep.base.validate import refuse
-from linksweep.plot.kit.signals import symbol
+from linksweep.plot.kit.signals import label_text, symbol
 
 
 class Column(NamedTuple):
@@ -38,8 +38,8 @@ class Designs(NamedTuple):
         first design."""
         if len(self.labels) == 1:
             ((dim, values),) = self.labels.items()
-            return f"{dim} {', '.join(label(value) for value in values[at].tolist())}"
-        return ", ".join(f"{dim} = {label(values[at[:1]].tolist()[0])}" for dim, values in self.labels.items())
+            return f"{dim} {', '.join(map(label_text, values[at].tolist()))}"
+        return ", ".join(f"{dim} = {label_text(values[at[:1]].tolist()[0])}" for dim, values in self.labels.items())
 
     def counted(self, drawn: int) -> str:
         """Return in words how many designs are drawn, of how many."""
@@ -97,11 +97,6 @@ def in_words(name: str) -> str:
         return name
     first, _, rest = name.replace(".", "_").partition("_")
     return f"{symbol(first) or first} {rest.replace('_', ' ')}".strip()
-
-
-def label(value: Any) -> str:
-    """Format a label with six digits at most."""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def whole(count: int) -> str:

@@ -8,7 +8,9 @@ import secrets
 from base64 import b64encode
 from collections.abc import Callable, Iterable
 from functools import cached_property
+from importlib.resources import files
 from io import BytesIO
+from string import Template
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -27,29 +29,6 @@ INKS = (BLACK, GREY, EDGE, BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE)
 TINTS = (0.2, 0.4, 0.6, 0.8, 1.0)  # of an ink on white paper
 PLAIN = ("#FFFFFF", SHADE, BAR)
 ENDINGS = (".gif", ".html")
-PLAYER = """\
-<div id="NAME" style="display:inline-block;font-family:sans-serif">
-<img alt="film" width="WIDTH" height="HEIGHT" style="display:block">
-<div style="display:flex;gap:6px"><button>Pause</button><input type="range" min="0" value="0" style="flex:1"></div>
-</div>
-<script>
-(function () {
-  const frames = FRAMES, box = document.getElementById("NAME");
-  const [picture, button, slider] = ["img", "button", "input"].map(tag => box.querySelector(tag));
-  let playing = true;
-  const show = k => { slider.value = k; picture.src = "data:image/png;base64," + frames[k]; };
-  const play = on => { playing = on; button.textContent = on ? "Pause" : "Play"; };
-  slider.max = frames.length - 1;
-  slider.oninput = () => { play(false); show(+slider.value); };
-  button.onclick = () => play(!playing);
-  show(0);
-  const clock = setInterval(() => {
-    if (!box.isConnected) clearInterval(clock);
-    else if (playing) show((+slider.value + 1) % frames.length);
-  }, PAUSE);
-})();
-</script>
-"""
 
 
 class Film:
@@ -160,11 +139,9 @@ class Film:
         """Return an HTML player that contains all frames."""
         width, height = self._pictures[0].size
         frames = json.dumps([_as_text(picture) for picture in self._pictures])
-        filled = {"NAME": f"film-{secrets.token_hex(6)}", "WIDTH": str(width), "HEIGHT": str(height)}
-        text = PLAYER
-        for word, value in (filled | {"PAUSE": str(PAUSE), "FRAMES": frames}).items():
-            text = text.replace(word, value)
-        return text
+        player = Template((files(__package__) / "player.html").read_text("utf-8"))
+        name = f"film-{secrets.token_hex(6)}"
+        return player.substitute(name=name, width=width, height=height, pause=PAUSE, frames=frames)
 
 
 def _as_text(picture: Image.Image) -> str:

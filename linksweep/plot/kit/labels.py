@@ -36,16 +36,9 @@ def label(axes: Axes, x: float, y: float, *lines: TextLine, **style: Any) -> Ann
     style = {"fontsize": "small", "path_effects": [halo]} | style
     texts: list[Artist] = [TextArea(text, textprops=style | {"color": color}) for text, color in lines]
     leader = {"arrowstyle": "-", "color": lines[0][1], "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 2.0}
-    note = AnnotationBbox(
-        VPacker(children=texts, pad=0.0, sep=1.5),
-        (x, y),
-        (0.0, 0.0),
-        boxcoords="offset points",
-        arrowprops=leader,
-        frameon=False,
-        pad=0.0,
-        annotation_clip=False,
-    )
+    box = VPacker(children=texts, pad=0.0, sep=1.5)
+    look: dict[str, Any] = {"boxcoords": "offset points", "frameon": False, "pad": 0.0, "annotation_clip": False}
+    note = AnnotationBbox(box, (x, y), (0.0, 0.0), arrowprops=leader, **look)
     note.set_in_layout(False)
     axes.add_artist(note)
     _placer(axes).notes.append(note)
@@ -112,10 +105,8 @@ class Ink:
             self.add(self._broad(_dense(points), 0.5 * line.get_linewidth()))
         marker: Any = line.get_marker()
         if isinstance(marker, Path):
-            shape = np.array(marker.vertices)
-            half = (
-                0.5 * line.get_markersize() * self.point / np.abs(shape).max()
-            )  # its largest coordinate is half its size
+            shape = np.array(marker.vertices)  # its largest coordinate is half its size
+            half = 0.5 * line.get_markersize() * self.point / np.abs(shape).max()
             self.add((points[:, None] + half * _dense(shape)).reshape(-1, 2))
         elif marker not in ("", " ", "None", None):
             self.add(self._broad(points, 0.5 * line.get_markersize()))

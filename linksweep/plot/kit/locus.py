@@ -17,11 +17,12 @@ SIZE = (5.6, 5.2)  # inches
 TICK = 30.0  # degrees of the crank between dots on the locus
 LABELLED = 90.0  # degrees between dots with a number
 BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
-APART = 1e-6  # of that largest force: least distance of two dots
 
 
-def draw_locus(ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.ndarray, units: str) -> None:
-    """Draw the locus of a force with its dots, and an arrow from the origin to the largest force."""
+def draw_locus(
+    ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.ndarray, units: str, last: float | None = None
+) -> None:
+    """Draw the locus of a force, dots on it up to the last angle, and an arrow from the origin to the largest force."""
     size = np.hypot(x, y)
     largest = signals.peak(angles, size)
     usual = signals.scale([size], [largest])
@@ -30,7 +31,7 @@ def draw_locus(ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.nda
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
         tip = _arrow(ax, name, largest, signals.tip(x, y), units, usual)
-    _ticks(ax, angles, x, y, usual)
+    _ticks(ax, angles, x, y, usual, angles[-1] if last is None else last)
     near = size <= BEYOND * usual
     set_limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
 
@@ -55,17 +56,16 @@ def set_limits(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
         set_range(low - room, high + room, auto=True)
 
 
-def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: float) -> None:
-    """Draw dots on the locus at round crank angles, some with the angle beside them, but none on top of another."""
+def _ticks(ax: Axes, angles: np.ndarray, x: np.ndarray, y: np.ndarray, usual: float, last: float) -> None:
+    """Draw dots on the locus at round crank angles up to the last, some with the angle beside them."""
     from linksweep.plot.kit.labels import label
 
-    at = np.arange(np.ceil(angles[0] / TICK) * TICK, angles[-1] + 1e-9, TICK)
+    at = np.arange(np.ceil(angles[0] / TICK) * TICK, last + 1e-9, TICK)
+    closed = (x[0], y[0]) == (x[-1], y[-1])
+    at = at[:-1] if len(at) > 1 and closed and (at[0], at[-1]) == (angles[0], angles[-1]) else at
     points = np.array([np.interp(at, angles, x), np.interp(at, angles, y)])
     there = np.isfinite(points).all(axis=0) & (np.hypot(*points) <= BEYOND * usual)
     at, points = at[there], points[:, there]
-    distances = np.hypot(*(points[:, :, None] - points[:, None, :]))
-    again = np.tril(distances < APART * usual, -1).any(axis=1)
-    at, points = at[~again], points[:, ~again]
     ax.plot(*points, "o", color=BLUE, markersize=3.6, label="_ticks")
     named = at % LABELLED == 0.0
     if named.sum() < 3:

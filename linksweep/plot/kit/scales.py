@@ -61,7 +61,6 @@ def color_bar(ax: Axes, colored: Any, item: Column, limits: tuple[float, float])
 
 def beyond(values: np.ndarray, limits: tuple[float, float]) -> str:
     """Return the ends of a scale beyond which there are values, in matplotlib's words for colour bars."""
-    below, above = (values < limits[0]).any(), (values > limits[1]).any()
-    return {(False, False): "neither", (True, False): "min", (False, True): "max"}.get(
-        (bool(below), bool(above)), "both"
-    )
+    if (values < limits[0]).any():
+        return "both" if (values > limits[1]).any() else "min"
+    return "max" if (values > limits[1]).any() else "neither"

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.base.validate import refuse
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
 
@@ -91,12 +92,9 @@ def require_angles(ds: xr.Dataset) -> None:
 def require_one_design(signals: Iterable[xr.DataArray]) -> None:
     """Raise ValueError where signals have other dims than theta2."""
     sizes = {dim: n for signal in signals for dim, n in signal.sizes.items() if dim != INDEX}
-    if sizes:
-        sizes_text = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
-        choice = ", ".join(f"{dim}=0" for dim in sizes)
-        raise ValueError(
-            f"there are several designs, over {sizes_text}: a plot shows one; choose it, such as ds.isel({choice})"
-        )
+    over = ", ".join(f"{dim} ({n})" for dim, n in sizes.items())
+    choice = f"choose it, such as ds.isel({', '.join(f'{dim}=0' for dim in sizes)})"
+    refuse([f"there are several designs, over {over}: a plot shows one; {choice}"] if sizes else [])
 
 
 def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
@@ -108,10 +106,11 @@ def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
     dim = extra[0]
     labels = signal[dim].values  # positions where the dim has no coordinate
     units = signal[dim].attrs.get("units", "") if dim in signal.coords else ""
-    return {f"{dim} = {_label(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
+    return {f"{dim} = {label_text(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
 
 
-def _label(value: object) -> str:
+def label_text(value: object) -> str:
+    """Format the label of a design, a number with six digits at most."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -208,11 +207,8 @@ def number(value: float) -> str:
         return "∞" if value > 0.0 else "−∞"
     if not 1e-3 <= abs(value) < 1e7:
         return f"{value:.3e}".replace("-", "−")
-    return (
-        np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
-        .rstrip(".")
-        .replace("-", "−")
-    )
+    digits = np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
+    return digits.rstrip(".").replace("-", "−")
 
 
 def angle_text(angle: float) -> str:

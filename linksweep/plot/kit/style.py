@@ -12,6 +12,11 @@ from linksweep.plot.kit.colors import SHADE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+SMALL: dict[Any, Any] = {"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}
+"""Settings of figures of several panels."""
 
 
 def axes_or_new(ax: Axes | None, **figure: Any) -> Axes:
@@ -29,8 +34,17 @@ def small_type() -> Iterator[None]:
     import matplotlib.pyplot as plt
 
     plt.draw_if_interactive()  # wakes a notebook's backend, which turns on display; rc_context would turn it off again
-    with plt.rc_context({"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3}):
+    with plt.rc_context(SMALL):
         yield
+
+
+@contextmanager
+def panels(rows: int, columns: int, **options: Any) -> Iterator[tuple[Figure, Any]]:
+    """Make a figure of several panels and its axes, for a with statement in the look of such figures."""
+    import matplotlib.pyplot as plt
+
+    with small_type():
+        yield plt.subplots(rows, columns, **{"layout": "constrained"} | options)
 
 
 def crank_angles(ax: Axes, angles: np.ndarray) -> None:

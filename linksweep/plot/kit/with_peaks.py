@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.files.netcdf import scene_of
-from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn
+from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn, require_angles
 from linksweep.results.compute import angles_missing
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peaks import peaks, peaks_of_part
@@ -28,7 +28,11 @@ EQUAL = 1e-9
 
 
 def with_peaks(ds: xr.Dataset) -> xr.Dataset:
-    """Return a cycle, or a part of it, with samples at its exact peaks; itself where it is altered, or of designs."""
+    """Return a cycle, or a part of it, with samples at its exact peaks; itself where it is altered, or of designs.
+
+    Raises ValueError for a Dataset that is not over the crank angle.
+    """
+    require_angles(ds)
     if {*ds.dims} != {INDEX} or WHOLE_TURN in ds.attrs:
         return ds
     try:
