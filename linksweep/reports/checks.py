@@ -37,9 +37,8 @@ class Check(NamedTuple):
 
     @property
     def verdict(self) -> Markup:
-        return (
-            Markup() if self.sound is None else tag("b", "ok") if self.sound else tag("b", "caution", class_="caution")
-        )
+        verdicts = {None: Markup(), True: tag("b", "ok"), False: tag("b", "caution", class_="caution")}
+        return verdicts[self.sound]
 
 
 def checks(results: Results) -> Markup:

@@ -8,15 +8,13 @@ from typing import Any
 
 import xarray as xr
 
-from linksweep import plot
-from linksweep.analysis.balance.orders import orders
 from linksweep.analysis.drive.duty import duty, turning_problems
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.pins.bearings import bearings
 from linksweep.base.validate import refuse
 from linksweep.reports import inputs as page_inputs
 from linksweep.reports import tables as page_tables
-from linksweep.reports.figures import ORDERS, SIZE, SQUARE, Picture, pictures
+from linksweep.reports.figures import SIZE, Picture, of_shaking, pictures
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, section, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import fluctuations
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
@@ -28,6 +26,8 @@ HINGED = "The crankshaft is taken as hinged at every main bearing (lever rule)."
 CANCELLED = 10.0
 """Of its bound: a peak below is the rounding of what cancels."""
 PINS = ("F12", "F32", "F43")
+MAIN = ("main_position", "F_peak", "F_peak_at", "equivalent_load")
+SIGNALS = [name for name in SHAKING if name not in ("Fsx", "Fsy")]
 
 
 def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
@@ -35,17 +35,15 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
     engine = machine.engine
     refuse(["engine: has several designs, and a report shows one; give one"] * bool(design_labels(engine)))
     refuse(turning_problems(engine))
-    worst = peaks(machine, of=[*_signals(), *(f"{name}_bound" for name in _signals()), *PINS], threads=threads)
+    worst = peaks(machine, of=[*SIGNALS, *(f"{name}_bound" for name in SIGNALS), *PINS], threads=threads)
     refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])
     mains = bearings(machine, threads=threads) if machine.mains else None
+    cylinders = section("Cylinders", _cylinders(machine, worst))
     return {
         "kind": f"{len(machine.crank_angles)} cylinders",
         "warnings": "",
         "machine": section("One cylinder", page_inputs.links(engine), page_inputs.loads(engine)),
-        "left": joined(
-            section("Cylinders", _cylinders(machine, worst)),
-            section("Peaks of all together", _peaks(machine, worst)),
-        ),
+        "left": joined(cylinders, section("Peaks of all together", _peaks(machine, worst))),
         "right": joined(
             section("Motion", page_inputs.settings(engine)),
             section("Drive", _drive(machine, threads)),
@@ -58,29 +56,19 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
     }
 
 
-def _signals() -> list[str]:
-    return [name for name in SHAKING if name not in ("Fsx", "Fsy")]
-
-
 def _cylinders(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     header = ("", "crank ahead", "bank", "place", *(symbol(name) for name in PINS))
     standing = zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True)
-    rows = [
-        (
-            str(k + 1),
-            angle(ahead),
-            angle(bank),
-            number(1e3 * z, "mm"),
-            *(number(float(worst[f"{name}_peak"][k]), "N") for name in PINS),
-        )
-        for k, (ahead, bank, z) in enumerate(standing)
-    ]
+    rows = []
+    for k, (ahead, bank, z) in enumerate(standing):
+        forces = (number(float(worst[f"{name}_peak"][k]), "N") for name in PINS)
+        rows.append((str(k + 1), angle(ahead), angle(bank), number(1e3 * z, "mm"), *forces))
     return table(header, rows, class_="numbers")
 
 
 def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     rows: list[tuple[Any, ...]] = []
-    for name in _signals():
+    for name in SIGNALS:
         quantity, bound = machine.quantity[name], float(worst[f"{name}_bound"])
         unit = page_tables.UNITS.get(quantity.units, quantity.units)
         ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
@@ -95,29 +83,18 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
 
 def _drive(machine: MultiCylinder, threads: int | None) -> Markup:
     work = duty(machine, threads=threads)
-    size = flywheel(machine, fluctuation=fluctuations(), threads=threads)["flywheel_inertia"]
-    rows = [
-        ("mean torque", number(float(work["effort_mean"]), "N m")),
-        ("mean power", number(float(work["power_mean"]), "W")),
-    ]
-    rows += [(title, number(float(work[name]), "J")) for name, title in page_tables.WORKS.items()]
-    rows += [(f"flywheel for δ = {J.target:g}", number(float(J), "kg m²")) for J in size]
+    wheels = flywheel(machine, fluctuation=fluctuations(), threads=threads)
+    torque = "mean torque", number(float(work["effort_mean"]), "N m")
+    rows = [torque, *page_tables.works(work), *page_tables.flywheels(wheels)]
     return table((), rows, class_="numbers")
 
 
 def _mains(loads: xr.Dataset) -> Markup:
     header = ("", "place", "largest load", "at θ₂", "equivalent load")
-    rows = [
-        (
-            str(name),
-            number(1e3 * float(one["main_position"]), "mm"),
-            number(float(one["F_peak"]), "N"),
-            angle(float(one["F_peak_at"])),
-            number(float(one["equivalent_load"]), "N"),
-        )
-        for name in loads["main"].values
-        for one in [loads.sel(main=name)]
-    ]
+    rows = []
+    for name in loads["main"].values:
+        place, most, at, mean = (float(loads[key].sel(main=name)) for key in MAIN)
+        rows.append((str(name), number(1e3 * place, "mm"), number(most, "N"), angle(at), number(mean, "N")))
     return table(header, rows, class_="numbers")
 
 
@@ -127,9 +104,7 @@ def _figures(machine: MultiCylinder, mains: xr.Dataset | None, threads: int | No
     if mains is not None:
         loads = [mains["F"].sel(main=name) for name in mains["main"].values]
         yield Picture("Loads of the main bearings", SIZE, partial(_over_angle, loads, "force [N]"))
-    yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(cycle, ax=ax))
-    harmonics = orders(cycle, ["Fsx", "Fsy"], n=ORDERS)
-    yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(harmonics, ax=ax))
+    yield from of_shaking(cycle)
 
 
 def _over_angle(signals: list[xr.DataArray], label: str, ax: Any) -> None:

@@ -5,15 +5,19 @@ from __future__ import annotations
 import io
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from linksweep import plot
 from linksweep.analysis.balance.orders import orders
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.mechanisms.drawing import Drawing
+from linksweep.plot.cycle_page import most_loaded
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.style import SMALL
 from linksweep.reports.markup import Markup, symbol, tag
 from linksweep.reports.results_of_page import STEPS, Results
 from linksweep.results.sweep import sweep
@@ -22,21 +26,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOOK: list[Any] = [
-    "default",
-    {"font.size": 8.0, "axes.titlesize": 9.0, "lines.linewidth": 1.3, "svg.hashsalt": "linksweep"},
-]
+LOOK: list[Any] = ["default", SMALL | {"svg.hashsalt": "linksweep"}]
 """Matplotlib's own settings, whatever the user's are, and those of this page."""
 SIZE, SQUARE = (3.55, 2.45), (3.55, 3.1)  # inches
 ORDERS = 6
 
 
 class Picture(NamedTuple):
-    """A panel: its title, its size [inches], and the function that draws it into axes."""
+    """A panel: its title, its size [inches], and the function that draws it into `ax`."""
 
     title: str
     size: tuple[float, float]
-    draw: Callable[[Axes], Any]
+    draw: Callable[..., Any]
 
 
 def of_the_cycle(results: Results) -> Markup:
@@ -62,10 +63,10 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
     bounded = np.isfinite(results.peaks[f"{force}_peak"])
     what = f"Largest pin force: {symbol(force)} at" if bounded else "Beside where pin forces are infinite:"
     title = f"{what} θ₂ = {where:.1f}°"
-    yield Picture(title, SIZE, lambda ax: plot.mechanism(results.scene, where, ax=ax, forces=True))
-    yield Picture("Forces in the joints", SIZE, lambda ax: plot.forces(ds, ax=ax))
+    yield Picture(title, SIZE, partial(plot.mechanism, results.scene, where, forces=True))
+    yield Picture("Forces in the joints", SIZE, partial(plot.forces, ds))
     kind = signals.drive_kind(signals.drive_name(ds)).capitalize()
-    yield Picture(kind, SIZE, lambda ax: plot.torque(ds, ax=ax))
+    yield Picture(kind, SIZE, partial(plot.torque, ds))
     if not bounded:  # there, it is the nearness of the toggle that loads the pin
         return
     shares = breakdown(results.scene, force, theta2=ds[signals.INDEX].values[::STEPS], threads=results.threads)
@@ -76,36 +77,32 @@ def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
 def _of_bearings(results: Results, drawing: Drawing) -> Iterator[Picture]:
     for force in drawing.pin_forces:
         title = f"Load of {drawing.joint_text(force)}: {symbol(force)}"
-        yield Picture(title, SQUARE, _bearing(results, force))
-
-
-def _bearing(results: Results, force: str) -> Callable[[Axes], Axes]:
-    return lambda ax: plot.bearing(results.cycle, force, ax=ax)
+        yield Picture(title, SQUARE, partial(plot.bearing, results.cycle, force))
 
 
 def _of_shaking(results: Results) -> Iterator[Picture]:
     if "Fs_peak" not in results.peaks or float(results.peaks["Fs_peak"]) == 0.0:
         return
-    ds = results.cycle.isel({signals.INDEX: slice(STEPS * int(results.inertia_period))})
-    yield Picture("Shaking force", SQUARE, lambda ax: plot.hodograph(ds, ax=ax))
-    if results.whole:
+    cycle = results.cycle.isel({signals.INDEX: slice(STEPS * int(results.inertia_period))})
+    yield from of_shaking(cycle, results.whole)
+
+
+def of_shaking(ds: xr.Dataset, whole: bool = True) -> Iterator[Picture]:
+    """Yield the path of the shaking force and, of a whole revolution, its orders."""
+    yield Picture("Shaking force", SQUARE, partial(plot.hodograph, ds))
+    if whole:
         harmonics = orders(ds, ["Fsx", "Fsy"], n=ORDERS)
-        yield Picture("Orders of the shaking force", SQUARE, lambda ax: plot.orders(harmonics, ax=ax))
+        yield Picture("Orders of the shaking force", SQUARE, partial(plot.orders, harmonics))
 
 
 def worst(results: Results, drawing: Drawing) -> tuple[str, float]:
     """Return the largest pin force and its crank angle [degree], the exact one where that has a position to draw."""
     peaks = results.peaks
-    pins = drawing.pin_forces
-    force = max(pins, key=lambda name: float(peaks[f"{name}_peak"]))
+    force = max(drawing.pin_forces, key=lambda name: float(peaks[f"{name}_peak"]))
     at = float(peaks[f"{force}_peak_at"])
     if np.isfinite(peaks[f"{force}_peak"]) and not sweep(results.scene, [at], of=["status"])["status"].any():
         return force, at
-    largest = {
-        name: signals.peak(*signals.revolution(results.cycle, signals.magnitude(results.cycle, name))) for name in pins
-    }
-    force = max(pins, key=lambda name: largest[name].value)  # type: ignore[union-attr]
-    return force, largest[force].angle  # type: ignore[union-attr]
+    return most_loaded(results.cycle)
 
 
 def _legend_below(ax: Axes) -> None:
@@ -128,7 +125,7 @@ def _drawn(picture: Picture) -> Markup:
 
     figure = Figure(figsize=picture.size, layout="constrained")
     ax = figure.add_subplot()
-    picture.draw(ax)
+    picture.draw(ax=ax)
     ax.set_title(picture.title, loc="left")
     return _image(figure, picture.title)
 

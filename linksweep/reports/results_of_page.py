@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -81,7 +81,9 @@ class Results(NamedTuple):
 
 def results_of(scene: Scene, part: Range | None = None, threads: int | None = None) -> Results:
     """Compute all results that the report shows of a scene of one design."""
-    theta2 = STEPS * int(scene.period) if part is None else _angles(*part)
+    theta2: Any = STEPS * int(scene.period)
+    if part is not None:
+        theta2 = np.linspace(*part, round((part[1] - part[0]) * STEPS) + 1)
     cycle = sweep(scene, theta2, of=_outputs(scene), threads=threads)
     worst = _exact(scene, threads) if part is None else peaks_of_part(scene, _peaks_of(scene), part, threads=threads)
     results = Results(scene, part, threads, cycle, worst, check(scene))
@@ -92,10 +94,6 @@ def results_of(scene: Scene, part: Range | None = None, threads: int | None = No
         return results
     wheel = None if steady_problems(scene) else flywheel(scene, fluctuation=fluctuations(), threads=threads)
     return results._replace(duty=duty(scene, threads=threads), flywheel=wheel)
-
-
-def _angles(first: float, last: float) -> np.ndarray:
-    return np.linspace(first, last, round((last - first) * STEPS) + 1)
 
 
 def _outputs(scene: Scene) -> tuple[str, ...]:
@@ -110,12 +108,9 @@ def _known(scene: Scene, *names: str) -> list[str]:
     return [name for name in names if name in scene.table.quantity]
 
 
-def _forces(scene: Scene) -> tuple[str, ...]:
-    return scene.mechanism.peak_quantities(scene.drive)
-
-
 def _peaks_of(scene: Scene) -> list[str]:
-    return [*_forces(scene), *(f"{name}_bound" for name in _forces(scene)), *_others(scene)]
+    forces = scene.mechanism.peak_quantities(scene.drive)
+    return [*forces, *(f"{name}_bound" for name in forces), *_others(scene)]
 
 
 def _others(scene: Scene) -> list[str]:
@@ -128,5 +123,6 @@ def _exact(scene: Scene, threads: int | None) -> xr.Dataset:
     if int(worst["status"]):
         return worst
     shaking = [name for name in SHAKING if name in _others(scene)]
-    averages = [f"{name}_{kind}" for name in (*_forces(scene), *shaking) for kind in ("mean", "rms")]
+    forces = scene.mechanism.peak_quantities(scene.drive)
+    averages = [f"{name}_{kind}" for name in (*forces, *shaking) for kind in ("mean", "rms")]
     return worst.assign(peaks(scene, averages, threads=threads).data_vars)

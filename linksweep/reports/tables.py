@@ -65,17 +65,20 @@ def drive(results: Results) -> Markup:
     if "power_peak" not in results.peaks:
         return Markup()
     ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))
-    works = [] if results.duty is None else _works(results.duty, float(results.peaks["power_peak"]))
-    return table((), [("power", ends), *works, *_flywheel(results.flywheel)], class_="numbers")
+    of_cycle = [] if results.duty is None else works(results.duty)
+    return table((), [("power", ends), *of_cycle, *flywheels(results.flywheel)], class_="numbers")
 
 
-def _works(work: xr.Dataset, most: float) -> list[tuple[Any, ...]]:
+def works(work: xr.Dataset) -> list[tuple[Any, ...]]:
+    """Return the rows of the mean power and of the works of a cycle."""
+    most = max(abs(float(work[f"power_{end}"])) for end in ("max", "min"))
     turned = float(abs(work["work_fed"]) + abs(work["work_regenerated"]))
-    works = [(title, _of(turned, float(work[name]), "J")) for name, title in WORKS.items() if name in work]
-    return [("mean power", _of(most, float(work["power_mean"]), "W")), *works]
+    rows = [(title, _of(turned, float(work[name]), "J")) for name, title in WORKS.items() if name in work]
+    return [("mean power", _of(most, float(work["power_mean"]), "W")), *rows]
 
 
-def _flywheel(sizes: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
+def flywheels(sizes: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each flywheel that can be made."""
     for one in sizes["target"].values if sizes is not None else ():
         size = float(sizes["flywheel_inertia"].sel(target=one))  # type: ignore[index]
         if np.isfinite(size):
@@ -94,9 +97,7 @@ def geometry(results: Results) -> Markup:
     rows.append(("time ratio", number(float(shape["time_ratio"]))))
     turns = [float(one) for one in _reversals(results) if np.isfinite(one)]
     if turns:
-        rows.append(
-            ("turns round at", joined(*(joined(", " if k else "", angle(one, 2)) for k, one in enumerate(turns))))
-        )
+        rows.append(("turns round at", Markup(", ".join(angle(one, 2) for one in turns))))
     return table((), _there(rows), class_="numbers") if _there(rows) else Markup()
 
 
