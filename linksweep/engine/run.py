@@ -20,7 +20,7 @@ import numpy as np
 from linksweep.base.memory import require_memory
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
-from linksweep.engine.kernel.fuse import fuse, reductions_source
+from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
 from linksweep.engine.kernel.writer import TILE, Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
@@ -235,7 +235,7 @@ def _execute(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused, layout = ready.plan, ready.fused, ready.layout(sizes)
-    kernel = compiled(fused.source, reductions_source() if ready.reductions else "")
+    kernel = compiled(fused.source, REDUCTIONS_SOURCE if ready.reductions else "")
     samples = len(grid.angles)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)

@@ -28,7 +28,7 @@ def described(
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
     variables["status"] = plain(status, status_attributes(scene.mechanism.status_meanings))
-    coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
+    coordinates = sampled.labels | sampled.parameters | index_coordinate(scene, grid)
     results = quantity.keys() - scene.motion.keys()  # a result may have the name of a parameter
     coordinates = {name: values for name, values in coordinates.items() if name not in results}
     attributes = provenance(scene, command, coordinates)
@@ -78,11 +78,6 @@ def design_coordinates(scene: Scene) -> dict[str, xr.Variable]:
     """Return the labels of the design dims, and every parameter that has design dims, by its path."""
     index = scene.mechanism.index
     return scene.labels | {path: array for path, array in scene.parameters.items() if index not in array.dims}
-
-
-def cycle_coordinates(scene: Scene) -> dict[str, xr.Variable]:
-    """Return the labels of all dims, and every parameter that has dims, by its path."""
-    return scene.labels | scene.parameters
 
 
 def origin_attributes(scene: Scene, command: str) -> dict[str, str]:

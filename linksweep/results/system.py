@@ -13,7 +13,7 @@ from linksweep.base.validate import choice_problems, count_problems, refuse
 from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
-from linksweep.results.dataset import cycle_coordinates, index_coordinate, provenance, status_attributes
+from linksweep.results.dataset import index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
@@ -109,7 +109,7 @@ def system(
         "rhs": xr.Variable(*both["rhs"], {"long_name": "right side; forces in N, moments in N m"}),
         "status": xr.Variable(status.dims, status.values, status_attributes(scene.mechanism.status_meanings)),
     }
-    coordinates = cycle_coordinates(sampled) | index_coordinate(scene, grid)
+    coordinates = sampled.labels | sampled.parameters | index_coordinate(scene, grid)
     coordinates |= {
         "equation": xr.Variable("equation", [equation.label for equation in equations]),
         "unknown": xr.Variable("unknown", list(unknowns)),

@@ -9,12 +9,10 @@ from linksweep.engine.kernel.batched import BatchedWriter, shares_rows
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.plan import Plan
 
+REDUCTIONS_SOURCE = inspect.getsource(reduce)
+
 
 def fuse(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Writer:
     """Return the kernel that stores the plan's outputs or reduces them row by row, for at most `room` samples."""
     writer = Writer(plan, reductions, room)
     return BatchedWriter(plan, reductions, room) if shares_rows(writer) else writer
-
-
-def reductions_source() -> str:
-    return inspect.getsource(reduce)

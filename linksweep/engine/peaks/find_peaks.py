@@ -17,6 +17,7 @@ from linksweep.engine.peaks.search_kernel import STORED, SearchWriter
 from linksweep.engine.run import Field, Fields, Layout, Sizes, flat, ordered, over_threads, single_of, slots
 from linksweep.engine.trace.plan import Plan
 
+SEARCH_SOURCE = inspect.getsource(search)
 INTERPRETED_DESIGNS = 40
 """Designs interpreted before a plan's kernel is compiled."""
 INTERPRETED_SAMPLES = 100_000
@@ -60,7 +61,7 @@ class Searcher:
         """Return the kernel as Python for the first designs, then compiled."""
         self.interpreted += designs
         if self.interpreted > INTERPRETED_DESIGNS:
-            return compiled(self.writer.source, search_source(), SEARCH_SIGNATURE)
+            return compiled(self.writer.source, SEARCH_SOURCE, SEARCH_SIGNATURE)
         return self.in_python
 
     @cached_property
@@ -111,11 +112,6 @@ def find_peaks(
     return {signal: Peak(*(next(fields) for _ in STORED)) for signal in signals}
 
 
-@lru_cache(maxsize=1)
-def search_source() -> str:
-    return inspect.getsource(search)
-
-
 def search_functions(samples: int) -> Mapping[str, Callable]:
     """Return the functions of `engine.peaks.search`, compiled where there are many samples to search."""
-    return compiled_functions(search_source()) if samples > INTERPRETED_SAMPLES else vars(search)
+    return compiled_functions(SEARCH_SOURCE) if samples > INTERPRETED_SAMPLES else vars(search)

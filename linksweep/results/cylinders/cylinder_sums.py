@@ -76,18 +76,6 @@ def _yaw(throw: Throw, x: Any, y: Any) -> Any:
     return throw.z * _along_x(throw, x, y)
 
 
-def _first(one: Any, _: Any) -> Any:
-    return one
-
-
-def _fed(power: Any) -> Any:
-    return np.maximum(power, 0.0)
-
-
-def _regenerated(power: Any) -> Any:
-    return np.maximum(-power, 0.0)
-
-
 ADDED = {
     "T12": ("N m", "torque of the drive on the crankshaft, positive counter-clockwise"),
     "Ms": ("N m", "shaking moment of all cylinders about the crankshaft, positive counter-clockwise"),
@@ -108,15 +96,15 @@ TURNED: dict[str, tuple[Callable[..., Any], str, str]] = {
 SUMS = {
     "status": Sum(("status",), _plain, np.maximum),
     "assembly": Sum(("assembly",), _plain, np.maximum),
-    "omega2": Sum(("omega2",), _plain, _first),
+    "omega2": Sum(("omega2",), _plain, lambda first, _: first),
     **{name: Sum((name,), _plain) for name in ADDED},
     **{name: Sum(SHAKING, part) for name, (part, _, _) in TURNED.items()},
 }
 DERIVED = {
     "Fs_squared": Derived(SHAKING, planar.square),
     "Fs": Derived(("Fs_squared",), np.sqrt),
-    "power_fed": Derived(("power",), _fed),
-    "power_regenerated": Derived(("power",), _regenerated),
+    "power_fed": Derived(("power",), lambda power: np.maximum(power, 0.0)),
+    "power_regenerated": Derived(("power",), lambda power: np.maximum(-power, 0.0)),
 }
 QUANTITIES = (
     *(Quantity(name, units, long_name) for name, (units, long_name) in ADDED.items()),
