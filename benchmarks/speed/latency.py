@@ -85,7 +85,7 @@ def first_minutes(size: Size) -> list[Row]:
 
 def _first_round() -> dict[str, float]:
     """Run every job once, from empty caches of linksweep and matplotlib."""
-    kernel = kernel_of(partial(ls.sweep, scene(GENERAL), 72, NINE, threads=1))
+    kernel = kernel_of(partial(ls.sweep, scene(GENERAL), 72, of=NINE, threads=1))
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         caches = {"LINKSWEEP_CACHE_DIR": f"{folder}/kernels", "MPLCONFIGDIR": f"{folder}/matplotlib"}
         with mock.patch.dict(os.environ, caches):

@@ -50,7 +50,7 @@ KILLED = """
 import linksweep as ls
 from studies import hang_after, many
 hang_after(8)
-ls.study(many(), input(), ["F32"], chunk=1)
+ls.study(many(), input(), of=["F32"], chunk=1)
 """
 
 
