@@ -181,10 +181,7 @@ def bearings(
         | of_life(rotation, pin, bearing)
         for pin, bearing in fitted.items()
     ]
-    results = {
-        name: joined([part[name] for part in parts], "pin", links).assign_attrs(attributes_of(name))
-        for name in parts[0]
-    }
+    results = side_by_side(parts, "pin", links, TEXTS)
     angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
     attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
     return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
@@ -224,11 +221,15 @@ def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
 
 
-def attributes_of(name: str) -> dict[str, Any]:
-    """Return unit and description of a result."""
-    if name == "life_status":
-        return flags("loads for which the life of the bearing holds", MEANINGS)
-    return dict(zip(("units", "long_name"), TEXTS[name], strict=True))
+def side_by_side(
+    parts: list[dict[str, xr.DataArray]], dim: str, pins: Iterable[str], texts: Mapping[str, tuple[str, str]]
+) -> dict[str, xr.DataArray]:
+    """Return the results of all pins along a dim, with unit and description."""
+    results = {name: joined([part[name] for part in parts], dim, pins) for name in parts[0]}
+    status = flags("loads for which the life of the bearing holds", MEANINGS)
+    life_status = results.pop("life_status").assign_attrs(status)
+    described = with_units({name: (values, *texts[name]) for name, values in results.items()})
+    return described | {"life_status": life_status}
 
 
 def _force(links: tuple[int, int]) -> str:

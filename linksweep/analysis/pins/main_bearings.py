@@ -7,12 +7,11 @@ Model and source of the loads: `linksweep.results.cylinders.cylinder_sums`; of l
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import rotation_under_load
-from linksweep.analysis.pins.bearings import Bearing, attributes_of, bearing_problems, of_life, on_journal
+from linksweep.analysis.pins.bearings import TEXTS, Bearing, bearing_problems, of_life, on_journal, side_by_side
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
 from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
@@ -22,7 +21,7 @@ from linksweep.results.dataset import joined
 from linksweep.results.peaks import peaks
 
 FRAMES = ("ground", "journal")
-TEXTS = {
+MAIN_TEXTS = TEXTS | {
     "F": ("N", "magnitude of the force of the main bearing on the crankshaft"),
     "Fx": ("N", "force of the main bearing on the crankshaft, component along the x axis of the frame"),
     "Fy": ("N", "force of the main bearing on the crankshaft, component along the y axis of the frame"),
@@ -53,15 +52,11 @@ def main_bearings(
         | of_life(rotation, name, fitted[name])
         for name, force in mains.items()
     ]
-    results = {n: joined([part[n] for part in parts], "main", mains).assign_attrs(_attributes(n)) for n in parts[0]}
+    results = side_by_side(parts, "main", mains, MAIN_TEXTS)
     place = xr.DataArray(list(machine.mains), dims="main", attrs={"units": "m", "long_name": "place along the shaft"})
     attributes = cycle.attrs | {"command": f"linksweep.bearings(engine, ..., theta2={theta2})"}
     coordinates = {**cycle.coords, "main_position": place}
     return xr.Dataset({**results, "status": cycle["status"]}, coordinates, attributes)
-
-
-def _attributes(name: str) -> dict[str, Any]:
-    return dict(zip(("units", "long_name"), TEXTS[name], strict=True)) if name in TEXTS else attributes_of(name)
 
 
 def _in_frames(cycle: xr.Dataset, force: str) -> dict[str, xr.DataArray]:
