@@ -156,7 +156,7 @@ def test_no_life_at_a_toggle(lengths, theta2):
             ls.SliderCrank(ls.Link(0.05, 1.0, 1e-3), ls.Link(0.08, 0.6, 2e-3, 0.05), 0.5, friction=1.6), omega2=30.0
         ),
     ],
-    ids=["rocker", "rocker by inertia", "coupler", "wedged"],
+    ids=["rocker", "rocker by inertia", "coupler", "jammed"],
 )
 def test_no_life_at_dead_centres_and_wedged_sliders(scene, kind):
     bearings = ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, ls.Bearing(capacity=1e9, kind=kind)))

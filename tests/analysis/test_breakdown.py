@@ -105,7 +105,7 @@ def test_designs_keep_their_dims_and_absent_sources_are_left_out():
     np.testing.assert_array_equal(shares.T12.sel(m=2).isel(speed=1).transpose("source", "theta2"), one.T12)
 
 
-def test_what_it_refuses():
+def test_refusals_of_breakdown():
     with pytest.raises(ValueError, match="of: nothing is named 'theta3'"):
         ls.breakdown(SCENES[0], ["theta3"])
     with pytest.raises(ValueError, match="LoopTrack, which has no pins"):

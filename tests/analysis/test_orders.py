@@ -80,7 +80,7 @@ def test_designs_keep_their_dims_and_a_broken_one_changes_no_other():
         ([0.0, 10.0, 350.0], "T12", 1, "whole cycle"),
     ],
 )
-def test_what_it_refuses(angles, of, n, message):
+def test_refusals_of_orders(angles, of, n, message):
     with pytest.raises(ValueError, match="ds has no dimension theta2"):
         ls.orders(xr.Dataset({"T12": 1.0}), "T12")
     with pytest.raises(ValueError, match=message):

@@ -154,7 +154,7 @@ def test_the_peak_is_exact_over_the_continuous_revolution():
     assert peaks.Fs_peak >= fine.Fs.max()
 
 
-def test_what_it_refuses():
+def test_refusals_of_shaking():
     ds = ls.sweep(ls.Scene(FOUR_BAR, OMEGA), 12, of=SHAKING)
     with pytest.raises(ValueError, match="ds has no Ms: sweep with of="):
         ls.shaking_moment(ds.drop_vars("Ms"))

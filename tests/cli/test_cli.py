@@ -1,4 +1,4 @@
-"""The command line: what it prints and writes, and how it says that something is wrong."""
+"""The command line: its output, its files, and its error messages."""
 
 import os
 import re
@@ -34,7 +34,7 @@ at = ["10 cm", 15]
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch) -> Path:
-    """An empty folder to work in."""
+    """Enter an empty working folder."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -54,17 +54,17 @@ BATCH = ('length = "8 cm"', 'length = {dim = "crank", values = ["6 cm", "8 cm", 
 
 
 def rows(text: str) -> dict[str, list[str]]:
-    """A printed table by the first word of its lines, cells two spaces apart."""
+    """Return a printed table by the first cell of its lines; cells are two spaces apart."""
     cells = [re.split(r" {2,}", line.strip()) for line in text.splitlines() if "  " in line]
     return {first: rest for first, *rest in cells}
 
 
 def assert_table_is(text: str, peaks: xr.Dataset) -> None:
-    found = rows(text)
+    table = rows(text)
     angles = {name: name.removesuffix("_at") for name in map(str, peaks.data_vars) if name.endswith("_at")}
-    assert list(found) == ["quantity", *angles.values()]
+    assert list(table) == ["quantity", *angles.values()]
     for at, name in angles.items():
-        value, unit, angle = found[name]
+        value, unit, angle = table[name]
         assert value == f"{float(peaks[name]):.6g}"
         assert unit == peaks[name].attrs["units"]
         assert angle == f"{float(peaks[at]):.2f}°"
@@ -84,12 +84,12 @@ def test_demo_prints_the_peaks_and_writes_data_and_picture(capsys):
     assert err == ""
     assert sorted(os.listdir()) == ["demo.nc", "demo.png"]
     assert is_png("demo.png")
-    with xr.open_dataset("demo.nc") as found:
-        xr.testing.assert_equal(found.load(), ls.sweep(ls.example("press")))
+    with xr.open_dataset("demo.nc") as ds:
+        xr.testing.assert_equal(ds.load(), ls.sweep(ls.example("press")))
     assert ls.load_scene("demo.nc") == ls.example("press")
 
 
-def test_demo_writes_where_it_is_told(capsys):
+def test_demo_writes_to_the_requested_files(capsys):
     Path("results").mkdir()
     assert main(["demo", "-o", "results/press.v2"]) == 0
     assert sorted(os.listdir("results")) == ["press.v2.nc", "press.v2.png"]
@@ -103,8 +103,8 @@ def test_sweep_writes_the_cycle_and_a_picture_of_it(press, capsys):
     assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png", "--theta2", "48"]) == 0
     assert capsys.readouterr().out.splitlines() == ["written: cycle.nc", "written: cycle.png"]
     assert is_png("cycle.png")
-    with xr.open_dataset("cycle.nc") as found:
-        xr.testing.assert_equal(found.load(), ls.sweep(ls.load_scene(press), 48))
+    with xr.open_dataset("cycle.nc") as ds:
+        xr.testing.assert_equal(ds.load(), ls.sweep(ls.load_scene(press), 48))
     assert sorted(os.listdir()) == ["cycle.nc", "cycle.png", "press.toml"]
 
 
@@ -115,15 +115,15 @@ def test_pictures_of_other_kinds(press, ending, begins, capsys):
     assert Path(picture).read_bytes().startswith(begins)
 
 
-def test_sweep_writes_only_the_variables_asked_for(press, capsys):
+def test_sweep_writes_only_the_requested_variables(press, capsys):
     arguments = ["sweep", press, "-o", "cycle.nc", "--outputs", "T12, F32,", "--theta2", "24", "--plot", "c.png"]
     assert main(arguments) == 0
-    with xr.open_dataset("cycle.nc") as found:
-        assert set(found.data_vars) == {"T12", "F32", "status"}
-    assert is_png("c.png")  # it shows what it always shows
+    with xr.open_dataset("cycle.nc") as ds:
+        assert set(ds.data_vars) == {"T12", "F32", "status"}
+    assert is_png("c.png")  # the picture does not depend on the variables
 
 
-def test_a_result_is_as_good_a_scene_as_a_scene_file(press, capsys):
+def test_a_result_file_is_accepted_as_a_scene(press, capsys):
     assert main(["sweep", press, "-o", "first.nc", "--theta2", "24"]) == 0
     assert main(["sweep", "first.nc", "-o", "second.nc", "--theta2", "24"]) == 0
     with xr.open_dataset("first.nc") as first, xr.open_dataset("second.nc") as second:
@@ -143,16 +143,16 @@ def test_peaks_prints_a_table_and_writes_a_file(press, capsys):
     assert rows(out)["T12_mean"] == [f"{float(expected.T12_mean):.6g}", "N m"]
     assert list(rows(out)) == ["quantity", "F14_peak", "T12_mean"]
     assert out.endswith("\nwritten: peaks.nc\n")
-    with xr.open_dataset("peaks.nc") as found:
-        xr.testing.assert_equal(found.load(), expected)
+    with xr.open_dataset("peaks.nc") as ds:
+        xr.testing.assert_equal(ds.load(), expected)
 
 
-def test_peaks_of_a_batch_are_those_of_the_worst_design(capsys):
+def test_peaks_of_a_batch_name_the_worst_design(capsys):
     scene = scene_file("batch.toml", *BATCH)
     assert main(["peaks", scene, "--of", "F32,T12,By,T12_mean,theta4"]) == 0
     out = capsys.readouterr().out
-    found, peaks = rows(out), ls.peaks(ls.load_scene(scene), of=["F32", "T12", "By", "T12_mean", "theta4"])
-    assert found["quantity"] == ["value", "unit", "at theta2", "worst crank"]
+    table, peaks = rows(out), ls.peaks(ls.load_scene(scene), of=["F32", "T12", "By", "T12_mean", "theta4"])
+    assert table["quantity"] == ["value", "unit", "at theta2", "worst crank"]
     for name, worst in {
         "F32_peak": peaks.F32_peak.where(np.isfinite).argmax("crank"),
         "T12_max": peaks.T12_max.where(np.isfinite).argmax("crank"),
@@ -161,26 +161,26 @@ def test_peaks_of_a_batch_are_those_of_the_worst_design(capsys):
         "theta4_max": peaks.theta4_max.argmax("crank"),
     }.items():
         place = {"crank": int(worst)}
-        assert found[name][0] == f"{float(peaks[name].isel(place)):.6g}"
-        assert found[name][2] == f"{float(peaks[f'{name}_at'].isel(place)):.2f}°"
-        assert found[name][3] == f"{float(peaks.crank.isel(place)):.6g}"
-    assert found["T12_mean"][-1] == f"{float(peaks.crank[int(abs(peaks.T12_mean).argmax('crank'))]):.6g}"
+        assert table[name][0] == f"{float(peaks[name].isel(place)):.6g}"
+        assert table[name][2] == f"{float(peaks[f'{name}_at'].isel(place)):.2f}°"
+        assert table[name][3] == f"{float(peaks.crank.isel(place)):.6g}"
+    assert table["T12_mean"][-1] == f"{float(peaks.crank[int(abs(peaks.T12_mean).argmax('crank'))]):.6g}"
     assert "Some quantity of 1 of 5 designs grows without bound at a toggle" in out
     assert "1 of 5 designs: no result at any crank angle, cannot_assemble." in out
 
 
-def test_a_quantity_that_a_dimension_does_not_touch_is_worst_at_any(capsys):
+def test_a_quantity_independent_of_a_dimension_is_worst_at_any(capsys):
     scene = scene_file("batch.toml", "mass = 0.7", 'mass = {dim = "mass", values = [0.5, 0.9]}')
     assert main(["peaks", scene, "--of", "F32,theta4"]) == 0
-    found = rows(capsys.readouterr().out)
-    assert found["theta4_max"][-1] == "any"
-    assert found["F32_peak"][-1] == "0.9"
+    table = rows(capsys.readouterr().out)
+    assert table["theta4_max"][-1] == "any"
+    assert table["F32_peak"][-1] == "0.9"
 
 
 # ----------------------------------------------------------------------------------------------- check
 
 
-def test_check_says_it_in_words(press, capsys):
+def test_check_prints_its_findings(press, capsys):
     assert main(["check", press]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "Grashof class:            crank-rocker",
@@ -191,17 +191,17 @@ def test_check_says_it_in_words(press, capsys):
     ]
 
 
-def test_check_of_a_rocker_gives_its_limits(capsys):
+def test_check_of_a_rocker_prints_its_limits(capsys):
     scene = scene_file("rocker.toml", 'length = "8 cm"', 'length = "25 cm"')
     assert main(["check", scene]) == 0
-    said = dict(re.split(r": +", line) for line in capsys.readouterr().out.splitlines())
-    found = ls.check(ls.load_scene(scene))
-    folded, stretched, mirrored, also_mirrored = found.toggle_angle.values
+    text = dict(re.split(r": +", line) for line in capsys.readouterr().out.splitlines())
+    checks = ls.check(ls.load_scene(scene))
+    folded, stretched, mirrored, also_mirrored = checks.toggle_angle.values
     assert np.isfinite([folded, stretched, mirrored, also_mirrored]).sum() == 2
-    assert said["Grashof class"] == "triple-rocker"
-    assert said["can be assembled"] == "partly"
-    assert said["toggles at theta2"] == f"{stretched:.4f}° (stretched), {mirrored:.4f}° (stretched, mirrored)"
-    assert said["at theta2 from"] == f"{mirrored:.4f}° to {stretched + 360.0:.4f}°"
+    assert text["Grashof class"] == "triple-rocker"
+    assert text["can be assembled"] == "partly"
+    assert text["toggles at theta2"] == f"{stretched:.4f}° (stretched), {mirrored:.4f}° (stretched, mirrored)"
+    assert text["at theta2 from"] == f"{mirrored:.4f}° to {stretched + 360.0:.4f}°"
 
 
 def test_check_counts_the_designs_of_a_batch(capsys):
@@ -217,11 +217,11 @@ def test_check_counts_the_designs_of_a_batch(capsys):
     assert "can be assembled:         everywhere 3" in capsys.readouterr().out
 
 
-# ------------------------------------------------------------------------------------------ what is wrong
+# ------------------------------------------------------------------------------------------ errors
 
 
 def refused(arguments: list[str], capsys) -> list[str]:
-    """Run what must be refused: exit code 2, nothing printed, nothing written; what it says."""
+    """Run a command that must be refused, with exit code 2 and no output or file; return the lines of its message."""
     before = sorted(os.listdir())
     assert main(arguments) == 2
     out, err = capsys.readouterr()
@@ -242,7 +242,7 @@ def test_all_errors_of_a_scene_file_with_their_lines(capsys):
         assert second == "bad.toml:2: drive = 'crnk': must be one of crank, coupler, rocker; did you mean \"crank\"?"
 
 
-def test_geometry_that_never_closes(capsys):
+def test_geometry_that_never_closes_is_refused(capsys):
     scene = scene_file("far.toml", '"20 cm"', '"50 cm"')
     assert refused(["check", scene], capsys) == [
         "far.toml:6: ground = 0.5 m is 0.02 m longer than crank + coupler + rocker: "
@@ -266,27 +266,27 @@ def test_geometry_that_never_closes(capsys):
         (["demo", "-o", "no/demo"], "no/demo.nc: there is no folder no; make it first"),
     ],
 )
-def test_arguments_that_cannot_be(arguments, message, press, capsys):
-    if arguments[0] == "demo":  # it has printed by then
+def test_bad_arguments_are_refused(arguments, message, press, capsys):
+    if arguments[0] == "demo":  # its output came before
         assert main(arguments) == 2
         assert capsys.readouterr().err == f"linksweep: {message}\n"
     else:
-        (said,) = refused(arguments, capsys)
-        assert said.startswith(message)
+        (line,) = refused(arguments, capsys)
+        assert line.startswith(message)
 
 
-def test_a_file_that_is_neither_scene_nor_result(capsys):
+def test_a_file_that_is_neither_scene_nor_result_is_refused(capsys):
     Path("notes.nc").write_text("crank 8 cm")
-    (said,) = refused(["peaks", "notes.nc"], capsys)
-    assert said == "notes.nc: cannot be read as NetCDF (NetCDF: Unknown file format); a scene file ends in .toml"
+    (message,) = refused(["peaks", "notes.nc"], capsys)
+    assert message == "notes.nc: cannot be read as NetCDF (NetCDF: Unknown file format); a scene file ends in .toml"
 
 
-def test_a_batch_cannot_be_drawn_and_then_nothing_is_written(capsys):
-    (said,) = refused(["sweep", scene_file("b.toml", *BATCH), "-o", "c.nc", "--plot", "c.png"], capsys)
-    assert "crank (5)" in said
+def test_a_batch_cannot_be_drawn_and_writes_no_file(capsys):
+    (message,) = refused(["sweep", scene_file("b.toml", *BATCH), "-o", "c.nc", "--plot", "c.png"], capsys)
+    assert "crank (5)" in message
 
 
-def test_a_picture_that_fails_half_way_leaves_none(press, monkeypatch, capsys):
+def test_a_picture_that_fails_leaves_no_file(press, monkeypatch, capsys):
     class Broken:
         def savefig(self, path, **_):
             Path(path).write_bytes(b"half")
@@ -300,7 +300,7 @@ def test_a_picture_that_fails_half_way_leaves_none(press, monkeypatch, capsys):
     assert sorted(os.listdir()) == ["cycle.nc", "cycle.png", "press.toml"]
 
 
-def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
+def test_ctrl_c_prints_no_traceback(press, monkeypatch, capsys):
     def stopped(scene):
         raise KeyboardInterrupt
 
@@ -310,7 +310,7 @@ def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "said"),
+    ("arguments", "code", "message"),
     [
         (["--help"], 0, "demo.*sweep.*peaks.*check"),
         (["--version"], 0, rf"^linksweep {re.escape(ls.__version__)}$"),
@@ -327,15 +327,15 @@ def test_a_person_who_stops_it_sees_no_traceback(press, monkeypatch, capsys):
         (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2/--theta: invalid int value: 'many'"),
     ],
 )
-def test_help_and_usage(arguments, code, said, capsys):
+def test_help_and_usage(arguments, code, message, capsys):
     with pytest.raises(SystemExit) as stopped:
         main(arguments)
     assert stopped.value.code == code
     out, err = capsys.readouterr()
-    assert re.search(said, out + err, re.DOTALL)
+    assert re.search(message, out + err, re.DOTALL)
 
 
-def test_alone_it_prints_its_help(capsys):
+def test_without_arguments_it_prints_its_help(capsys):
     assert main([]) == 0
     alone = capsys.readouterr()
     with pytest.raises(SystemExit):
@@ -353,13 +353,13 @@ def test_quantities_prints_the_table(press, capsys):
     assert [*rows(capsys.readouterr().out)] == ["name", "Ms"]
 
 
-def test_quantities_says_that_none_has_the_words(press, capsys):
+def test_quantities_without_a_match_prints_a_message(press, capsys):
     assert main(["quantities", press, "torqe"]) == 2
-    said = 'linksweep: press.toml: no quantity has "torqe" in its name, unit or meaning\n'
-    assert capsys.readouterr() == ("", said)
+    text = 'linksweep: press.toml: no quantity has "torqe" in its name, unit or meaning\n'
+    assert capsys.readouterr() == ("", text)
 
 
-def test_it_runs_as_a_module(press):
+def test_the_command_runs_as_a_module(press):
     def run(*arguments):
         return subprocess.run([sys.executable, "-m", "linksweep", *arguments], capture_output=True, text=True)
 

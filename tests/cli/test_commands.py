@@ -1,4 +1,4 @@
-"""Words of the command line for what comes after the peaks: tables that say what the library says, and clear errors."""
+"""Commands for analyses: tables with the library's numbers, and clear errors."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ RADIUS = ["--radius", "6 cm"]
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """A folder to work in, with the scenes as files."""
+    """Enter a working folder with the example scenes as files."""
     monkeypatch.chdir(tmp_path)
     for name in ("press", "engine", "loop"):
         source = Path(ls.scene.examples.__file__).with_name(f"{name}.toml")
@@ -27,52 +27,52 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def told(capsys):
-    """What a command prints, by the first word of its lines, cells two spaces apart."""
+def table(capsys):
+    """Return a function that runs a command and returns its printed table by the first cell of its lines."""
 
-    def tell(*arguments: str) -> dict[str, list[str]]:
+    def run(*arguments: str) -> dict[str, list[str]]:
         assert main(list(arguments)) == 0
         cells = [re.split(r" {2,}", line.strip()) for line in capsys.readouterr().out.splitlines() if line]
         return {first: rest for first, *rest in cells}
 
-    return tell
+    return run
 
 
 def number(text):
     return float(text.replace("−", "-").split()[0])
 
 
-def test_bearings(told):
+def test_bearings(table):
     sizes = ["--diameter", "20 mm", "--length", "0.03", "--capacity", "5 kN"]
-    found = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(diameter=0.02, length=0.03, capacity=5000.0)))
-    rows = told("bearings", "press.toml", *sizes)
+    bearings = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(diameter=0.02, length=0.03, capacity=5000.0)))
+    rows = table("bearings", "press.toml", *sizes)
     titles = ["largest [N]", "mean [N]", "equivalent [N]", "turns [°]", "pressure [MPa]", "PV [MPa m/s]", "L10h [h]"]
     assert rows["pin"] == titles
     for k, pin in enumerate("ABCD"):
-        one = found.isel(pin=k)
+        one = bearings.isel(pin=k)
         load, life = [float(one.F.max()), float(one.F.mean())], float(one.L10h)
         expected = [*load, float(one.equivalent_load), float(one.rotation)]
         expected += [load[0] / (0.02 * 0.03) / 1e6, float(one.pv.max()) / 1e6, life]
         np.testing.assert_allclose([number(text) for text in rows[pin]], expected, rtol=6e-4)
-    assert told("bearings", "press.toml")["pin"] == titles[:4]  # what nothing is known of has no column
+    assert table("bearings", "press.toml")["pin"] == titles[:4]  # quantities without data have no column
 
 
-def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(told):
-    rows = told("bearings", "press.toml", "--capacity", "5 kN", "--theta2", "10", "60")
-    found = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0)), theta2=(10, 60))
+def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(table):
+    rows = table("bearings", "press.toml", "--capacity", "5 kN", "--theta2", "10", "60")
+    bearings = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0)), theta2=(10, 60))
     for k, pin in enumerate("ABCD"):
-        assert number(rows[pin][-1]) == pytest.approx(float(found.L10h[k]), rel=6e-4)
+        assert number(rows[pin][-1]) == pytest.approx(float(bearings.L10h[k]), rel=6e-4)
     links = (ls.Link(length, 0.0, 0.0) for length in (0.12, 0.15, 0.25))
     scene = ls.Scene(ls.FourBar(*links, ground=0.2), omega2=5.0, loads=[ls.Load("rocker", torque=-8.0)])
     Path("stuck.toml").write_text(write_scene(scene))
-    rows = told("bearings", "stuck.toml", "--capacity", "5 kN")
+    rows = table("bearings", "stuck.toml", "--capacity", "5 kN")
     for pin in "ABCD":
         assert rows[pin][0] == rows[pin][2] == "inf"
         assert rows[pin][-2:] == ["0", "unbounded load"]
 
 
-def test_breakdown_adds_up_at_the_worst_angle(told):
-    rows = told("breakdown", "press.toml", "F32")
+def test_breakdown_adds_up_at_the_worst_angle(table):
+    rows = table("breakdown", "press.toml", "F32")
     peak = ls.peaks(PRESS, of=["F32"])
     assert f"F32 at theta2 = {float(peak.F32_peak_at):.2f}°" in rows
     *shares, (whole, all_of_it) = list(rows.values())[1:]
@@ -80,12 +80,12 @@ def test_breakdown_adds_up_at_the_worst_angle(told):
     assert sum(number(share) for share, _ in shares) == pytest.approx(number(whole), rel=1e-4)
     sizes = [abs(number(share)) for share, _ in shares]
     assert sizes == sorted(sizes, reverse=True)
-    assert "crank inertia" not in rows  # its centre of gravity stands still
+    assert "crank inertia" not in rows  # its centre of gravity is at rest
     assert all_of_it == "100.0 %"
 
 
-def test_balance(told):
-    rows = told("balance", "press.toml", *RADIUS)
+def test_balance(table):
+    rows = table("balance", "press.toml", *RADIUS)
     weights = ls.counterweights(PRESS, radius=0.06)
     for weight in weights:
         assert [number(text) for text in rows[weight.link]] == pytest.approx([weight.mass, *weight.at], rel=1e-4)
@@ -96,27 +96,27 @@ def test_balance(told):
         assert [number(text) for text in rows[name][:2]] == pytest.approx(largest, rel=1e-4)
 
 
-def test_a_fraction_of_an_engine_is_balanced(told):
-    rows = told("balance", "engine.toml", *RADIUS, "--fraction", "1")
+def test_a_fraction_of_an_engine_is_balanced(table):
+    rows = table("balance", "engine.toml", *RADIUS, "--fraction", "1")
     assert number(rows["crank"][0]) == pytest.approx(
         ls.counterweights(ENGINE, radius=0.06, fraction=1.0)[0].mass, rel=1e-4
     )
 
 
-def test_orders(told):
-    rows = told("orders", "engine.toml", "-n", "2")
-    found = ls.orders(ls.sweep(ENGINE, of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=2)
+def test_orders(table):
+    rows = table("orders", "engine.toml", "-n", "2")
+    orders = ls.orders(ls.sweep(ENGINE, of=["Fsx", "Fsy"]), ["Fsx", "Fsy"], n=2)
     assert list(rows) == ["order", "0", "0.5", "1", "1.5", "2"]
     assert rows["order"] == ["Fsx [N]", "Fsy [N]"]
     for order in (1, 2):
-        expected = [float(found[f"{name}_amplitude"].sel(order=order)) for name in ("Fsx", "Fsy")]
+        expected = [float(orders[f"{name}_amplitude"].sel(order=order)) for name in ("Fsx", "Fsy")]
         np.testing.assert_allclose([number(text) for text in rows[str(order)]], expected, rtol=1e-4, atol=1e-6)
-    assert rows["1.5"] == ["0", "0"]  # rounding is not shown
-    assert told("orders", "press.toml", "T12", "-n", "1")["order"] == ["T12 [N m]"]
+    assert rows["1.5"] == ["0", "0"]  # no rounding errors are printed
+    assert table("orders", "press.toml", "T12", "-n", "1")["order"] == ["T12 [N m]"]
 
 
-def test_flywheel(told):
-    rows = told("flywheel", "press.toml", "--fluctuation", "0.05")
+def test_flywheel(table):
+    rows = table("flywheel", "press.toml", "--fluctuation", "0.05")
     work, wheel = ls.duty(PRESS), ls.flywheel(PRESS, fluctuation=0.05)
     assert number(rows["largest torque"][0]) == pytest.approx(float(work.effort_peak), rel=1e-4)
     assert number(rows["work fed"][0]) == pytest.approx(float(work.work_fed), rel=1e-4)
@@ -159,7 +159,7 @@ def test_each_draws_its_figure(arguments, capsys):
         (["animate", "press.toml", "-o", "none/film.gif", "--frames", "2"], "there is no folder none"),
     ],
 )
-def test_errors_are_said_in_a_line_and_without_a_traceback(arguments, message, capsys):
+def test_errors_are_one_line_without_a_traceback(arguments, message, capsys):
     assert main(arguments) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -188,7 +188,7 @@ def test_a_batch_is_refused(capsys):
     assert "batch.toml: has several designs, over speed (2)" in capsys.readouterr().err
 
 
-def test_a_part_of_a_revolution_has_no_worst_angle_nor_a_cycle(capsys):
+def test_a_partial_revolution_has_no_worst_angle_and_no_cycle(capsys):
     swing = ls.Scene(ls.FourBar(*(ls.Link(length, 1.0, 0.01) for length in (0.08, 0.12, 0.11)), ground=0.22), 20.0)
     ls.save(ls.sweep(swing, theta2=36), "swing.nc")
     assert main(["breakdown", "swing.nc", "F32"]) == 2

@@ -1,4 +1,4 @@
-"""NetCDF files that are damaged or of another kind: an error of ours that names the file and what is wrong."""
+"""NetCDF files that are damaged or of another kind are refused with a message that names the file and the problem."""
 
 import random
 import re
@@ -17,7 +17,7 @@ FLIPS = 300
 
 
 def batch() -> ls.Scene:
-    """A scene of which some numbers stand in the file's variables, not in the scene's text."""
+    """Return a scene with some numbers in the file's variables, not in the scene's text."""
     press = ls.example("press")
     coupler = ls.Link(0.22, xr.DataArray([0.5, 0.6, 0.7], dims="case"), 2.8e-3, cg_distance=0.11)
     speed = xr.DataArray([10.0, 30.0], {"speed": [1, 2]}, "speed")
@@ -26,14 +26,14 @@ def batch() -> ls.Scene:
 
 @pytest.fixture
 def saved(tmp_path):
-    """A file that was saved, and what is in it."""
+    """Return a saved file and its content."""
     path = tmp_path / "cycle.nc"
     ls.save(ls.sweep(batch(), 12), path)
     return path, path.read_bytes()
 
 
 def refusal(path) -> str | None:
-    """What is said of a file; None where its scene is read. Anything but a plain ValueError is an error."""
+    """Return the message with which a file is refused, or None where its scene is read; no other error may occur."""
     try:
         scene = ls.load_scene(path)
     except ValueError as error:
@@ -50,7 +50,7 @@ def flipped(content: bytes, byte: int, bit: int) -> bytes:
     return content[:byte] + bytes([content[byte] ^ (1 << bit)]) + content[byte + 1 :]
 
 
-# ------------------------------------------------------------------------------------ what was saved
+# ------------------------------------------------------------------------------------ saved files
 
 
 def test_a_bit_flipped_in_a_saved_file_is_noticed_wherever_it_is(saved):
@@ -61,14 +61,14 @@ def test_a_bit_flipped_in_a_saved_file_is_noticed_wherever_it_is(saved):
         assert refusal(path) == ": is damaged: its checksum does not match; make it again", byte
 
 
-def test_a_file_without_all_of_its_seal_is_still_whole(saved):
+def test_a_file_without_its_whole_checksum_trailer_is_read(saved):
     path, content = saved
     for less in (flipped(content, len(content) - 9, 2), content[:-20]):
         path.write_bytes(less)
         assert refusal(path) is None
 
 
-def test_a_saved_file_cut_anywhere_says_by_how_much(saved):
+def test_a_truncated_saved_file_states_the_missing_bytes(saved):
     path, content = saved
     rng = random.Random(2)
     for length in rng.sample(range(64, len(content) - 100), FLIPS):
@@ -76,7 +76,7 @@ def test_a_saved_file_cut_anywhere_says_by_how_much(saved):
         assert re.match(r": cannot be read as NetCDF \(cut off: \d+ of \d+ bytes\); a scene file ends", refusal(path))
 
 
-def test_blocks_lost_or_of_another_file_are_noticed(saved):
+def test_lost_and_foreign_blocks_are_noticed(saved):
     path, content = saved
     rng = random.Random(3)
     for _ in range(FLIPS // 3):
@@ -88,37 +88,37 @@ def test_blocks_lost_or_of_another_file_are_noticed(saved):
             assert instead == lost or refusal(path) == ": is damaged: its checksum does not match; make it again"
 
 
-def test_a_study_and_a_saved_file_are_told_apart(saved, tmp_path):
+def test_a_study_and_a_saved_file_are_distinguished(saved, tmp_path):
     with pytest.raises(ValueError, match=r"cycle\.nc: is no study that linksweep finished"):
         ls.open_study(saved[0])
     ls.study(batch(), tmp_path / "study.nc", of=["T12"])
     assert ls.load_scene(tmp_path / "study.nc") == batch()
 
 
-def test_a_file_that_others_changed_is_theirs(saved):
+def test_a_file_changed_by_other_software_is_read_without_checksum(saved):
     path, _ = saved
     with netCDF4.Dataset(path, "a") as file:
         file["coupler.mass"][0] = 0.4
     assert ls.load_scene(path).mechanism.coupler.mass.values.tolist() == [0.4, 0.6, 0.7]
 
 
-# -------------------------------------------------------------------------- what others wrote, unsealed
+# -------------------------------------------------------------------------- files of other software, without checksum
 
 
 @pytest.fixture
 def plain(tmp_path):
-    """A result that xarray wrote, without our checksum."""
+    """Return a result written by xarray, without a checksum."""
     path = tmp_path / "plain.nc"
     ls.sweep(batch(), 12).to_netcdf(path)
     return path, path.read_bytes()
 
 
-def test_a_plain_file_gives_its_scene_back(plain):
+def test_the_scene_of_a_plain_file_is_read(plain):
     assert refusal(plain[0]) is None
 
 
-def test_bits_flipped_in_the_structure_of_a_plain_file_are_survived(plain):
-    """HDF5 itself may crash or hang of them: it is another process that reads."""
+def test_bits_flipped_in_the_structure_of_a_plain_file_are_refused_or_read(plain):
+    """Read in another process, because HDF5 itself may crash or hang."""
     path, content = plain
     rng = random.Random(4)
     structure = [byte for byte, value in enumerate(content[48:4096], 48) if value]
@@ -126,25 +126,25 @@ def test_bits_flipped_in_the_structure_of_a_plain_file_are_survived(plain):
     for byte in rng.sample(structure, 3):
         path.write_bytes(flipped(content, byte, rng.randrange(8)))
         refused.append(refusal(path))
-    assert any(said and said.startswith(": cannot be read as NetCDF (") for said in refused)
+    assert any(text and text.startswith(": cannot be read as NetCDF (") for text in refused)
 
 
 @pytest.mark.parametrize(
-    ("program", "said"),
+    ("program", "message"),
     [
         ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "damaged: the NetCDF library crashes on it"),
         ("while True: pass", "damaged: the NetCDF library has not returned after 0.5 s"),
         ("import sys; sys.exit('NetCDF: HDF error')", "NetCDF: HDF error"),
     ],
 )
-def test_a_library_that_dies_or_hangs_is_told(program, said, plain, monkeypatch):
+def test_a_crash_or_hang_of_the_library_is_reported(program, message, plain, monkeypatch):
     run = subprocess.run
     monkeypatch.setattr(subprocess, "run", lambda command, **options: run([command[0], "-c", program], **options))
     monkeypatch.setattr(isolated, "LONGEST", 0.5 if "while" in program else 60.0)
-    assert refusal(plain[0]) == f": cannot be read as NetCDF ({said}); a scene file ends in .toml"
+    assert refusal(plain[0]) == f": cannot be read as NetCDF ({message}); a scene file ends in .toml"
 
 
-def test_a_plain_file_cut_anywhere_says_by_how_much(plain):
+def test_a_truncated_plain_file_states_the_missing_bytes(plain):
     path, content = plain
     for length in random.Random(5).sample(range(64, len(content)), FLIPS):
         path.write_bytes(content[:length])
@@ -155,7 +155,7 @@ def test_a_plain_file_cut_anywhere_says_by_how_much(plain):
 
 
 def _with(name: str, dims: tuple[str, ...], values, **attributes):
-    """The same Dataset with another variable of this name."""
+    """Return a copy of the Dataset with another variable of this name."""
     return lambda ds: ds.drop_vars(name).assign_coords({name: (dims, np.asarray(values), attributes)})
 
 
@@ -189,7 +189,7 @@ def _with(name: str, dims: tuple[str, ...], values, **attributes):
         ),
     ],
 )
-def test_a_variable_or_scene_that_is_missing_or_another_says_so(change, message, tmp_path):
+def test_missing_and_changed_variables_and_scenes_are_refused(change, message, tmp_path):
     path = tmp_path / "changed.nc"
     ls.save(change(ls.sweep(batch(), 12)), path)
     with pytest.raises(ValueError, match=rf"^{re.escape(str(path))}:{message}"):

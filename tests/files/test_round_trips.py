@@ -1,4 +1,4 @@
-"""The scene in a file is the whole scene: every example, with every load over the angle, through every kind of file."""
+"""Every kind of file stores the whole scene: every example, with every load over the angle."""
 
 import re
 from dataclasses import replace
@@ -51,7 +51,7 @@ def loaded(scene: ls.Scene, value, **words) -> ls.Scene:
 
 
 def scene_with(machine: str, kind: str) -> ls.Scene:
-    """The example with a load over the angle and with two crank lengths."""
+    """Return the example with a load over the angle and with two crank lengths."""
     scene = ls.example(machine)
     length = scene.mechanism.crank.length * xr.DataArray([1.0, 1.02], {"design": [10, 11]}, "design")
     crank = replace(scene.mechanism.crank, length=length)
@@ -59,7 +59,7 @@ def scene_with(machine: str, kind: str) -> ls.Scene:
 
 
 def results(scene: ls.Scene, folder) -> dict[str, xr.Dataset]:
-    """Every kind of Dataset that holds a scene."""
+    """Return every kind of Dataset that holds a scene."""
     return {
         "sweep": ls.sweep(scene, 12),
         "peaks": ls.peaks(scene, of=["F12"]),
@@ -69,7 +69,7 @@ def results(scene: ls.Scene, folder) -> dict[str, xr.Dataset]:
 
 
 def paths_of(scene: ls.Scene, made: dict[str, xr.Dataset], folder) -> list:
-    """Every kind of file that holds it."""
+    """Write every kind of file that holds the scene; return the paths."""
     for name, ds in made.items():
         ls.save(ds, folder / f"{name}.nc")
     for name in ("scene.nc", "scene.toml"):
@@ -79,7 +79,7 @@ def paths_of(scene: ls.Scene, made: dict[str, xr.Dataset], folder) -> list:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("machine", long_but(MACHINES, "press"))
-def test_every_file_holds_the_whole_scene(machine, kind, tmp_path):
+def test_every_file_stores_the_whole_scene(machine, kind, tmp_path):
     scene = scene_with(machine, kind)
     made = results(scene, tmp_path)
     paths = paths_of(scene, made, tmp_path)
@@ -111,7 +111,7 @@ def test_a_cycle_cut_short_keeps_its_loads():
 
 
 def test_a_csv_load_survives_its_file(tmp_path, capsys):
-    """Results hold what the CSV file held; the command line opens them."""
+    """Results store the CSV file's values, and the command line opens them without it."""
     rows = "\n".join(f"{angle},{force}" for angle, force in zip(range(0, 360, 30), SHAPE, strict=True))
     (tmp_path / "push.csv").write_text(f"theta2,force\n{rows}\n")
     text = ls.example("press").to_toml().replace("torque = -12.0", 'torque = {csv = "push.csv"}')
@@ -133,19 +133,19 @@ def test_a_csv_load_survives_its_file(tmp_path, capsys):
     assert "theta2 = [0.0, 30.0, 60.0," in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_load_at_one_angle_is_refused_in_words():
+def test_a_load_at_one_angle_is_refused():
     at_one = xr.DataArray([5.0], {"theta2": [0.0]}, "theta2")
     with pytest.raises(ValueError, match=r"loads\[3\].torque: its 1 angles from 0 to 0 degrees cannot be joined"):
         ls.peaks(loaded(ls.example("press"), at_one))
 
 
-def test_the_loop_through_every_file(tmp_path):
+def test_the_loop_round_trips_through_every_file(tmp_path):
     scene = ls.example("loop")
     for path in paths_of(scene, {"sweep": ls.sweep(scene), "peaks": ls.peaks(scene)}, tmp_path):
         assert ls.load_scene(path) == scene
 
 
-def test_a_scene_is_saved_as_a_text_to_be_edited(tmp_path):
+def test_a_scene_is_saved_as_editable_text(tmp_path):
     scene = ls.example("engine")
     text = scene.to_toml()
     ls.save(scene, tmp_path / "pick.toml")
@@ -157,14 +157,14 @@ def test_a_scene_is_saved_as_a_text_to_be_edited(tmp_path):
 
 
 @pytest.mark.parametrize("number", [0.1 + 0.2, 5e-324, 1.7976931348623157e308, 1e16, -0.0, 123456789.123456789])
-def test_numbers_in_a_text_come_back_to_the_bit(number):
+def test_numbers_in_text_round_trip_to_the_bit(number):
     from linksweep.scene.file.reading import parse_scene
 
     again = parse_scene(replace(ls.example("press"), alpha2=number).to_toml()).alpha2
     assert np.float64(again).tobytes() == np.float64(number).tobytes()
 
 
-def test_what_a_file_cannot_hold_is_refused_before_anything_is_written(tmp_path):
+def test_values_that_a_file_cannot_hold_are_refused_before_writing(tmp_path):
     steps = loaded(ls.example("press"), lambda theta2: np.where(np.mod(theta2, 360.0) < 180.0, 0.0, -9.0))
     for name in ("a.toml", "a.nc"):
         with pytest.raises(ValueError, match=r"^loads\[3\].torque is a function of theta2 that jumps.*: give it as a"):
@@ -176,7 +176,7 @@ def test_what_a_file_cannot_hold_is_refused_before_anything_is_written(tmp_path)
     assert not [*tmp_path.iterdir()]
 
 
-def test_an_array_over_a_dim_of_its_own_name_comes_back_equal(tmp_path):
+def test_an_array_over_a_dim_of_its_own_name_round_trips(tmp_path):
     """NetCDF holds it as the coordinate of that dim."""
     scene = replace(ls.example("press"), omega2=xr.DataArray([10.0, 20.0, 30.0], dims="omega2"))
     ls.save(ls.peaks(scene, of=["T12"]), tmp_path / "peaks.nc")

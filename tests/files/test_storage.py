@@ -1,4 +1,4 @@
-"""Files: whole or not at all, equal when read by anything, and the scene comes back from them."""
+"""Files are written whole or not at all, read equal by any software, and the scene is read from them."""
 
 import os
 import stat
@@ -27,7 +27,7 @@ def plain() -> ls.Scene:
 
 
 def batch() -> ls.Scene:
-    """Design dims with labels of all sorts and without, shared and alone, and both branches."""
+    """Return a scene with design dims with and without labels, shared and single, and both branches."""
     case = xr.DataArray([[0.5, 0.6], [0.7, 0.8]], {"case": ["a", "b b"], "n": [3, 1]}, ("case", "n"))
     length = xr.DataArray([0.21, 0.22, 0.5], {"length": [21.0, 22.0, 50.0]}, "length")
     mechanism = four_bar(ls.Link(length, case, 2.8e-3), branch="both", ground_angle=xr.DataArray([0.0, 7.0], dims="α"))
@@ -37,7 +37,7 @@ def batch() -> ls.Scene:
 
 
 def moving() -> ls.Scene:
-    """What changes over the revolution in each of the ways to say so."""
+    """Return a scene with parameters over the revolution as arrays and as functions."""
     rng = np.random.default_rng(1)
     over = xr.DataArray(7.0 * np.cos(np.radians(THETA2)), {"theta2": THETA2}, "theta2")
     coarse = xr.DataArray(rng.normal(size=(2, 4)), {"theta2": [0, 90, 180, 270]}, ("case", "theta2"))
@@ -64,28 +64,28 @@ every_dataset = pytest.mark.parametrize("job", JOBS)
 every_scene = pytest.mark.parametrize("scene", SCENES)
 
 
-def assert_same(found: xr.Dataset, expected: xr.Dataset) -> None:
-    """Equal values, names and dims, and equal attributes of each variable."""
-    xr.testing.assert_equal(found, expected)
+def assert_same(actual: xr.Dataset, expected: xr.Dataset) -> None:
+    """Check that values, names, dims and attributes of each variable are equal."""
+    xr.testing.assert_equal(actual, expected)
     for name, value in expected.variables.items():
-        assert found[name].dtype.kind == value.dtype.kind
-        assert {key: str(word) for key, word in found[name].attrs.items()} == {
+        assert actual[name].dtype.kind == value.dtype.kind
+        assert {key: str(word) for key, word in actual[name].attrs.items()} == {
             key: str(word) for key, word in value.attrs.items()
         }
 
 
-# ------------------------------------------------------------------------------ what is written is read
+# ------------------------------------------------------------------------------ round trips
 
 
 @every_scene
 @every_dataset
 @pytest.mark.parametrize("write", [ls.save, xr.Dataset.to_netcdf], ids=["save", "to_netcdf"])
-def test_every_dataset_is_read_as_it_was(scene, job, write, tmp_path):
+def test_every_dataset_round_trips(scene, job, write, tmp_path):
     ds = JOBS[job](SCENES[scene]())
     write(ds, tmp_path / "result.nc")
-    with xr.open_dataset(tmp_path / "result.nc") as found:
-        assert_same(found.load(), ds)
-        assert found.attrs == ds.attrs
+    with xr.open_dataset(tmp_path / "result.nc") as stored:
+        assert_same(stored.load(), ds)
+        assert stored.attrs == ds.attrs
 
 
 @every_scene
@@ -121,14 +121,14 @@ def test_a_saved_file_may_be_saved_again_and_over_itself(tmp_path):
     assert os.listdir(tmp_path) == ["cycle.nc"]
 
 
-# ------------------------------------------------------------------------------------ the scene is back
+# ------------------------------------------------------------------------------------ the scene of a file
 
 SWEPT = [job for job in JOBS if job != "check"]  # lengths and angles that check reports need no more than a look
 
 
 @every_scene
 @pytest.mark.parametrize("job", SWEPT)
-def test_the_scene_of_a_file_gives_equal_arrays(scene, job, tmp_path):
+def test_the_scene_of_a_file_gives_equal_results(scene, job, tmp_path):
     ds = JOBS[job](SCENES[scene]())
     ls.save(ds, tmp_path / "result.nc")
     again = JOBS[job](ls.load_scene(tmp_path / "result.nc"))
@@ -138,7 +138,7 @@ def test_the_scene_of_a_file_gives_equal_arrays(scene, job, tmp_path):
     assert scene == "moving" or ls.load_scene(tmp_path / "result.nc") == SCENES[scene]()
 
 
-def test_functions_come_back_whole_however_few_angles_were_swept():
+def test_functions_are_stored_independently_of_the_swept_angles():
     scene = scene_of(ls.sweep(moving(), 12))
     assert scene.omega2.dims == ("theta2",)
     finer = ls.sweep(scene, 240, of=["T12"]).T12
@@ -155,7 +155,7 @@ def test_a_design_taken_from_a_batch_still_knows_its_scene():
         np.testing.assert_array_equal(alone[name].values, ds[name].isel(place, missing_dims="ignore").values)
 
 
-def test_files_of_scenes_and_of_results_say_the_same(tmp_path):
+def test_files_of_scenes_and_of_results_hold_equal_scenes(tmp_path):
     from linksweep.scene.file.writing import write_scene
 
     (tmp_path / "scene.toml").write_text(write_scene(batch()), encoding="utf-8")
@@ -168,7 +168,7 @@ def test_files_of_scenes_and_of_results_say_the_same(tmp_path):
 
 @pytest.fixture
 def old(tmp_path):
-    """A file that is there already, and what is in it."""
+    """Return an existing file and its content."""
     path = tmp_path / "cycle.nc"
     ls.save(ls.sweep(plain(), 12), path)
     return path, path.read_bytes()
@@ -208,7 +208,7 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(old, owner, name, broken
     assert os.listdir(path.parent) == [path.name]
 
 
-def test_what_netcdf_cannot_hold_leaves_the_old_file(old):
+def test_values_that_netcdf_cannot_hold_leave_the_old_file(old):
     path, content = old
     with pytest.raises((TypeError, ValueError)):
         ls.save(xr.Dataset({"a": ("x", np.array([object()]))}), path)
@@ -231,17 +231,17 @@ def test_the_new_file_appears_only_when_it_is_whole(old, monkeypatch):
     assert path.read_bytes() != content
 
 
-def test_what_is_written_is_flushed_to_the_disk_before_it_is_renamed(old, monkeypatch):
+def test_a_file_is_flushed_to_the_disk_before_it_is_renamed(old, monkeypatch):
     path, _ = old
     done = []
     for name in ("fsync", "replace"):
         function = getattr(os, name)
-        monkeypatch.setattr(os, name, lambda *given, name=name, do=function: done.append(name) or do(*given))
+        monkeypatch.setattr(os, name, lambda *arguments, name=name, do=function: done.append(name) or do(*arguments))
     ls.save(ls.sweep(plain(), 12), path)
-    assert done[:3] == ["fsync", "fsync", "replace"]  # with its seal, and as a whole
+    assert done[:3] == ["fsync", "fsync", "replace"]  # the checksum, then the whole file
 
 
-def test_a_new_file_has_the_rights_that_any_new_file_has(tmp_path):
+def test_a_new_file_has_the_usual_permissions(tmp_path):
     mask = os.umask(0o027)
     try:
         ls.save(ls.check(plain()), tmp_path / "check.nc")
@@ -257,8 +257,8 @@ def test_a_link_stays_a_link_to_the_new_file(old, tmp_path):
     link.symlink_to(path)
     ls.save(ls.sweep(plain(), 24), link)
     assert link.is_symlink()
-    with xr.open_dataset(path) as found:
-        assert found.sizes["theta2"] == 24
+    with xr.open_dataset(path) as ds:
+        assert ds.sizes["theta2"] == 24
     assert sorted(os.listdir(tmp_path)) == ["cycle.nc", "latest"]
 
 
@@ -272,25 +272,25 @@ def test_two_threads_that_save_to_one_path_leave_one_whole_file(tmp_path):
         thread.start()
     for thread in threads:
         thread.join()
-    with xr.open_dataset(tmp_path / "c.nc") as found:
-        assert_same(found.load(), results[found.sizes["theta2"]])
+    with xr.open_dataset(tmp_path / "c.nc") as stored:
+        assert_same(stored.load(), results[stored.sizes["theta2"]])
     assert os.listdir(tmp_path) == ["c.nc"]
 
 
-def test_a_folder_that_is_missing(tmp_path):
+def test_a_missing_folder_is_refused(tmp_path):
     with pytest.raises(FileNotFoundError) as refused:
         ls.save(ls.check(plain()), tmp_path / "results" / "check.nc")
     assert str(refused.value) == f"{tmp_path}/results/check.nc: there is no folder {tmp_path}/results; make it first"
 
 
-def test_a_path_that_is_a_folder(tmp_path):
+def test_a_path_of_a_folder_is_refused(tmp_path):
     (tmp_path / "check.nc").mkdir()
     with pytest.raises(OSError, match=r"check.nc"):
         ls.save(ls.check(plain()), tmp_path / "check.nc")
     assert os.listdir(tmp_path) == ["check.nc"]
 
 
-def test_a_folder_that_may_not_be_written_to_is_told_by_the_path_that_was_asked_for(tmp_path, monkeypatch):
+def test_a_folder_without_write_permission_is_named_as_requested(tmp_path, monkeypatch):
     def forbidden(path, *_):
         raise PermissionError(13, "Permission denied", str(path))
 
@@ -301,7 +301,7 @@ def test_a_folder_that_may_not_be_written_to_is_told_by_the_path_that_was_asked_
 
 
 @pytest.mark.skipif(hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write anywhere")
-def test_a_folder_that_is_read_only(tmp_path):
+def test_a_read_only_folder_is_refused(tmp_path):
     tmp_path.chmod(0o555)
     try:
         with pytest.raises(PermissionError):
@@ -337,7 +337,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("name", "content", "message"), REFUSED)
-def test_files_that_hold_no_scene_say_so(name, content, message, tmp_path):
+def test_files_without_a_scene_are_refused(name, content, message, tmp_path):
     written(tmp_path, name, content)
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         ls.load_scene(tmp_path / name)
@@ -346,7 +346,7 @@ def test_files_that_hold_no_scene_say_so(name, content, message, tmp_path):
 
 
 @pytest.mark.parametrize("part", [0.3, 0.6, 0.95])
-def test_a_file_that_was_cut_says_so(old, part):
+def test_a_truncated_file_is_refused(old, part):
     path, content = old
     path.write_bytes(content[: int(len(content) * part)])
     with pytest.raises(ValueError, match=r"cycle.nc: cannot be read as NetCDF \(cut off: .*\); a scene file ends in"):
@@ -354,7 +354,7 @@ def test_a_file_that_was_cut_says_so(old, part):
 
 
 @pytest.mark.parametrize(
-    ("asked", "message"),
+    ("requested", "message"),
     [
         ("cycel.nc", ': there is no such file; did you mean "cycle.nc"?'),
         ("cycle.ncc", ': there is no such file; did you mean "cycle.nc"?'),
@@ -363,20 +363,20 @@ def test_a_file_that_was_cut_says_so(old, part):
         ("cycle.toml", ": there is no such file"),
     ],
 )
-def test_a_file_that_is_missing_says_so(old, asked, message):
+def test_a_missing_file_is_refused(old, requested, message):
     folder = old[0].parent
     with pytest.raises(ValueError) as refused:  # noqa: PT011
-        ls.load_scene(folder / asked)
-    assert str(refused.value) == f"{folder / asked}{message}"
+        ls.load_scene(folder / requested)
+    assert str(refused.value) == f"{folder / requested}{message}"
 
 
-def test_a_dataset_that_lost_its_scene_says_so():
+def test_a_dataset_without_its_scene_is_refused():
     cycle = ls.sweep(plain(), 12)
     for ds in (cycle.drop_attrs(), xr.Dataset(), ls.check(plain())):
         with pytest.raises(ValueError, match=r"^Dataset: holds no scene; only Datasets made by linksweep do"):
             scene_of(ds)
 
 
-def test_a_dataset_that_lost_a_parameter_names_it():
+def test_a_dataset_without_a_parameter_of_its_scene_is_refused():
     with pytest.raises(ValueError, match=r'^Dataset:\d+: coupler.mass: there is no variable "coupler.mass"'):
         scene_of(ls.sweep(batch(), 12).drop_vars("coupler.mass"))

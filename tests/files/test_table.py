@@ -1,4 +1,4 @@
-"""Tables: a row for each design and angle, units in the header, every digit; files whole or not at all."""
+"""Tables: a row for each design and angle, units in the header, every digit; files written whole or not at all."""
 
 import csv
 import math
@@ -19,14 +19,14 @@ def study(n=8) -> xr.Dataset:
 
 
 def test_a_row_for_each_design():
-    found = study()
-    table = found.linksweep.to_pandas()
+    designs = study()
+    table = designs.linksweep.to_pandas()
     assert list(table.columns[:4]) == ["design", "ground [m]", "omega2 [rad/s]", "F32_peak [N]"]
     assert table["design"].tolist() == list(range(8))
     for name, header in (("ground", "ground [m]"), ("F32_peak", "F32_peak [N]"), ("T12_max_at", "T12_max_at [degree]")):
-        np.testing.assert_array_equal(table[header].to_numpy(), found[name].values)
-    words = found.status.attrs["flag_meanings"].split()
-    assert table["status"].tolist() == [words[k] for k in found.status.values]
+        np.testing.assert_array_equal(table[header].to_numpy(), designs[name].values)
+    words = designs.status.attrs["flag_meanings"].split()
+    assert table["status"].tolist() == [words[k] for k in designs.status.values]
     assert set(table["status"]) >= {"ok", "partial_revolution"}
 
 
@@ -52,13 +52,13 @@ def test_a_row_for_each_design_and_angle_angles_innermost():
 def test_several_dims_with_and_without_labels():
     torque = xr.DataArray([1.0, 2.0], dims="case")
     mechanism = ls.FourBar(PRESS.mechanism.crank, PRESS.mechanism.coupler, PRESS.mechanism.rocker, 0.2, branch="both")
-    found = ls.peaks(ls.Scene(mechanism, 30.0, loads=[ls.Load("rocker", torque=torque)]), of=["F32"], theta2=8)
-    table = found.linksweep.to_pandas()
+    peaks = ls.peaks(ls.Scene(mechanism, 30.0, loads=[ls.Load("rocker", torque=torque)]), of=["F32"], theta2=8)
+    table = peaks.linksweep.to_pandas()
     assert set(zip(table["branch"], table["case"], strict=True)) == {
         (b, c) for b in ("open", "crossed") for c in (0, 1)
     }
     for _, row in table.iterrows():
-        assert row["F32_peak [N]"] == float(found.F32_peak.sel(branch=row["branch"]).isel(case=row["case"]))
+        assert row["F32_peak [N]"] == float(peaks.F32_peak.sel(branch=row["branch"]).isel(case=row["case"]))
         assert row["loads[1].torque [N m]"] == row["case"] + 1.0
 
 
@@ -70,19 +70,19 @@ def test_one_design_is_one_row():
 
 
 def test_the_file_reads_back_to_the_bit(tmp_path):
-    found = study()
-    found["F32_peak"][2] = math.inf
-    found.linksweep.to_csv(tmp_path / "study.csv")
+    designs = study()
+    designs["F32_peak"][2] = math.inf
+    designs.linksweep.to_csv(tmp_path / "study.csv")
     with open(tmp_path / "study.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    table = found.linksweep.to_pandas()
+    table = designs.linksweep.to_pandas()
     assert list(rows[0]) == list(table.columns) and len(rows) == 8
     for header in table.columns.drop("status"):
         read = [float(row[header] or "nan") for row in rows]
         np.testing.assert_array_equal(read, table[header].to_numpy())
     assert [row["status"] for row in rows] == table["status"].tolist()
     impossible = [row["T12_peak [N m]"] == "" for row in rows]
-    assert impossible == np.isnan(found.T12_peak.values).tolist() and rows[2]["F32_peak [N]"] == "inf"
+    assert impossible == np.isnan(designs.T12_peak.values).tolist() and rows[2]["F32_peak [N]"] == "inf"
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
@@ -100,6 +100,6 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
     assert [file.name for file in tmp_path.iterdir()] == ["study.csv"]
 
 
-def test_a_folder_that_is_not_there(tmp_path):
+def test_a_missing_folder_of_a_table_is_refused(tmp_path):
     with pytest.raises(FileNotFoundError, match="there is no folder"):
         study(n=4).linksweep.to_csv(tmp_path / "nowhere" / "study.csv")

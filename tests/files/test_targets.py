@@ -1,4 +1,4 @@
-"""Targets of results: only files are replaced, whatever their names, and nothing is left of killed writers."""
+"""Target paths of results: only files are replaced, whatever their names, and killed writers leave no files."""
 
 import contextlib
 import fcntl
@@ -50,7 +50,7 @@ KINDS = {"a folder": Path.mkdir, "a pipe": pipe, "a device": device, "a socket":
 
 @pytest.fixture
 def here(monkeypatch):
-    """An empty working folder with a short path: a socket's has at most 108 bytes."""
+    """Enter an empty working folder with a short path, since a socket's has at most 108 bytes."""
     with tempfile.TemporaryDirectory() as folder:
         monkeypatch.chdir(folder)
         yield Path(folder)
@@ -60,7 +60,7 @@ def here(monkeypatch):
 @pytest.mark.parametrize("linked", [False, True], ids=["itself", "by a link"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("writer", WRITERS)
-def test_what_is_no_file_is_refused_and_stays(here, writer, kind, linked):
+def test_pipes_devices_and_sockets_are_refused_and_kept(here, writer, kind, linked):
     ending, write = WRITERS[writer]
     target = here / f"target{ending}"
     KINDS[kind](target)
@@ -97,14 +97,14 @@ ENGINE = ls.example("engine")
     ],
 )
 @pytest.mark.parametrize("name", ["x.xlsx", "x", "x.nc4", "x.CSVX", ".nc"])
-def test_an_ending_that_says_something_else_is_refused(here, write, allowed, name):
+def test_a_wrong_suffix_is_refused(here, write, allowed, name):
     with pytest.raises(ValueError, match=f"^{re.escape(name)}: its ending must be {re.escape(allowed)}"):
         write(name)
     assert os.listdir(here) == []
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ("sweep press.toml -o x.xlsx", "x.xlsx: its ending must be .nc or .csv"),
         ("sweep press.toml -o x", "x: its ending must be .nc or .csv"),
@@ -114,14 +114,14 @@ def test_an_ending_that_says_something_else_is_refused(here, write, allowed, nam
         ("demo -o y/x.nc", "y/x.nc: give a name without ending; x.nc and x.png follow"),
     ],
 )
-def test_the_command_line_refuses_an_ending_before_it_computes(here, monkeypatch, capsys, arguments, said):
+def test_the_command_line_refuses_a_suffix_before_it_computes(here, monkeypatch, capsys, arguments, message):
     for name in {"sweep", "peaks", "example"}:
         monkeypatch.setattr(f"linksweep.cli.main.{name}", lambda *_, **__: pytest.fail("computed"))
     monkeypatch.setattr("linksweep.studies.run.Job", lambda *_, **__: pytest.fail("computed"))
     ls.save(ls.example("press"), "press.toml")
     with contextlib.suppress(SystemExit):
         assert main(arguments.split()) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert os.listdir(here) == ["press.toml"]
 
 
@@ -130,8 +130,8 @@ def test_csv_is_the_table_of_the_netcdf_file(here, command):
     ls.save(ls.example("press"), "press.toml")
     for name in ("x.nc", "x.CSV"):
         assert main([command, "press.toml", "-o", name]) == 0
-    with xr.open_dataset("x.nc") as found:
-        found.linksweep.to_csv("again.csv")
+    with xr.open_dataset("x.nc") as ds:
+        ds.linksweep.to_csv("again.csv")
     text = Path("x.CSV").read_text()
     assert text == Path("again.csv").read_text()
     first, *rows = text.splitlines()
@@ -140,7 +140,7 @@ def test_csv_is_the_table_of_the_netcdf_file(here, command):
 
 
 @pytest.mark.parametrize("length", [*range(241, 256)])
-def test_every_name_that_a_file_may_have(here, length):
+def test_every_valid_file_name(here, length):
     for name in ("a" * (length - 3) + ".nc", "é" * ((length - 3) // 2) + "a" * ((length - 3) % 2) + ".nc"):
         with whole(name) as temporary:
             temporary.write_text("text")
@@ -154,21 +154,21 @@ def test_a_study_may_have_the_longest_name(here):
     assert os.listdir(here) == [name]
 
 
-def test_a_file_that_is_replaced_keeps_its_rights(here):
+def test_a_replaced_file_keeps_its_permissions(here):
     Path("private.nc").touch(0o600)
     ls.save(ls.check(ls.example("press")), "private.nc")
     assert stat.S_IMODE(os.stat("private.nc").st_mode) == 0o600
 
 
-def test_a_link_to_a_file_that_is_not_there_yet(here):
+def test_a_link_to_a_missing_file(here):
     Path("link.nc").symlink_to("new.nc")
     ls.save(ls.check(ls.example("press")), "link.nc")
     assert Path("link.nc").is_symlink()
     assert Path("new.nc").stat().st_size > 0
 
 
-def test_what_is_flushed_was_opened_to_be_written(here, monkeypatch):
-    """Windows flushes no other file."""
+def test_flushed_files_are_open_for_writing(here, monkeypatch):
+    """Windows flushes only files that are open for writing."""
     opened = []
     monkeypatch.setattr(
         os, "fsync", lambda handle: opened.append((os.fstat(handle), fcntl.fcntl(handle, fcntl.F_GETFL)))
@@ -191,7 +191,7 @@ with whole(sys.argv[1]) as temporary:
 """
 
 
-def test_what_a_killed_writer_left_is_swept_by_the_next(here):
+def test_the_next_writer_removes_the_files_of_a_killed_one(here):
     assert subprocess.run([sys.executable, "-c", KILLED, "a.nc"], check=False).returncode == -9
     (left,) = os.listdir(here)
     assert left != "a.nc"
@@ -200,7 +200,7 @@ def test_what_a_killed_writer_left_is_swept_by_the_next(here):
     assert os.listdir(here) == ["b.nc"]
 
 
-def test_what_another_process_is_writing_stays(here):
+def test_the_files_of_a_running_writer_are_kept(here):
     going = "import sys\nfrom linksweep.files.atomic import whole\n" + (
         "with whole('slow.nc') as temporary:\n    print(flush=True)\n    temporary.write_text(sys.stdin.read())\n"
     )

@@ -1,4 +1,4 @@
-"""Films: each frame shows the mechanism where it is, its forces to one scale, and only angles that it can reach."""
+"""Films: each frame shows the mechanism to scale and its forces to one scale, at reachable angles only."""
 
 import base64
 import io
@@ -38,13 +38,13 @@ def films():
 
 
 def angles_of(film):
-    """The angle that each frame says."""
-    found = []
+    """Return the angle stated in each frame."""
+    angles = []
     for k in range(len(film)):
         texts = [artist.get_text() for artist in film.show(k) if hasattr(artist, "get_text")]
         text = next(text for text in texts if re.fullmatch(r"−?[\d.]+°", text))
-        found.append(float(text.rstrip("°").replace("−", "-")))
-    return np.array(found)
+        angles.append(float(text.rstrip("°").replace("−", "-")))
+    return np.array(angles)
 
 
 def pins_of(film, k):
@@ -53,7 +53,7 @@ def pins_of(film, k):
 
 
 def far_end(start, first, end, second):
-    """Where circles about two points meet, to the left of the line from start to end."""
+    """Return the intersection of circles about two points, to the left of the line from start to end."""
     (x, y), distance = end - start, np.hypot(*(end - start))
     along = (first**2 - second**2 + distance**2) / (2.0 * distance)
     up = np.sqrt(first**2 - along**2)
@@ -67,7 +67,7 @@ def test_pins_are_where_circles_meet(films):
         np.testing.assert_allclose(pins_of(films["press"], k), [(0.0, 0.0), b, far_end(b, B, d, C), d], atol=1e-12)
 
 
-def test_the_slider_stays_on_its_guide(films):
+def test_the_slider_moves_along_its_guide(films):
     for k in range(FRAMES):
         angle = np.radians(360.0 * k / FRAMES)
         x, y = CRANK * np.cos(angle), CRANK * np.sin(angle)
@@ -78,19 +78,19 @@ def test_the_slider_stays_on_its_guide(films):
 
 
 def arrows_of(film, k):
-    """The ends of the arrows in frame k, by colour."""
+    """Return the ends of the arrows in frame k, by colour."""
     film.show(k)
     lines = [drawn for drawn in film.figure.axes[0].lines if drawn.get_zorder() == 2.4]
     return {drawn.get_color(): drawn.get_xydata() for drawn in lines}
 
 
 def scale_of(film):
-    """Metres for a newton, as the scale in the corner says."""
+    """Return the metres for a newton, from the scale in the corner."""
     bar = next(artist for artist in film.figure.axes[0].artists if hasattr(artist, "size_bar"))
     return bar.size_bar.get_children()[0].get_width() / float(bar.txt_label.get_text().removesuffix(" N"))
 
 
-def test_arrows_start_at_their_pins_and_are_as_long_as_the_dense_solution_says(films):
+def test_arrows_start_at_their_pins_with_the_length_of_the_dense_solution(films):
     cycle = ls.sweep(PRESS, theta2=FRAMES, solver="dense")
     scale = set()
     for k in range(FRAMES):
@@ -106,20 +106,20 @@ def test_arrows_start_at_their_pins_and_are_as_long_as_the_dense_solution_says(f
     assert scale_of(films["press"]) == pytest.approx(*scale, rel=1e-9)
 
 
-def test_the_present_values_are_said_and_marked_on_the_curves(films):
+def test_current_values_are_written_and_marked_on_the_curves(films):
     cycle = ls.sweep(PRESS, theta2=FRAMES, of=["F12", "F32", "F43", "F14"])
     np.testing.assert_allclose(angles_of(films["press"]), 60.0 * np.arange(FRAMES))
     machine, curves = films["press"].figure.axes
     films["press"].show(2)
     sizes = [float(cycle[name].values[2]) for name in ("F12", "F32", "F43", "F14")]
-    said = [text.get_text() for text in machine.texts if text.get_text().endswith(" N")]
-    assert [float(text.removesuffix(" N")) for text in said] == [pytest.approx(size, rel=5e-4) for size in sizes]
+    labels = [text.get_text() for text in machine.texts if text.get_text().endswith(" N")]
+    assert [float(text.removesuffix(" N")) for text in labels] == [pytest.approx(size, rel=5e-4) for size in sizes]
     (dots,) = (drawn for drawn in curves.collections if len(drawn.get_offsets()) == 4)
     np.testing.assert_allclose(dots.get_offsets(), [(120.0, size) for size in sizes])
 
 
 @pytest.mark.parametrize("name", ["press", "pump", "shaper", "loop"])
-def test_axes_stand_still_and_hold_every_frame(films, name):
+def test_axes_are_fixed_and_hold_every_frame(films, name):
     film = films[name]
     limits = [(ax.get_xlim(), ax.get_ylim(), ax.get_position().bounds) for ax in film.figure.axes]
     first = np.asarray(film.image(0))
@@ -136,14 +136,14 @@ def test_axes_stand_still_and_hold_every_frame(films, name):
 # ---------------------------------------------------------------------------------------------- which angles
 
 
-def test_between_toggles_it_goes_to_and_fro_and_never_beyond():
+def test_a_film_between_toggles_moves_to_and_fro():
     film = ls.plot.animate(SWING, frames=12)
     limit = np.degrees(np.arccos((0.08**2 + 0.22**2 - 0.23**2) / (2.0 * 0.08 * 0.22)))  # coupler and rocker in line
-    found = (angles_of(film) + 180.0) % 360.0 - 180.0
-    assert np.all(np.abs(found) < limit) and np.abs(found).max() > limit - 1.0
-    steps = np.diff(found)
+    angles = (angles_of(film) + 180.0) % 360.0 - 180.0
+    assert np.all(np.abs(angles) < limit) and np.abs(angles).max() > limit - 1.0
+    steps = np.diff(angles)
     assert np.all(steps[:6] > 0.0) and np.all(steps[6:] < 0.0)
-    np.testing.assert_allclose(np.abs(steps), np.abs(steps)[0], atol=0.11)  # said to a tenth of a degree
+    np.testing.assert_allclose(np.abs(steps), np.abs(steps)[0], atol=0.11)  # written to a tenth of a degree
     on_scale = film.figure.axes[1].get_ylim()[1] * scale_of(film)
     ends = [end for k in range(len(film)) for end in arrows_of(film, k).values()]
     longest = max(float(np.hypot(*(end - start))) for start, end in ends)
@@ -156,11 +156,11 @@ def way(scene, frames, theta2=720):
     return animation.way(cycle, cycle.omega2, frames)
 
 
-def test_a_crank_that_turns_clockwise_is_shown_so():
+def test_a_clockwise_crank_turns_clockwise():
     np.testing.assert_allclose(way(replace(PRESS, omega2=-30.0), 4), [270.0, 180.0, 90.0, 0.0])
 
 
-def test_a_part_of_a_turn_is_shown_to_and_fro():
+def test_a_part_of_a_turn_moves_to_and_fro():
     np.testing.assert_allclose(way(PRESS, 4, range(-50, 71)), [-50.0, 10.0, 70.0, 10.0])
 
 
@@ -168,21 +168,21 @@ def test_a_four_stroke_cycle_is_two_turns():
     np.testing.assert_allclose(way(ls.example("engine"), 4), [0.0, 180.0, 360.0, 540.0])
 
 
-def test_frames_lie_at_equal_steps_of_time():
-    found = np.radians(way(replace(PRESS, omega2=lambda theta2: 30.0 + 10.0 * np.cos(np.radians(theta2))), 8))
+def test_frames_are_equally_spaced_in_time():
+    angles = np.radians(way(replace(PRESS, omega2=lambda theta2: 30.0 + 10.0 * np.cos(np.radians(theta2))), 8))
     whole = 2.0 * np.pi / np.sqrt(30.0**2 - 10.0**2)  # ∫ dθ / (30 + 10 cos θ), and as far as θ
-    times = 2.0 / np.sqrt(800.0) * np.arctan(np.sqrt(800.0) * np.tan(found / 2.0) / 40.0) % whole
+    times = 2.0 / np.sqrt(800.0) * np.arctan(np.sqrt(800.0) * np.tan(angles / 2.0) / 40.0) % whole
     np.testing.assert_allclose(times, whole * np.arange(8) / 8.0, atol=1e-5 * whole)
 
 
 def test_a_car_stops_where_it_leaves_the_track():
     car = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=30.0, gravity=DOWN, profile="energy")
-    found = angles_of(ls.plot.animate(car, frames=8))
+    angles = angles_of(ls.plot.animate(car, frames=8))
     leaves = np.degrees(np.arccos((2.0 - 30.0**2 / (9.81 * 30.0)) / 3.0))  # N = m (v²/R − 2 g + 3 g cos θ) = 0
-    assert np.all(np.diff(found) > 0.0)
-    assert found[0] == 0.0
-    assert leaves - 0.6 < found[-1] < leaves
-    assert np.diff(found)[0] > 1.5 * np.diff(found)[-1]  # it goes slower at the top
+    assert np.all(np.diff(angles) > 0.0)
+    assert angles[0] == 0.0
+    assert leaves - 0.6 < angles[-1] < leaves
+    assert np.diff(angles)[0] > 1.5 * np.diff(angles)[-1]  # it goes slower at the top
 
 
 def test_angles_without_a_result_are_left_out():
@@ -192,7 +192,7 @@ def test_angles_without_a_result_are_left_out():
     assert len(film) == int((status == 0).sum())
 
 
-def test_errors_say_what_is_wrong():
+def test_refusals_of_films():
     several = ls.Scene(ls.FourBar(*bars(A, B, C), ground=xr.DataArray([0.20, 0.21], dims="ground")), 30.0)
     with pytest.raises(ValueError, match=r"several designs, over ground \(2\)"):
         ls.plot.animate(several)
@@ -207,20 +207,20 @@ def test_errors_say_what_is_wrong():
 # ------------------------------------------------------------------------------------------------------ files
 
 
-def test_a_gif_has_every_frame_and_runs_for_ever(films, tmp_path):
+def test_a_gif_has_every_frame_and_repeats(films, tmp_path):
     film = films["press"]
     film.save(tmp_path / "machine.gif")
-    with Image.open(tmp_path / "machine.gif") as found:
-        assert (found.n_frames, found.info["loop"], found.info["duration"]) == (FRAMES, 0, 40)
-        assert found.size == tuple(film.image(0).size)
-        found.seek(2)
-        off = np.abs(np.asarray(found.convert("RGB"), dtype=int) - np.asarray(film.image(2), dtype=int)).max(axis=2)
+    with Image.open(tmp_path / "machine.gif") as image:
+        assert (image.n_frames, image.info["loop"], image.info["duration"]) == (FRAMES, 0, 40)
+        assert image.size == tuple(film.image(0).size)
+        image.seek(2)
+        off = np.abs(np.asarray(image.convert("RGB"), dtype=int) - np.asarray(film.image(2), dtype=int)).max(axis=2)
         assert np.median(off) == 0
         assert (off > 60).mean() < 0.01
     assert (tmp_path / "machine.gif").stat().st_size * 72 / FRAMES < 2e6
 
 
-def test_a_page_has_every_frame_in_it_and_fetches_nothing(films, tmp_path):
+def test_a_page_embeds_every_frame(films, tmp_path):
     film = films["press"]
     film.save(tmp_path / "machine.html")
     page = (tmp_path / "machine.html").read_text("utf-8")
@@ -232,7 +232,7 @@ def test_a_page_has_every_frame_in_it_and_fetches_nothing(films, tmp_path):
     assert film._repr_html_().count("<img") == 1
 
 
-def test_other_endings_are_refused_and_nothing_is_left(films, tmp_path):
+def test_other_suffixes_are_refused_and_leave_no_file(films, tmp_path):
     with pytest.raises(ValueError, match=r"machine\.mp4: its ending must be \.gif or \.html"):
         films["press"].save(tmp_path / "machine.mp4")
     with pytest.raises(FileNotFoundError, match="there is no folder"):
@@ -245,8 +245,8 @@ def test_the_command_line_writes_a_film(tmp_path, monkeypatch, capsys):
     ls.save(ls.sweep(PRESS, theta2=24), "cycle.nc")
     assert main(["animate", "cycle.nc", "-o", "machine.gif", "--frames", "3"]) == 0
     assert capsys.readouterr().out == "written: machine.gif\n"
-    with Image.open("machine.gif") as found:
-        assert found.n_frames == 3
+    with Image.open("machine.gif") as image:
+        assert image.n_frames == 3
     with pytest.raises(SystemExit):
         main(["animate", "cycle.nc", "-o", "machine.avi"])
     assert "machine.avi: its ending must be .gif or .html" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Film and report of several cylinders: each throw where its crank stands, and the torque of them all."""
+"""Film and report of several cylinders: each throw at its crank angle, and the total torque."""
 
 import subprocess
 import sys
@@ -19,12 +19,12 @@ TWIN = ls.MultiCylinder(ENGINE, [0, 360], bank_angles=[45, -45])
 
 
 def places(ax, name):
-    """Where a pin of that name is written beside, in axes of the machine."""
+    """Return the positions of the labels of a pin, in axes of the machine."""
     return [text.xy for text in ax.texts if text.get_text() == name]
 
 
 @pytest.mark.parametrize("k", [0, 3])
-def test_throws_stand_side_by_side_where_their_cranks_are(k):
+def test_throws_are_drawn_side_by_side_at_their_crank_angles(k):
     film = ls.plot.animate(FOUR, frames=12)
     film.show(k)
     *throws, curve = film.figure.axes
@@ -39,7 +39,7 @@ def test_throws_stand_side_by_side_where_their_cranks_are(k):
     np.testing.assert_allclose(dot, [60.0 * k, torque], rtol=1e-9)
 
 
-def test_banks_stand_about_one_crank():
+def test_banks_share_one_crank():
     film = ls.plot.animate(TWIN, frames=8)
     film.show(2)
     throw, _ = film.figure.axes
@@ -50,7 +50,7 @@ def test_banks_stand_about_one_crank():
     assert left < 0.0 < right
 
 
-def test_a_report_tells_what_the_results_do(tmp_path):
+def test_a_report_has_the_numbers_of_the_results(tmp_path):
     path, again = tmp_path / "four.html", tmp_path / "again.html"
     for name in (path, again):
         ls.report(FOUR, name, title="Inline four")
@@ -59,8 +59,8 @@ def test_a_report_tells_what_the_results_do(tmp_path):
     assert page.texts["h1"] == "Inline four"
     text = path.read_text(encoding="utf-8")
     worst, mains = ls.peaks(FOUR, of=["T12", "Fs", "F32"]), ls.bearings(FOUR)
-    shown = [worst.T12_min, worst.Fs_peak, worst.F32_peak[2], *mains.F_peak, *mains.equivalent_load]
-    for value in [*shown, ls.flywheel(FOUR, fluctuation=0.02).flywheel_inertia, ls.duty(FOUR).work_fed]:
+    numbers = [worst.T12_min, worst.Fs_peak, worst.F32_peak[2], *mains.F_peak, *mains.equivalent_load]
+    for value in [*numbers, ls.flywheel(FOUR, fluctuation=0.02).flywheel_inertia, ls.duty(FOUR).work_fed]:
         assert f'value="{float(value)!r}"' in text
     assert text.count("<img") == 4
 

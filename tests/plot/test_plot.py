@@ -1,4 +1,4 @@
-"""Plots say what the numbers say: units, peaks, gaps, positions; and nothing on them hides anything else."""
+"""Plots show the numbers: units, peaks, gaps, positions; and no text or curve hides another."""
 
 import subprocess
 import sys
@@ -53,8 +53,8 @@ def test_forces_marks_the_exact_peak_of_each_pin(cycles, name):
         (angle,), (value,) = line(ax, f"_peak {pin}").get_data()
         assert value == pytest.approx(float(worst[f"{pin}_peak"]), rel=1e-10)
         assert angle == pytest.approx(float(worst[f"{pin}_peak_at"]), abs=2e-7)
-        said = next(row for text in texts(ax) for row in text.split("\n") if f"_{{{pin[1:]}}}" in row)
-        assert f"{value:#.4g} N at {round(angle, 2):.5g}°" in said
+        text = next(row for text in texts(ax) for row in text.split("\n") if f"_{{{pin[1:]}}}" in row)
+        assert f"{value:#.4g} N at {round(angle, 2):.5g}°" in text
 
 
 def test_forces_are_closed_at_360_degrees_and_read_from_magnitudes_or_components(cycles):
@@ -78,7 +78,7 @@ def test_angles_in_any_order_are_drawn_in_order_and_a_part_of_a_turn_is_not_clos
     assert ax.get_xlim() == (10.0, 50.0)
 
 
-def test_gaps_stay_gaps_and_say_why(cycles):
+def test_gaps_stay_gaps_with_their_reason(cycles):
     ds = cycles["triple rocker"]
     bad = ds.status.values != 0
     assert 0 < bad.sum() < bad.size
@@ -92,12 +92,12 @@ def test_gaps_stay_gaps_and_say_why(cycles):
         assert [text.get_text() for text in ax.texts] == ["cannot assemble"]
 
 
-def test_what_grows_without_bound_is_marked_as_off_the_scale(cycles):
+def test_unbounded_forces_are_marked_as_off_the_scale(cycles):
     ds = cycles["triple rocker"]
     ax = plot.forces(ds)
     largest = {pin: np.nanmax(size_of(ds, pin)) for pin in PINS}
     assert min(largest.values()) > 100.0 * ax.get_ylim()[1]
-    assert np.nanmedian(size_of(ds, "F12")) > 0.2 * ax.get_ylim()[1]  # what is usual fills the axis
+    assert np.nanmedian(size_of(ds, "F12")) > 0.2 * ax.get_ylim()[1]  # usual values fill the axis
     (text,) = texts(ax)
     assert text.startswith("off scale:")
     for pin in PINS:
@@ -108,8 +108,8 @@ def test_what_grows_without_bound_is_marked_as_off_the_scale(cycles):
 def test_a_short_pulse_far_from_a_gap_is_shown_whole():
     pulse = ls.Load("rocker", torque=lambda theta2: np.where(np.abs(theta2 - 40.0) < 4.0, 500.0, 0.0))
     ds = ls.sweep(ls.Scene(four_bar(0.08, 0.12, 0.11, 0.22), -20.0, loads=[pulse]))
-    shown = size_of(ds, "F43")[np.abs(ds.theta2.values - 40.0) < 4.0].max()
-    assert plot.forces(ds).get_ylim()[1] > shown > 1000.0
+    usual = size_of(ds, "F43")[np.abs(ds.theta2.values - 40.0) < 4.0].max()
+    assert plot.forces(ds).get_ylim()[1] > usual > 1000.0
 
 
 @pytest.mark.parametrize("drive", ["crank", "coupler", "rocker"])
@@ -122,13 +122,13 @@ def test_torque_marks_both_extremes(drive):
     assert ax.get_ylabel().endswith("[N m]")
     marks = [mark for mark in ax.lines if mark.get_label() == f"_peak {name}"]
     worst = ls.peaks(scene)
-    said = "\n".join(texts(ax)).replace("−", "-")
+    text = "\n".join(texts(ax)).replace("−", "-")
     for mark, extreme in zip(marks, (np.nanargmax, np.nanargmin), strict=True):
         word = extreme.__name__[6:]
         value, at = float(worst[f"{name}_{word}"]), float(worst[f"{name}_{word}_at"])
         assert mark.get_xdata()[0] == pytest.approx(at, abs=2e-7)
-        shown = f"{value:#.4g}".rstrip(".").replace("inf", "∞")  # at the dead centres of this drive
-        assert f"{word} {shown}" in said
+        number = f"{value:#.4g}".rstrip(".").replace("inf", "∞")  # at the dead centres of this drive
+        assert f"{word} {number}" in text
 
 
 def test_bearing_diagram_has_equal_scales_and_its_ticks_at_their_angles(cycles):
@@ -225,7 +225,7 @@ def test_mechanism_of_a_chosen_branch_is_that_branch():
         np.testing.assert_array_equal(line(chosen, "_pins").get_data(), line(alone, "_pins").get_data())
 
 
-def test_mechanism_that_cannot_be_assembled_says_so(cycles):
+def test_a_mechanism_that_cannot_be_assembled_is_refused(cycles):
     with pytest.raises(ValueError, match=r"theta2 = 100 degree: .* cannot be assembled there; .* such as 86\.5"):
         plot.mechanism(cycles["triple rocker"], 100.0)
     with pytest.raises(ValueError, match="must be one crank angle"):
@@ -242,7 +242,7 @@ def designs(count):
 
 
 @pytest.mark.parametrize("draw", [plot.forces, plot.torque, plot.bearing, plot.mechanism, plot.cycle])
-def test_many_designs_are_refused_with_the_way_out(draw):
+def test_many_designs_are_refused_with_a_remedy(draw):
     ds = designs(7)
     with pytest.raises(ValueError, match=r"coupler_length \(7\).*ds\.isel\(coupler_length=0\)"):
         draw(ds)
@@ -252,9 +252,9 @@ def test_many_designs_are_refused_with_the_way_out(draw):
 def test_a_few_designs_of_one_signal_get_a_line_each():
     ds = designs(3)
     for ax, values in ((plot.torque(ds), ds.T12), (plot.forces(ds, "F32"), np.hypot(ds.F32x, ds.F32y))):
-        said = [text.get_text() for text in ax.get_legend().get_texts()]
-        assert said[0].startswith("coupler_length = 0.2")
-        drawn = {row.get_label(): row.get_ydata()[:-1] for row in ax.lines if row.get_label() in said}
+        labels = [text.get_text() for text in ax.get_legend().get_texts()]
+        assert labels[0].startswith("coupler_length = 0.2")
+        drawn = {row.get_label(): row.get_ydata()[:-1] for row in ax.lines if row.get_label() in labels}
         np.testing.assert_array_max_ulp(np.array([*drawn.values()]), values.values, maxulp=2)
 
 
@@ -283,7 +283,7 @@ def test_the_page_shows_the_most_loaded_pin(cycles):
     assert line(bearing, f"_locus {worst}").get_xdata().size == ds.sizes["theta2"] + 1
 
 
-def test_functions_draw_where_they_are_told_and_the_accessor_delegates(cycles):
+def test_functions_draw_on_given_axes_and_the_accessor_delegates(cycles):
     ds = cycles["press"]
     _, ax = plt.subplots()
     for draw in (ds.linksweep.forces, ds.linksweep.torque, ds.linksweep.bearing, ds.linksweep.mechanism):
@@ -301,7 +301,7 @@ def test_every_plot_of_a_dataset_is_a_method_of_the_accessor():
     assert len(plot.__all__) == path.read_text(encoding="utf-8").count("from linksweep.plot.")
 
 
-def test_what_is_missing_is_named(cycles):
+def test_missing_quantities_are_named(cycles):
     ds = cycles["press"]
     kinematics = ds[["theta3", "status"]]
     for draw, word in ((plot.forces, "F12"), (plot.torque, "T12"), (plot.bearing, "F32x"), (plot.cycle, "F12")):
@@ -315,6 +315,6 @@ def test_what_is_missing_is_named(cycles):
         plot.forces(ds.isel(theta2=0))
 
 
-def test_import_leaves_matplotlib_alone():
+def test_import_does_not_import_matplotlib():
     code = "import sys, linksweep.plot.accessor; sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""Plots of what comes after the cycle, where they have something awkward to show."""
+"""Plots of analyses in awkward cases: unbounded peaks, limits off the axis, zero forces."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ LINKS = [ls.Link(length, 1.0, 0.01, cg_distance=length / 2.0) for length in (0.0
 SWING = ls.Scene(ls.FourBar(*LINKS, ground=0.22), 20.0, gravity=(0.0, -9.81))  # turns between two toggles
 
 
-def test_the_torque_with_a_flywheel_is_the_mean_of_that_without():
+def test_the_torque_with_a_flywheel_is_the_mean_torque():
     figure = ls.plot.torque_with_flywheel(ls.flywheel(ls.example("engine"), fluctuation=0.02))
     above, below = figure.axes
     angles, torque = line(above, "without flywheel").get_data()
@@ -28,13 +28,13 @@ def test_the_torque_with_a_flywheel_is_the_mean_of_that_without():
 
 
 def test_a_flywheel_that_does_not_turn_fully_is_refused():
-    found = ls.flywheel(SWING, fluctuation=0.02)
+    wheel = ls.flywheel(SWING, fluctuation=0.02)
     with pytest.raises(ValueError, match="ds has no speed at some angle: it stalls, or does not turn fully"):
-        ls.plot.flywheel(found)
+        ls.plot.flywheel(wheel)
 
 
 @pytest.mark.parametrize("frame", ["ground", "journal"])
-def test_three_pins_are_compared_in_a_fourth_panel(frame):
+def test_three_pins_have_a_fourth_panel(frame):
     cycle = with_peaks(ls.sweep(ls.example("engine"), theta2=90))
     figure = cycle.linksweep.bearings(frame=frame)
     *panels, together = figure.axes
@@ -47,7 +47,7 @@ def test_three_pins_are_compared_in_a_fourth_panel(frame):
     assert len(ls.sweep(PRESS, theta2=90).linksweep.bearings().axes) == 4  # of four pins each has its own
 
 
-def test_shares_that_grow_without_bound_leave_the_rest_to_be_seen():
+def test_unbounded_contributions_leave_the_others_visible():
     shares = ls.breakdown(SWING, "F32")
     ax = ls.plot.breakdown(shares)
     whole = np.abs(line(ax, "sum").get_ydata())
@@ -59,23 +59,25 @@ def test_shares_that_grow_without_bound_leave_the_rest_to_be_seen():
 
 
 @pytest.mark.parametrize(
-    ("below", "said"), [(2000.0, "kept up to "), (100.0, "kept at none")], ids=["beyond the axis", "not even at rest"]
+    ("below", "message"),
+    [(2000.0, "kept up to "), (100.0, "kept at none")],
+    ids=["beyond the axis", "not even at rest"],
 )
-def test_a_limit_that_is_not_on_the_axis_is_said_in_the_legend(below, said):
+def test_a_limit_off_the_axis_is_stated_in_the_legend(below, message):
     ax = ls.plot.over_speed(PRESS, "F32", speeds=np.linspace(5.0, 30.0, 6), below=below)
     legend = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert said in legend[-1] and legend[-1].startswith(f"limit, {below:#.4g}".rstrip("."))
+    assert message in legend[-1] and legend[-1].startswith(f"limit, {below:#.4g}".rstrip("."))
     assert texts(ax) == []
     assert ax.get_xlim() == (5.0, 30.0)
     assert ax.get_ylim()[1] > max(below, line(ax, "peak of $F_{32}$").get_ydata().max())
 
 
-def test_peaks_without_bound_are_not_an_empty_plot():
+def test_unbounded_peaks_are_still_plotted():
     with pytest.raises(ValueError, match="F32 grows without bound at every speed"):
         ls.plot.over_speed(SWING, "F32", speeds=[10.0, 20.0])
 
 
-def test_what_is_balanced_away_is_shown_as_nothing():
+def test_a_balanced_force_is_drawn_as_zero():
     balanced = ls.with_counterweights(PRESS, ls.counterweights(PRESS, radius=0.06))
     figure = ls.plot.balance(PRESS, balanced, theta2=90)
     before, after = (text.get_text() for text in figure.axes[0].get_legend().get_texts())

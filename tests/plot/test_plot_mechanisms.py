@@ -24,7 +24,7 @@ def engine(**options):
 
 
 def pulse(theta2):
-    """A gas force at the first of two upper dead centres."""
+    """Return a gas force at the first of two upper dead centres."""
     return -2e4 * np.exp(-(((np.mod(theta2, 720.0) - 105.0) / 16.0) ** 2))
 
 
@@ -82,12 +82,12 @@ def test_slider_crank_is_drawn_to_scale(branch, offset, angle):
     P = points(ax, "_point")[0]
     np.testing.assert_allclose(complex(*(P - B)) / complex(*(C - B)), 0.5 * np.exp(1j * np.radians(15.0)))
     assert np.linalg.norm(points(ax, "_coupler curve") - P, axis=1).min() < 1e-12
-    said = {f"offset {abs(offset):g} m"} if offset else set()
-    assert set(texts(ax)) == {"A", "B", "C", "P"} | said
+    text = {f"offset {abs(offset):g} m"} if offset else set()
+    assert set(texts(ax)) == {"A", "B", "C", "P"} | text
 
 
 @pytest.mark.parametrize(("branch", "angle"), [("open", 90.0), ("crossed", 30.0)])
-def test_the_piston_stands_on_its_pin_and_the_guide_holds_it_all_the_way(branch, angle):
+def test_the_piston_is_at_its_pin_and_the_guide_spans_its_stroke(branch, angle):
     mechanism = slider_crank(offset=0.03, slide_angle=angle, branch=branch)
     ax = plot.mechanism(ls.Scene(mechanism, 10.0), theta2=200.0)
     C = points(ax, "_pins")[2]
@@ -145,12 +145,12 @@ def test_forces_are_those_of_the_joints(cycles, name):
         (angle,), (value,) = line(ax, f"_peak {force}").get_data()
         assert value == pytest.approx(sizes.max(), rel=4.5e-16, abs=0.0)
         assert value == pytest.approx(sizes[ds.theta2.values == angle].item(), rel=4.5e-16, abs=0.0)
-        said = next(row for text in texts(ax) for row in text.split("\n") if f"_{{{force[1:]}}}" in row)
-        assert f"{np.format_float_positional(value, 4, unique=False, fractional=False).rstrip('.')} N" in said
+        text = next(row for text in texts(ax) for row in text.split("\n") if f"_{{{force[1:]}}}" in row)
+        assert f"{np.format_float_positional(value, 4, unique=False, fractional=False).rstrip('.')} N" in text
 
 
 @pytest.mark.parametrize(("drive", "torque"), [("crank", "T12"), ("coupler", "T13")])
-def test_the_guides_moment_is_no_drive_torque(drive, torque):
+def test_the_guides_moment_is_not_a_drive_torque(drive, torque):
     load = ls.Load("slider", force=(100.0, 0.0), at=(0.01, 90.0))
     ds = ls.sweep(ls.Scene(slider_crank(), 20.0, drive=drive, loads=[load]), 90)
     np.testing.assert_allclose(ds.T14, 1.0)  # 100 N at 10 mm
@@ -167,7 +167,7 @@ def test_torque_of_a_driven_rocker_is_its_T14(cycles):
     assert "_{14}" in plot.torque(ds).get_ylabel()
 
 
-def test_guide_axes_part_normal_force_and_friction(cycles):
+def test_guide_axes_separate_normal_force_and_friction(cycles):
     for name in ("engine", "crossed"):
         scene, angles = SCENES[name], with_peaks(cycles[name]).theta2.values
         expected = ls.sweep(scene, angles, of=["friction_force", "normal_force"])
@@ -197,7 +197,7 @@ def test_two_turns_are_one_cycle_of_a_four_stroke(cycles):
     assert values[-1] == values[0]
     assert ax.get_xlim() == (0.0, 720.0)
     assert set(np.diff(ax.get_xticks())) == {90.0}
-    assert 60.0 < line(ax, "_peak F43").get_xdata()[0] < 150.0  # where it fires
+    assert 60.0 < line(ax, "_peak F43").get_xdata()[0] < 150.0  # ignition
     bearing = plot.bearing(ds, "F43")
     np.testing.assert_array_equal(points(bearing, "_ticks"), np.transpose([ds.F43x.values[::30], ds.F43y.values[::30]]))
     assert {"$\\theta_2$ = 0°", "90°", "450°", "630°"} < set(texts(bearing))
@@ -217,7 +217,7 @@ def test_half_of_two_turns_is_not_closed(cycles):
     assert plot.forces(half).lines[0].get_xdata()[-1] == 499.0
 
 
-def test_a_jammed_arc_is_shaded_and_called_so():
+def test_a_jammed_arc_is_shaded_and_labelled():
     ds = ls.sweep(JAMMED)
     jammed = ds.status.values == 4
     assert 0 < jammed.sum() < jammed.size
@@ -239,7 +239,7 @@ def test_a_jammed_mechanism_is_drawn_but_has_no_forces():
         plot.mechanism(ds, angle, forces=True)
 
 
-def test_a_narrow_gap_has_its_word_beside_it_once():
+def test_a_narrow_gap_is_labelled_once():
     ds = ls.sweep(ls.Scene(engine(), 300.0, drive="coupler", loads=[ls.Load("crank", torque=-5.0)]))
     assert (ds.status.values == 3).sum() == 2
     for ax in (plot.forces(ds), plot.torque(ds)):
@@ -271,7 +271,7 @@ def test_every_mechanism_can_be_drawn(kind):
     assert (kind.drawing is None) == (kind.track is not None)
 
 
-def test_of_a_mechanism_without_a_drawing_only_the_forces_at_pins_are_plotted(cycles, monkeypatch):
+def test_a_mechanism_without_a_drawing_has_plots_of_pin_forces_only(cycles, monkeypatch):
     monkeypatch.setattr(ls.SliderCrank, "drawing", None)
     assert plot.forces(cycles["crossed"]).get_ylabel() == "pin force [N]"  # without the guide, which is no pin
     plot.bearing(cycles["crossed"], "F32")
@@ -282,7 +282,7 @@ def test_of_a_mechanism_without_a_drawing_only_the_forces_at_pins_are_plotted(cy
         plot.bearing(cycles["crossed"], "F32", frame="journal")
 
 
-def test_results_of_a_mechanism_that_is_not_registered_are_named(cycles, monkeypatch):
+def test_results_of_an_unregistered_mechanism_are_refused(cycles, monkeypatch):
     monkeypatch.delitem(MECHANISMS, "SliderCrank")
     for draw in (plot.forces, plot.bearing, plot.cycle):
         with pytest.raises(ValueError, match=r"ds: is of a SliderCrank; registered are FourBar, .*: register it"):
@@ -298,7 +298,7 @@ def test_a_car_in_a_loop_has_no_crank_to_plot_over():
     assert [ax.get_ylabel() for ax in plot.cycle(ds).axes] == [ax.get_ylabel() for ax in plot.loop(ds).axes]
 
 
-def test_forces_of_a_dataset_that_has_lost_its_scene_are_still_drawn(cycles):
+def test_forces_of_a_dataset_without_its_scene_are_drawn(cycles):
     lost = cycles["crossed"].drop_attrs(deep=False)
     ax = plot.forces(lost)
     assert len(ax.get_legend().get_texts()) == 4

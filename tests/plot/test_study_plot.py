@@ -1,4 +1,4 @@
-"""Plots of studies show the studies' numbers: every cell, dot and line, the best, what is left out, and units."""
+"""Plots of studies show the studies' numbers: every cell, dot and line, the best, omitted designs, and units."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ CRANK, COUPLER = np.array([0.04, 0.05, 0.07]), np.array([0.2, 0.21, 0.23, 0.26])
 
 
 def grid(values, status=None, **more) -> xr.Dataset:
-    """A study over crank (3) and coupler (4) by hand."""
+    """Return a study over crank (3) and coupler (4) made by hand."""
     dims = ("crank", "coupler")
     status = np.zeros((3, 4), dtype=np.int8) if status is None else np.array(status, dtype=np.int8)
     variables = {"F32_peak": (dims, np.array(values, dtype=float), {"units": "N"}), "status": (dims, status, FLAGS)}
@@ -32,7 +32,7 @@ def grid(values, status=None, **more) -> xr.Dataset:
 
 
 def sample(n, seed=0, **more) -> xr.Dataset:
-    """A study of n designs by hand: two lengths, two peaks between 100 and 200."""
+    """Return a study of n designs made by hand: two lengths, two peaks between 100 and 200."""
     random = np.random.default_rng(seed)
     coords = {
         "design": np.arange(n) + 10,
@@ -76,13 +76,13 @@ def test_a_heat_map_shows_every_design_at_its_parameters():
 
 
 @pytest.mark.parametrize(
-    ("maximize", "at", "said"), [(False, (2, 0), "least: 20.00 N"), (True, (0, 3), "largest: 31.00 N")]
+    ("maximize", "at", "message"), [(False, (2, 0), "least: 20.00 N"), (True, (0, 3), "largest: 31.00 N")]
 )
-def test_its_best_design_is_marked(maximize, at, said):
+def test_the_best_design_of_a_heat_map_is_marked(maximize, at, message):
     ax = grid(VALUES).linksweep.heat_map("F32_peak", maximize=maximize)
     (star,) = ax.lines
     assert star.get_xydata().tolist() == [[COUPLER[at[1]], CRANK[at[0]]]]
-    assert legend(ax) == [f"{said} at coupler length {COUPLER[at[1]]:g} m, crank length {CRANK[at[0]]:g} m"]
+    assert legend(ax) == [f"{message} at coupler length {COUPLER[at[1]]:g} m, crank length {CRANK[at[0]]:g} m"]
 
 
 def test_axes_can_be_chosen_and_are_in_order():
@@ -109,14 +109,14 @@ def test_words_and_positions_along_the_axes():
 
 def test_designs_that_are_not_ok_are_hatched_by_their_status():
     values = VALUES.copy()
-    values[0, :2] = 1.0  # better than any, if only it could be assembled
+    values[0, :2] = 1.0  # better than any, but it cannot be assembled
     values[0, 3], values[1, 3], values[2, 1], values[2, 3] = np.nan, np.nan, np.inf, np.nan
     status = [[2, 2, 1, 1], [0, 0, 0, 2], [0, 3, 0, 0]]
     ax = ls.plot.heat_map(grid(values, status), "F32_peak")
-    shown = mesh(ax).get_array().reshape(3, 4)
+    cells = mesh(ax).get_array().reshape(3, 4)
     ok = np.array([[0, 0, 1, 0], [1, 1, 1, 0], [1, 0, 1, 0]], dtype=bool)
-    np.testing.assert_array_equal(~np.ma.getmaskarray(shown), ok)
-    np.testing.assert_array_equal(shown[ok].data, values[ok])
+    np.testing.assert_array_equal(~np.ma.getmaskarray(cells), ok)
+    np.testing.assert_array_equal(cells[ok].data, values[ok])
     assert legend(ax)[1:] == ["partial revolution", "cannot assemble", "unbounded", "no value"]
     assert ax.lines[0].get_xydata().tolist() == [[COUPLER[0], CRANK[2]]]
     patches = {patch.get_label(): patch for patch in ax.patches if isinstance(patch, PathPatch)}
@@ -124,15 +124,15 @@ def test_designs_that_are_not_ok_are_hatched_by_their_status():
     codes = {"_partial_revolution": 1, "_cannot_assemble": 2, "_unbounded": 3}
     for label, patch in patches.items():
         covered = patch.get_path().contains_points(cells.reshape(-1, 2)).reshape(3, 4)
-        wanted = ~ok & (np.array(status) == codes.get(label, 0))
-        np.testing.assert_array_equal(covered, wanted)
+        expected = ~ok & (np.array(status) == codes.get(label, 0))
+        np.testing.assert_array_equal(covered, expected)
         assert (label == "_no value") == (not patch.get_hatch())
     assert len({patch.get_hatch() for patch in patches.values()}) == 4
-    left = ls.plot.heat_map(grid(VALUES).where(VALUES < 30.0), "F32_peak")  # what a user leaves out
+    left = ls.plot.heat_map(grid(VALUES).where(VALUES < 30.0), "F32_peak")  # omitted by the user
     assert legend(left)[1:] == ["no value"]
 
 
-def test_a_status_of_more_dims_and_none_at_all():
+def test_a_status_over_several_dims_and_over_none():
     ds = grid(VALUES)
     worst = xr.zeros_like(ds.status).expand_dims(rpm2=2).copy()
     worst[0, 0, 0], worst[1, 0, 0] = 1, 2
@@ -141,7 +141,7 @@ def test_a_status_of_more_dims_and_none_at_all():
     assert not np.ma.getmaskarray(mesh(ls.plot.heat_map(ds.drop_vars("status"), "F32_peak")).get_array()).any()
 
 
-def test_a_few_far_away_are_off_the_scale_and_many_sizes_take_a_logarithmic_one():
+def test_outliers_are_off_the_scale_and_several_decades_are_logarithmic():
     usual = np.linspace(100.0, 200.0, 96)
     assert span(usual) == (100.0, 200.0)
     low, high = span(np.append(usual, [1e30]))
@@ -170,11 +170,11 @@ def test_contours_lie_where_their_values_are():
         np.testing.assert_allclose(1000.0 * x + 100.0 * y, level)
     own = ls.plot.heat_map(grid(plane), "F32_peak", contours=True)
     np.testing.assert_array_equal(own.collections[1].levels, lines.levels)
-    assert len(legend(own)) == 1  # the colour bar tells
+    assert len(legend(own)) == 1  # the colour bar states it
     assert len(ls.plot.heat_map(grid(VALUES * 0.0 + 5.0), "F32_peak", contours=True).collections) >= 1
 
 
-def test_a_scatter_shows_every_design_and_the_front_by_its_definition():
+def test_a_scatter_shows_every_design_and_the_front():
     ds = sample(200)
     ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
     np.testing.assert_array_equal(ax.collections[0].get_offsets(), np.stack([ds.F32_peak, ds.T12_peak], axis=-1))
@@ -187,7 +187,7 @@ def test_a_scatter_shows_every_design_and_the_front_by_its_definition():
     assert len(plt.get_fignums()) == 1
 
 
-def test_more_can_be_better_in_a_scatter():
+def test_a_scatter_may_maximize():
     ds = sample(50)
     ax = ds.linksweep.scatter(x="crank.length", y="T12_peak", maximize="crank.length")
     drawn = ax.lines[0].get_xydata()
@@ -197,7 +197,7 @@ def test_more_can_be_better_in_a_scatter():
     assert not ls.plot.scatter(ds, x="F32_peak", y="T12_peak", front=False).lines
 
 
-def test_colours_and_what_is_left_out_of_a_scatter():
+def test_colours_and_omitted_designs_of_a_scatter():
     ds = sample(30)
     ds["status"][:5] = [2, 2, 3, 2, 1]
     ds["T12_peak"][4] = np.nan
@@ -209,7 +209,7 @@ def test_colours_and_what_is_left_out_of_a_scatter():
     assert legend(ax)[0] == "24 designs that are ok"
 
 
-def test_a_scatter_keeps_the_front_on_its_scale_and_takes_a_logarithmic_one_for_many_sizes():
+def test_a_scatter_keeps_the_front_on_its_scale_and_may_be_logarithmic():
     ds = sample(100)
     ds["F32_peak"][7], ds["T12_peak"][7] = 1.0, 1e6  # alone out there, but on the front
     ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
@@ -219,13 +219,13 @@ def test_a_scatter_keeps_the_front_on_its_scale_and_takes_a_logarithmic_one_for_
     assert ls.plot.scatter(ds, x="F32_peak", y="T12_peak").get_xlim()[1] < 1000.0
 
 
-def test_very_many_designs_are_thinned_and_said_to_be():
+def test_a_scatter_of_very_many_designs_is_thinned_with_a_note():
     ds = sample(100_000)
     ax = ls.plot.scatter(ds, x="F32_peak", y="T12_peak")
-    shown = {tuple(point) for point in ax.collections[0].get_offsets().data}
-    assert len(shown) == 20_000
-    assert shown <= set(zip(ds.F32_peak.values, ds.T12_peak.values, strict=True))
-    assert {tuple(point) for point in ax.lines[0].get_xydata()} <= shown
+    points = {tuple(point) for point in ax.collections[0].get_offsets().data}
+    assert len(points) == 20_000
+    assert points <= set(zip(ds.F32_peak.values, ds.T12_peak.values, strict=True))
+    assert {tuple(point) for point in ax.lines[0].get_xydata()} <= points
     front = ls.pareto(ds, minimize=["F32_peak", "T12_peak"])
     np.testing.assert_array_equal(ax.lines[0].get_xdata(), front.F32_peak)
     assert legend(ax)[0] == f"{whole(20_000)} of {whole(100_000)} designs, chosen by chance"
@@ -258,7 +258,7 @@ def test_parallel_coordinates_pass_each_axis_at_the_designs_value():
     assert len(plt.get_fignums()) == 1
 
 
-def test_numbers_on_the_axes_stand_at_their_heights():
+def test_numbers_on_the_axes_are_at_their_heights():
     ds = sample(40)
     ax = ls.plot.parallel_coordinates(ds, ["F32_peak", "T12_peak"], best=0)
     low, high = float(ds.F32_peak.min()), float(ds.F32_peak.max())
@@ -268,7 +268,7 @@ def test_numbers_on_the_axes_stand_at_their_heights():
         assert note.xy[1] == pytest.approx((float(note.get_text()) - low) / (high - low))
 
 
-def test_what_parallel_coordinates_are_asked_for():
+def test_axes_of_parallel_coordinates():
     ds = sample(40)
     ax = ds.linksweep.parallel_coordinates(["T12_peak", "coupler.length"], color="F32_peak", maximize=True, best=2)
     order = np.argsort(-ds.F32_peak.values)
@@ -294,7 +294,7 @@ def test_parallel_coordinates_of_several_dims_words_and_far_away_designs():
     assert heights.max() == pytest.approx(1.04) and (np.sort(heights)[:-5] <= 1.0).all()
 
 
-def test_plots_are_drawn_where_they_are_told_and_a_real_study_is_one():
+def test_plots_of_a_computed_study_on_given_axes():
     may_be = {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}
     study = ls.peaks(ls.sample(ls.example("press"), may_be, n=16), of=["F32", "T12"], theta2=36)
     figure, (left, right) = plt.subplots(1, 2)
@@ -310,7 +310,7 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
 
 
 @pytest.mark.parametrize(
-    ("draw", "said"),
+    ("draw", "message"),
     [
         (lambda: ls.plot.heat_map(3, "F32_peak"), "ds = 3: must be a Dataset over designs, as from ls.peaks"),
         (lambda: ls.plot.heat_map(GRID, "F32_peek"), "of: nothing is named 'F32_peek'; did you mean \"F32_peak\"?"),
@@ -373,8 +373,8 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
         (lambda: ls.plot.parallel_coordinates(SAMPLE, color="colour"), "color: nothing is named 'colour'"),
     ],
 )
-def test_what_cannot_be_drawn_is_said_before_a_figure_is_made(draw, said):
+def test_refusals_come_before_a_figure_is_made(draw, message):
     with pytest.raises(ValueError) as error:  # noqa: PT011
         draw()
-    assert str(error.value).startswith(said)
+    assert str(error.value).startswith(message)
     assert not plt.get_fignums()

@@ -1,4 +1,4 @@
-"""Figures mark the exact peak that the table beside it has, at jumps, too."""
+"""Figures mark the exact peaks of the report's table, also at jumps."""
 
 from dataclasses import replace
 
@@ -25,37 +25,37 @@ def closed():
 
 
 def pump() -> ls.Scene:
-    """A slider-crank with friction: its forces jump at the dead centres, so that a sample has one side of them."""
+    """Return a slider-crank with friction, whose forces jump at the dead centres: a sample has one side of each."""
     machine = ls.SliderCrank(
         ls.Bar(0.05, 0.02, 0.02, 7750), ls.Bar(0.2, 0.02, 0.02, 7750), 1.5, friction=0.15, offset=0.004
     )
     return ls.Scene(machine, omega2=40.0, gravity=(0.0, -9.81), loads=[ls.Load("slider", force=-300.0)])
 
 
-def said_at_peaks(ax, units: str) -> str:
+def labels_at_peaks(ax, units: str) -> str:
     return "\n".join(texts(ax)).replace(f" {units}", "")
 
 
 @pytest.mark.parametrize("count", [36, 90, 720])
-def test_every_figure_marks_what_the_table_says(count):
+def test_every_figure_marks_the_peaks_of_the_table(count):
     scene = pump()
     cycle, worst = ls.sweep(scene, count), ls.peaks(scene)
     assert float(cycle.T12.max()) < float(worst.T12_max)  # the samples miss it
-    said = said_at_peaks(ls.plot.torque(cycle), "N m")
-    assert f"max {number(float(worst.T12_max))} at" in said
-    assert f"min {number(float(worst.T12_min))} at" in said
-    said = said_at_peaks(ls.plot.forces(cycle), "N")
+    labels = labels_at_peaks(ls.plot.torque(cycle), "N m")
+    assert f"max {number(float(worst.T12_max))} at" in labels
+    assert f"min {number(float(worst.T12_min))} at" in labels
+    labels = labels_at_peaks(ls.plot.forces(cycle), "N")
     for pin in ("F12", "F32", "F43", "F14"):
-        assert f"$F_{{{pin[1:]}}}$ {number(float(worst[f'{pin}_peak']))} at" in said
+        assert f"$F_{{{pin[1:]}}}$ {number(float(worst[f'{pin}_peak']))} at" in labels
         if pin != "F14":
-            assert f" = {number(float(worst[f'{pin}_peak']))}" in said_at_peaks(ls.plot.bearing(cycle, pin), "N")
+            assert f" = {number(float(worst[f'{pin}_peak']))}" in labels_at_peaks(ls.plot.bearing(cycle, pin), "N")
     shaking = ls.sweep(scene, count, of=["Fsx", "Fsy"])
     fs = number(float(ls.peaks(scene, of=["Fs"]).Fs_peak))
-    assert f"$F_{{s}}$ = {fs}" in said_at_peaks(ls.plot.hodograph(shaking), "N")
+    assert f"$F_{{s}}$ = {fs}" in labels_at_peaks(ls.plot.hodograph(shaking), "N")
 
 
 def double_rocker() -> ls.Scene:
-    """Toggles at ±arccos((a² + d² − (b + c)²)/(2·a·d)), where forces are unbounded."""
+    """Return a double rocker with toggles at ±arccos((a² + d² − (b + c)²)/(2·a·d)), where forces are unbounded."""
     links = (ls.Bar(length, 0.02, 0.02, 7750) for length in (0.2, 0.12, 0.15))
     return ls.Scene(ls.FourBar(*links, ground=0.25), omega2=5.0, gravity=(0.0, -9.81))
 
@@ -77,8 +77,8 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_marks_over_a_part_are_the_peaks_of_close_samples(name):
-    """Of a part of a turn there is another reference: 20 samples to a degree, with the marks' own angles among them."""
+def test_marks_over_a_part_are_the_peaks_of_fine_samples(name):
+    """The reference over a part of a turn is 20 samples to a degree, with the angles of the marks among them."""
     scene, first, last = MACHINES[name](), 10.0, 60.0
     close = np.linspace(first, last, 1001)
     marked = [with_peaks(ls.sweep(scene, np.linspace(first, last, count))) for count in (36, 720)]
@@ -93,23 +93,23 @@ def test_marks_over_a_part_are_the_peaks_of_close_samples(name):
 
 @pytest.mark.parametrize("name", MACHINES)
 @pytest.mark.parametrize("count", [36, 720])
-def test_marks_over_a_part_are_those_of_the_reports_table(name, count):
+def test_marks_over_a_part_equal_the_reports_table(name, count):
     scene, part = MACHINES[name](), (-35.0, 117.3)
-    found = results_of(scene, part).peaks
+    peaks = results_of(scene, part).peaks
     cycle = ls.sweep(scene, np.linspace(*part, count))
-    said = said_at_peaks(ls.plot.forces(cycle), "N")
+    labels = labels_at_peaks(ls.plot.forces(cycle), "N")
     for force in ("F12", "F32"):
-        size, at = number(float(found[f"{force}_peak"])), angle_text(float(found[f"{force}_peak_at"]))
-        assert f"$F_{{{force[1:]}}}$ {size} at {at}" in said
+        size, at = number(float(peaks[f"{force}_peak"])), angle_text(float(peaks[f"{force}_peak_at"]))
+        assert f"$F_{{{force[1:]}}}$ {size} at {at}" in labels
     drive = scene.mechanism.drives[scene.drive]
-    said = said_at_peaks(ls.plot.torque(cycle), "N m" if drive.startswith("T") else "N")
+    labels = labels_at_peaks(ls.plot.torque(cycle), "N m" if drive.startswith("T") else "N")
     for end in ("max", "min"):
-        size, at = number(float(found[f"{drive}_{end}"])), angle_text(float(found[f"{drive}_{end}_at"]))
-        assert f"{end} {size} at {at}" in said
+        size, at = number(float(peaks[f"{drive}_{end}"])), angle_text(float(peaks[f"{drive}_{end}_at"]))
+        assert f"{end} {size} at {at}" in labels
 
 
 def test_a_part_that_ends_at_a_toggle_or_beyond():
-    """And one that ends beside it: forces are as large there as at the last angle itself."""
+    """A part that ends beside the toggle has its largest forces at its last angle."""
     scene = double_rocker()
     toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
     beyond = peaks_of_part(scene, ["F32", "T12"], (10.0, toggle + 20.0))
@@ -122,7 +122,7 @@ def test_a_part_that_ends_at_a_toggle_or_beyond():
 
 
 @pytest.mark.parametrize("count", [36, 37, 720])
-def test_unbounded_peaks_are_marked_where_they_are_whatever_the_samples(count):
+def test_unbounded_peaks_are_marked_at_their_toggles(count):
     scene = double_rocker()
     toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
     cycle = ls.sweep(scene, count, of=[*scene.mechanism.dynamics("crank"), "Fsx", "Fsy"])
@@ -133,21 +133,21 @@ def test_unbounded_peaks_are_marked_where_they_are_whatever_the_samples(count):
         (ls.plot.bearing, "N"),
         (ls.plot.hodograph, "N"),
     ):
-        said = said_at_peaks(drawn(cycle), units)
-        assert "∞" in said and "off scale" in said
-        assert any(angle in said for angle in where)
+        labels = labels_at_peaks(drawn(cycle), units)
+        assert "∞" in labels and "off scale" in labels
+        assert any(angle in labels for angle in where)
     ls.plot.cycle(cycle).draw_without_rendering()
 
 
 def test_a_part_of_a_cycle_of_two_turns():
-    """The gas of a four-stroke engine pushes in its second turn, too."""
+    """A four-stroke engine has gas pressure also in its second turn."""
     scene = ls.example("engine")
     whole = ls.peaks(scene, ["F32"])
     parts = [peaks_of_part(scene, ["F32"], (first, first + 0.5 * scene.period)) for first in (0.0, 0.5 * scene.period)]
     assert max(float(part.F32_peak) for part in parts) == pytest.approx(float(whole.F32_peak), rel=1e-9)
 
 
-def test_the_samples_stay_and_peaks_come_between_them():
+def test_exact_peaks_are_added_between_the_samples():
     cycle = ls.sweep(pump(), 90)
     more = with_peaks(cycle)
     xr.testing.assert_equal(
@@ -158,7 +158,7 @@ def test_the_samples_stay_and_peaks_come_between_them():
     assert with_peaks(more) is more
 
 
-def test_numbers_that_are_not_the_scenes_are_drawn_as_they_are():
+def test_changed_results_and_batches_are_drawn_without_exact_peaks():
     cycle = ls.sweep(pump(), 90)
     with xr.set_options(keep_attrs=True):
         doubled = cycle.assign(T12=2.0 * cycle.T12)
@@ -172,8 +172,8 @@ def test_numbers_that_are_not_the_scenes_are_drawn_as_they_are():
 
 def test_one_of_several_designs_is_marked_exactly():
     scene = replace(pump(), omega2=xr.DataArray([20.0, 40.0], {"speed": [1, 2]}, "speed"))
-    said = said_at_peaks(ls.plot.torque(ls.sweep(scene, 90).isel(speed=1)), "N m")
-    assert f"max {number(float(ls.peaks(pump()).T12_max))} at" in said
+    labels = labels_at_peaks(ls.plot.torque(ls.sweep(scene, 90).isel(speed=1)), "N m")
+    assert f"max {number(float(ls.peaks(pump()).T12_max))} at" in labels
 
 
 def test_a_lap_marks_the_extremes_between_its_samples():

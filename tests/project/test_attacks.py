@@ -1,4 +1,4 @@
-"""Every attack in its small version; ``python -m benchmarks.stress.attacks`` runs the long ones."""
+"""Every attack on the package in its small version; ``python -m benchmarks.stress.attacks`` runs the long ones."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ SMALL = [attack for attack in attacks() if attack.small]
 
 @pytest.mark.long
 @pytest.mark.parametrize("attack", SMALL, ids=lambda attack: attack.name)
-def test_nothing_breaks(attack: Attack):
+def test_the_package_withstands_the_attack(attack: Attack):
     outcome = attack.run(np.random.default_rng(1), attack.small)
     assert outcome.tried >= attack.small
     assert outcome.failures == []

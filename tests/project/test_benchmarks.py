@@ -1,4 +1,4 @@
-"""Every benchmark once, tiny: its rows are there and its rivals agree. No time is asserted."""
+"""Every benchmark runs once at a tiny size: its rows exist and its rivals agree. No time is asserted."""
 
 import json
 import math
@@ -14,7 +14,7 @@ from benchmarks.report import HEADER, machine, markdown
 from benchmarks.rivals import limit, peers
 from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
 
-JUDGED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "warm", "threads"}
+CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "warm", "threads"}
 GOALS = {
     "unknowns": {60, 250, 1.3},
     "peaks": {200, 1.4},
@@ -33,23 +33,23 @@ GOALS = {
 
 @pytest.fixture(scope="module")
 def rows():
-    """Rows of a group at the tiny size, measured once."""
-    found = {}
+    """Return a function that measures a group at the tiny size, once each."""
+    measured = {}
 
     def of(name: str) -> list[Row]:
-        return found[name] if name in found else found.setdefault(name, front_door.measured(name, QUICK))
+        return measured[name] if name in measured else measured.setdefault(name, front_door.measured(name, QUICK))
 
     return of
 
 
 @pytest.mark.parametrize("name", long_but(front_door.GROUPS, "threads", "peaks"))
 def test_rows_exist_and_rivals_agree(name, rows):
-    found = rows(name)
-    assert {row.goal for row in found} - {None} == GOALS[name]
-    for row in found:
+    table = rows(name)
+    assert {row.goal for row in table} - {None} == GOALS[name]
+    for row in table:
         assert row.note.startswith("not measured") or (math.isfinite(row.ratio) and row.ratio > 0), row
         assert row.agrees, row
-        assert name not in JUDGED or row.error is not None or row.note, row
+        assert name not in CHECKED or row.error is not None or row.note, row
 
 
 @pytest.mark.skipif(cores() < 2, reason="one core only")
@@ -58,7 +58,7 @@ def test_two_threads_give_the_same_bits(rows):
 
 
 @pytest.mark.long
-def test_skipped_work_is_counted(rows):
+def test_skipping_takes_fewer_operations(rows):
     notes = [row.note.split() for row in rows("skipping") if "operations" in row.note]
     assert len(notes) == 16
     assert all(int(ours) < int(full) for ours, _, full, _ in notes)
@@ -102,26 +102,26 @@ def test_the_closed_form_is_the_dense_solve():
 def test_calls_are_timed_in_turn():
     order = []
     calls = {name: lambda name=name: order.append(name) for name in "AB"}
-    found = race(calls, replace(QUICK, rounds=3))
+    measured = race(calls, replace(QUICK, rounds=3))
     assert "".join(order[-6:]) == "ABABAB"
-    assert [len(seconds) for seconds in found.seconds.values()] == [3, 3]
+    assert [len(seconds) for seconds in measured.seconds.values()] == [3, 3]
 
 
-def test_a_figure_is_the_median_of_the_rounds_ratios():
-    found = Race({"ours": [1.0, 2.0, 1.0], "theirs": [4.0, 6.0, 50.0]})
-    assert found.row(FASTER, "ours", "theirs").figure == 4.0
-    assert found.row(SHARE, "ours", "theirs").figure == 0.25
-    assert found.row(WALL, "ours", "theirs").figure == 1.0
+def test_a_rows_figure_is_the_median_of_the_rounds_ratios():
+    measured = Race({"ours": [1.0, 2.0, 1.0], "theirs": [4.0, 6.0, 50.0]})
+    assert measured.row(FASTER, "ours", "theirs").figure == 4.0
+    assert measured.row(SHARE, "ours", "theirs").figure == 0.25
+    assert measured.row(WALL, "ours", "theirs").figure == 1.0
 
 
 @pytest.mark.parametrize(
     ("kind", "goal", "met"), [(FASTER, 4, True), (FASTER, 5, False), (SHARE, 0.3, True), (SHARE, 0.2, False)]
 )
-def test_a_goal_is_met_or_not(kind, goal, met):
+def test_a_figure_meets_its_goal_or_not(kind, goal, met):
     assert Race({"ours": [1.0], "theirs": [4.0]}).row(kind, "ours", "theirs", goal).met is met
 
 
-def test_a_rival_that_is_not_there_says_why():
+def test_a_missing_rival_states_the_reason():
     row = Race({"ours": [1.0]}).row(SHARE, "ours", "limit.c", 1.3)
     assert (row.figure, row.met, row.note) == (None, None, "not measured: no C compiler found")
 
@@ -134,7 +134,7 @@ def test_the_table_is_markdown():
     assert cells == ["ours", "theirs", "4 times as fast", "≥ 3", "yes", "2 µs", "8 µs", "2e-15", ""]
 
 
-def test_front_door(tmp_path, capsys, monkeypatch):
+def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(front_door, "RESULTS", tmp_path / "RESULTS.md")
     file = tmp_path / "rows.json"
     assert front_door.main(["--quick", "--only", "threads", "--json", str(file), "--write"]) == 0

@@ -1,4 +1,4 @@
-"""The list of mutants fits the sources, and its runner tells a mutant that is caught from one that survives."""
+"""Mutants (planted errors) of benchmarks/stress apply to the sources, and their runner reports survivors."""
 
 import ast
 from pathlib import Path
@@ -32,14 +32,14 @@ def test_every_mutant_still_applies_to_the_sources(mutant):
     assert mutant.tests and all((Path(__file__).parents[1] / name).is_file() for name in mutant.tests)
 
 
-def test_the_list_is_of_documents_and_of_every_mechanism():
-    said = [mutant.what for mutant in MUTANTS]
-    assert len(said) == len(set(said)) >= 20
+def test_the_list_covers_the_documents_and_every_mechanism():
+    text = [mutant.what for mutant in MUTANTS]
+    assert len(text) == len(set(text)) >= 20
     for start in ("document 1", "document 2", "document 3", "four-bar", "slider-crank", "inverted", "rocket car"):
-        assert sum(what.startswith(start) for what in said) >= 2, start
+        assert sum(what.startswith(start) for what in text) >= 2, start
 
 
-def test_a_text_that_is_not_there_or_there_twice_is_no_mutant():
+def test_a_mutant_must_match_the_source_exactly_once():
     with pytest.raises(ValueError, match=r'"a disk is .*": what it changes stands 0 times in linksweep/.*, not once'):
         CAUGHT.planted("return 0.5")
     with pytest.raises(ValueError, match="stands 2 times"):
@@ -47,7 +47,7 @@ def test_a_text_that_is_not_there_or_there_twice_is_no_mutant():
 
 
 @pytest.mark.long
-def test_the_runner_tells_who_catches_what():
+def test_the_runner_reports_which_test_catches_a_mutant():
     with copied() as copy:
         source = copy.folder / "linksweep" / CAUGHT.file
         before = source.read_text(encoding="utf-8")
@@ -59,18 +59,18 @@ def test_the_runner_tells_who_catches_what():
         assert Copy(copy.folder, ("tests/mechanisms/test_links.py::test_red",)).catcher(CAUGHT) is None
 
 
-def test_the_exit_code_says_whether_one_survived(monkeypatch, capsys):
+def test_the_exit_code_is_1_where_a_mutant_survives(monkeypatch, capsys):
     monkeypatch.setattr(Copy, "failures", lambda self, tests, *options: [])
     monkeypatch.setattr(Copy, "catcher", lambda self, mutant: "a test" if mutant is CAUGHT else None)
-    for listed, code, said in (([CAUGHT], 0, "caught    a disk is"), ([CAUGHT, HARMLESS], 1, "SURVIVED  the same")):
+    for listed, code, text in (([CAUGHT], 0, "caught    a disk is"), ([CAUGHT, HARMLESS], 1, "SURVIVED  the same")):
         monkeypatch.setattr("benchmarks.stress.mutants.mutants", lambda listed=listed: listed)
         assert main([]) == code
-        assert said in capsys.readouterr().out
+        assert text in capsys.readouterr().out
 
 
 def test_tests_that_fail_without_a_mutant_are_named(monkeypatch, capsys):
     monkeypatch.setattr(Copy, "failures", lambda self, tests, *options: ["tests/mechanisms/test_links.py::test_red"])
     assert main(["--only", "a disk's"]) == 1
-    said = capsys.readouterr().out.splitlines()
-    assert said[0] == "fails without a mutant: tests/mechanisms/test_links.py::test_red"
-    assert said[-1] == "1 of 1 mutants caught"
+    text = capsys.readouterr().out.splitlines()
+    assert text[0] == "fails without a mutant: tests/mechanisms/test_links.py::test_red"
+    assert text[-1] == "1 of 1 mutants caught"

@@ -16,7 +16,7 @@ PACKAGE = ROOT / "linksweep"
 
 
 def declared() -> dict:
-    """The package as pyproject.toml tells it."""
+    """Return the content of pyproject.toml."""
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
@@ -36,7 +36,7 @@ def test_plot_is_a_module():
     assert importlib.import_module("linksweep.plot") is ls.plot
 
 
-def test_the_version_is_that_of_the_package(monkeypatch):
+def test_the_version_is_that_of_the_installed_package(monkeypatch):
     assert ls.__version__ == declared()["project"]["version"]
 
     def missing(name):
@@ -97,6 +97,6 @@ def test_scripts_pass_a_strict_type_checker(readme, tmp_path):
 
 
 @pytest.mark.parametrize(("slip", "error"), SLIPS.items())
-def test_a_type_checker_sees_a_slip(slip, error, readme, tmp_path):
+def test_a_type_checker_reports_a_slip(slip, error, readme, tmp_path):
     report = checked(tmp_path, readme + slip)
     assert f"[{error}]" in report and "Found 1 error" in report

@@ -1,4 +1,4 @@
-"""Every notebook runs from top to bottom, and shows its figures."""
+"""Every notebook runs from top to bottom and has figures in its output."""
 
 import os
 import subprocess
@@ -19,16 +19,16 @@ def test_notebook_runs(path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     notebook = jupytext.read(path)
     nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
-    shown = [output for cell in notebook.cells for output in cell.get("outputs", [])]
-    assert any("image/png" in output.get("data", {}) for output in shown)
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
 
 
-def test_there_are_notebooks():
+def test_notebooks_exist():
     assert NOTEBOOKS
 
 
-def test_a_page_drawn_first_leaves_display_on(tmp_path):
-    """A notebook's backend turns it on when it wakes, with the first figure; nothing would be seen otherwise."""
+def test_a_report_made_first_leaves_the_display_of_figures_on(tmp_path):
+    """A notebook's backend turns the display on with the first figure, which must not be the report's."""
     (tmp_path / "wakes.py").write_text(
         "import matplotlib\nfrom matplotlib.backends.backend_agg import *\nmatplotlib.interactive(True)\n"
     )

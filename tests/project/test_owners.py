@@ -1,6 +1,6 @@
-"""A machine owns all that is its own: results and analyses ask it for capabilities, and name none.
+"""Results and analyses ask a machine for its capabilities and name no machine.
 
-A name in code is looked for in the syntax tree, so that docstrings may name machines in examples.
+Names are searched in the syntax tree, so that docstrings may use machines in examples.
 """
 
 import ast
@@ -35,11 +35,11 @@ OFFERED = {
 
 
 @pytest.mark.parametrize("kind", OFFERED)
-def test_capabilities(kind):
+def test_each_machine_offers_its_capabilities(kind):
     assert {name for name in CAPABILITIES if offers(MECHANISMS[kind], name)} == OFFERED[kind]
 
 
-def test_the_sentence_names_machine_capability_and_alternatives():
+def test_lack_names_machine_capability_and_alternatives():
     loop, press = (ls.example(name).mechanism for name in ("loop", "press"))
     others = "FourBar, InvertedSliderCrank, SliderCrank"
     assert lack(loop, "pins") == f"a LoopTrack, which has no pins: give another machine ({others})"

@@ -1,4 +1,4 @@
-"""What the README shows works as it stands."""
+"""Code, commands and links of the README work."""
 
 import re
 from pathlib import Path
@@ -17,20 +17,20 @@ def elsewhere(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("block", re.findall(r"```python\n(.*?)```", README, re.DOTALL))
-def test_its_python_runs(block):
+def test_python_of_the_readme_runs(block):
     exec(block, {})
     assert Path("cycle.nc").exists() == ("cycle.nc" in block)
     plt.close("all")
 
 
-def test_it_has_the_two_lines():
+def test_the_readme_has_the_quick_start():
     lines = [line for line in README.splitlines() if line.startswith("python3 -m venv")]
     assert len(lines) == 2
     assert lines[0].endswith("linksweep demo")
     assert lines[1].endswith("pytest")
 
 
-def test_its_links_lead_somewhere():
+def test_links_of_the_readme_exist():
     links = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
     missing = [link for link in links if not (Path(__file__).parents[2] / link).exists()]
     assert links

@@ -1,7 +1,7 @@
 """Public signatures keep one set of rules, so that a name learned from one function holds for all.
 
 What follows the subject and its one object is keyword-only, as in ``sweep(scene, 360)`` and ``study(scene, "x.nc")``.
-Quantities are asked for by `of`; subjects are called `scene`, `ds` or `pins` for what they are.
+Quantities are requested by `of`; subjects are called `scene`, `ds` or `pins` for what they are.
 """
 
 import inspect
@@ -58,38 +58,38 @@ def problems(name: str, signature: inspect.Signature) -> list[str]:
     parameters = signature.parameters.values()
     at_most = 1 if name.startswith("Cycle.") or name.endswith(".sweep") else 2
     by_place = [p.name for p in parameters if p.kind in POSITIONAL]
-    found = [f"{name}: {word} must be keyword-only" for word in by_place[at_most:]]
-    found += [f"{name}: {p.name}" for p in parameters if p.name in SEVERAL_NAMES and (name, p.name) not in ALLOWED]
+    report = [f"{name}: {word} must be keyword-only" for word in by_place[at_most:]]
+    report += [f"{name}: {p.name}" for p in parameters if p.name in SEVERAL_NAMES and (name, p.name) not in ALLOWED]
     for kind, words in SUBJECTS.items():
         of_kind = [p.name for p in parameters if re.match(rf"{kind}\b|{kind}$", str(p.annotation))]
-        found += [f"{name}: {word} must be one of {sorted(words)}" for word in of_kind if word not in words]
-    return found
+        report += [f"{name}: {word} must be one of {sorted(words)}" for word in of_kind if word not in words]
+    return report
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_signature_keeps_the_rules(name):
+def test_a_public_signature_keeps_the_rules(name):
     assert problems(name, FUNCTIONS[name]) == []
 
 
-def test_what_breaks_the_rules_is_seen():
+def test_signatures_that_break_the_rules_are_reported():
     def third(scene: "Scene", of: str, theta2: int = 720): ...  # noqa: F821
     def which(scene: "Scene", *, which: str): ...  # noqa: F821
-    def subject(machine: "Scene", found: "xr.Dataset"): ...  # noqa: F821
+    def subject(machine: "Scene", names: "xr.Dataset"): ...  # noqa: F821
 
     broken = [problems("f", inspect.signature(function)) for function in (third, which, subject)]
     assert broken == [
         ["f: theta2 must be keyword-only"],
         ["f: which"],
         [
-            "f: found",
+            "f: names",
             "f: machine must be one of ['after', 'before', 'scene']",
-            "f: found must be one of ['ds', 'scene']",
+            "f: names must be one of ['ds', 'scene']",
         ],
     ]
 
 
 @pytest.mark.parametrize("name", sorted(WORK))
-def test_work_is_shared_among_threads(name):
+def test_functions_that_work_accept_threads(name):
     threads = FUNCTIONS[name].parameters["threads"]
     assert threads.kind is inspect.Parameter.KEYWORD_ONLY and threads.default is None
 
@@ -143,7 +143,7 @@ def test_angles_have_the_name_of_the_index(request_, message):
         request_()
 
 
-def test_names_of_one_thing_are_one_thing():
+def test_alternative_forms_of_a_request_are_equal():
     by_of, by_outputs = ls.sweep(PRESS, 8, of="T12"), ls.sweep(PRESS, theta2=8, outputs=["T12"])
     assert by_of.identical(by_outputs)
     assert ls.sweep(CAR, 8).identical(ls.sweep(CAR, theta=8))

@@ -1,6 +1,6 @@
-"""Ten thousand random and hard mechanisms reach the goals of the stress suite, whose own judge is judged here.
+"""Random and hard mechanisms reach the accuracy goals of the stress suite, and its reference solution is checked.
 
-With the long tests, else a thousand. The same of a million: ``python -m benchmarks.stress --mechanisms 1000000``.
+Ten thousand with the long tests, else a thousand; a million: ``python -m benchmarks.stress --mechanisms 1000000``.
 """
 
 from dataclasses import replace
@@ -25,7 +25,7 @@ from benchmarks.stress.tally import Tally
 
 @pytest.fixture(autouse=True)
 def uncompiled():
-    """The numbers are the same (see test_bits), and there is nothing to wait for."""
+    """Run uncompiled: equal numbers (see test_bits) without compile time."""
     with way("interpreted"):
         yield
 
@@ -59,23 +59,23 @@ def test_torque_and_pin_forces_agree_near_a_dead_centre(family, seed):
     assert figures["backward"].max() < 10.0
 
 
-def test_no_bit_depends_on_how_it_is_computed():
+def test_bits_are_independent_of_how_they_are_computed():
     changed = front_door.unchanged(FAMILIES, 40, seed=2026)
     assert len(changed) == 6
     assert not any(changed.values()), changed
 
 
-def test_mean_torque_of_conservative_machines_is_nothing():
+def test_mean_torque_of_conservative_machines_is_zero():
     means = conservative.means(60, seed=2026)
     assert len(means) >= 50
     assert means.max() < 10.0
 
 
-# ---- its judge -----
+# ---- its reference -----
 
 
 def data_of(designs: Designs, k: int):
-    """One of the designs as the independent judges of the other tests take it, with the solver that is for it."""
+    """Return one design in the form of the other tests' reference solutions, and the solver for it."""
     x = designs.one(k).numbers
     words = ("length", "mass", "inertia", "cg_distance", "cg_angle")
     links = {role: LinkData(*(x[f"{role}_{word}"] for word in words)) for role in LINKS[designs.machine]}
@@ -97,27 +97,29 @@ def data_of(designs: Designs, k: int):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_two_judges_agree(family):
-    """One by decimals and its own formulas, the other by mpmath, circles that intersect and a full elimination."""
+def test_two_reference_solutions_agree(family):
+    """One uses decimals and its own formulas, the other mpmath, intersecting circles and full elimination."""
     designs = drawn(family, 4)
-    found, _ = designs.exact()
+    solution, _ = designs.exact()
     torque = {"crank": "T12", "coupler": "T13", "rocker": "T14"}[designs.drive]
     for k in range(4):
         data, solve = data_of(designs, k)
         try:
             expected = solve(data, designs.theta2)
         except oracle.Unassemblable:
-            assert not np.isfinite(float(found["mu"][k]))
+            assert not np.isfinite(float(solution["mu"][k]))
             continue
         largest = max(abs(expected[name]) for name in FORCES)
         for name in FORCES:
-            assert abs(mp.mpf(str(found[name][k])) - expected[name]) <= 1e-20 * largest, name
-        assert abs(mp.mpf(str(found["drive"][k])) - expected[torque]) <= 1e-20 * abs(expected[torque]) + 1e-30 * largest
+            assert abs(mp.mpf(str(solution[name][k])) - expected[name]) <= 1e-20 * largest, name
+        assert (
+            abs(mp.mpf(str(solution["drive"][k])) - expected[torque]) <= 1e-20 * abs(expected[torque]) + 1e-30 * largest
+        )
 
 
 @pytest.mark.parametrize("family", ["general", "near a toggle", "slider-crank with friction", "inverted slider-crank"])
-def test_spreads_are_what_last_digits_change(family):
-    """First order against the difference that each input makes, moved by a thousandth of its last digit."""
+def test_spreads_are_the_effect_of_last_digits(family):
+    """First-order spread against the differences for each input changed by a thousandth of its last digit."""
     designs = drawn(family, 5)
     exact, roots = designs.exact()
     moved = {name: np.zeros(5) for name in FORCES}
@@ -133,7 +135,7 @@ def test_spreads_are_what_last_digits_change(family):
 
 
 def differences(designs: Designs, number: str, values: np.ndarray, exact: dict) -> dict[str, np.ndarray]:
-    """What a last digit of one number changes the forces by: exactly, where the number is moved by one such digit."""
+    """Return the exact change of the forces where one number is changed by its last digit."""
     step = np.where(values == 0.0, 0.0, np.spacing(np.abs(values)))
     if number == "theta2":
         other, _ = replace(designs, theta2=float(values[0] + step[0])).exact()
@@ -143,8 +145,8 @@ def differences(designs: Designs, number: str, values: np.ndarray, exact: dict) 
 
 
 @pytest.mark.parametrize("wrong_by", [1e-13, -1e-13])
-def test_a_last_digit_too_many_is_seen(monkeypatch, wrong_by):
-    """The suite is no formality: forces that are off by 450 ε reach no goal."""
+def test_the_suite_detects_wrong_forces(monkeypatch, wrong_by):
+    """Forces that are off by 450 ε miss the goals."""
     answers = errors.answers
 
     def slightly_wrong(designs, threads=None):
@@ -159,8 +161,8 @@ def test_a_last_digit_too_many_is_seen(monkeypatch, wrong_by):
     assert "torque" not in missed
 
 
-def test_a_status_against_reason_is_seen(monkeypatch):
-    """An answer where nothing closes, and none where all is well."""
+def test_the_suite_detects_a_wrong_status(monkeypatch):
+    """The wrong status gives forces where the machine does not close, and none where it does."""
     answers = errors.answers
 
     def contrary(designs, threads=None):
@@ -181,9 +183,9 @@ def test_the_command_prints_a_row_for_each_family(capsys):
 # ---- beside others -----
 
 
-def test_near_toggles_others_lose_digits_that_we_keep():
-    found = accuracy.errors(accuracy.FAMILIES["1e-6 … 1e-3 rad from a toggle"], 25, seed=3)
-    ours, theirs = (found[method]["F"].max() for method in ("linksweep", "numpy + LAPACK"))
+def test_near_toggles_linksweep_keeps_digits_that_others_lose():
+    errors = accuracy.errors(accuracy.FAMILIES["1e-6 … 1e-3 rad from a toggle"], 25, seed=3)
+    ours, theirs = (errors[method]["F"].max() for method in ("linksweep", "numpy + LAPACK"))
     assert ours < 1e3 < theirs
 
 

@@ -1,4 +1,4 @@
-"""Run time against error: what errors are measured against, who may be missing, and what is drawn."""
+"""Run time against error: the reference of errors, missing rivals, and the figures."""
 
 import math
 from dataclasses import replace
@@ -34,16 +34,16 @@ def oracle_data(q):
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_the_truth_is_the_9x9_in_60_digits(sign):
+def test_the_reference_equals_the_9x9_solution_in_60_digits(sign):
     q, theta2 = replace(GENERAL, sign=sign), np.array([0.0, 33.3, 190.0])
-    found = np.concatenate([truth.unknowns(q, theta2), truth.rates(q, theta2)])
+    result = np.concatenate([truth.unknowns(q, theta2), truth.rates(q, theta2)])
     names = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12", *truth.RATES)
     expected = [[float(oracle.solve(oracle_data(q), angle)[name]) for angle in theta2] for name in names]
-    np.testing.assert_allclose(found, expected, rtol=EPS)
+    np.testing.assert_allclose(result, expected, rtol=EPS)
 
 
 def test_true_peaks_are_just_above_many_samples():
-    """The samples miss them by (π/20 000)²/2, times how sharp they are."""
+    """Samples miss the peaks by (π/20 000)²/2 times their curvature."""
     designs = grids.design(exact.crank_rockers(3, 20.0))
     nine = peers.numpy_lapack(designs, peers.grid(20_000))
     samples = [*np.hypot(nine[0:8:2], nine[1:8:2]).max(axis=-1), np.abs(nine[8]).max(axis=-1)]
@@ -52,16 +52,16 @@ def test_true_peaks_are_just_above_many_samples():
     assert excess.max() < 1e-6
 
 
-def test_the_top_of_a_peak_is_found_from_beside_it():
-    """Numpy finds where it is to half of the digits; a ten-thousandth of a degree is further."""
+def test_a_peak_is_located_from_nearby_samples():
+    """numpy locates a peak to half of the digits; a ten-thousandth of a degree is further away."""
     designs = grids.design(exact.crank_rockers(3, 20.0))
     tops = truth._tops(designs, *truth._brackets(designs))
     for signal in range(5):
-        expected, found = (truth._parabola(designs, signal, tops[signal] + off) for off in (0.0, 1e-4))
-        np.testing.assert_allclose(found, expected, rtol=4 * EPS)
+        expected, beside = (truth._parabola(designs, signal, tops[signal] + off) for off in (0.0, 1e-4))
+        np.testing.assert_allclose(beside, expected, rtol=4 * EPS)
 
 
-def test_a_scene_of_four_bars_as_numpy_takes_it():
+def test_parameters_of_four_bars_for_the_numpy_rival():
     scene = exact.crank_rockers(2, 0.0)
     q = grids.design(scene)
     assert (q.b == scene.mechanism.coupler.length.values[:, None]).all()
@@ -72,11 +72,11 @@ def test_a_scene_of_four_bars_as_numpy_takes_it():
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_plain_loop_for_numba_is_the_dense_solve(sign):
-    """As Python, so that nothing needs to be compiled."""
+    """Runs as Python, without compilation."""
     q, theta2 = replace(GENERAL, sign=sign), peers.grid(24)
     numbers = np.array([getattr(q, name) for name in numba_dense.NUMBERS])
-    found = numba_dense._nine(numbers, np.radians(theta2), peers.FORCE_BALANCE)
-    assert peers.difference(found, peers.numpy_lapack(q, theta2)) < 1e-12
+    result = numba_dense._nine(numbers, np.radians(theta2), peers.FORCE_BALANCE)
+    assert peers.difference(result, peers.numpy_lapack(q, theta2)) < 1e-12
 
 
 def test_a_rival_that_is_missing_or_fails_is_a_missing_row(monkeypatch):
@@ -105,7 +105,7 @@ def test_a_wrong_answer_is_not_allowed():
     assert row.error == pytest.approx(1e-3, rel=0.01)
 
 
-def test_memory_is_this_process_s_most():
+def test_memory_is_the_peak_of_this_process():
     before = growth.peak_memory()
     assert np.ones(40_000_000).sum() == 4e7  # 0.32 GB
     assert 0.25 < growth.peak_memory() < 20.0
@@ -131,7 +131,7 @@ SOLVED = [
 ]
 
 
-def test_every_method_has_a_name_that_covers_no_other():
+def test_labels_of_methods_do_not_overlap():
     figure = plots.FIGURES["solves"]([row for row in SOLVED if row.seconds])
     names = figure.axes[0].texts
     assert {name.get_text() for name in names} == {row.job for row in SOLVED[:4]}
@@ -139,7 +139,7 @@ def test_every_method_has_a_name_that_covers_no_other():
     assert not any(box.overlaps(other) for k, box in enumerate(boxes) for other in boxes[:k])
 
 
-def test_figures_are_written_where_there_are_any(tmp_path, monkeypatch):
+def test_figures_are_written_where_results_exist(tmp_path, monkeypatch):
     note, figures = next(iter(grids.POPULATIONS)), {grids.MEDIAN: 1e-4, grids.MOST: 1e-3}
     peak = Row("", grids.EXACT, solves.TIMES, 1.0, error=1e-2, note=note, allowed=math.inf, figures=figures)
     peaks = [replace(peak, job=f"ls.peaks, {n} samples", seconds=n * 1e-8) for n in grids.SAMPLES]

@@ -1,4 +1,4 @@
-"""The report page: its numbers are those of peaks, check, duty; it stands alone; what is wrong is said at the top."""
+"""The report page: numbers of peaks, check and duty; one self-contained file; warnings at the top."""
 
 import base64
 import re
@@ -32,7 +32,7 @@ def folder(tmp_path, monkeypatch) -> Path:
 
 
 def undrawn_figures():
-    """Figures are made, but not drawn, which is what takes long."""
+    """Replace the drawing of figures, which takes long."""
     return mock.patch.object(page_figures, "_image", lambda figure, title: tag("img", src="data:,", alt=title))
 
 
@@ -66,7 +66,7 @@ def double_rocker(**words) -> ls.Scene:
 
 
 def read_back(text: str) -> float:
-    """What a reader makes of a number as it is printed."""
+    """Return the value of a printed number."""
     raised = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
     mantissa, _, power = text.replace("\u202f", "").replace("−", "-").replace("∞", "inf").partition("·10")
     return float(mantissa) * 10.0 ** int(power.translate(raised) or 0)
@@ -75,13 +75,13 @@ def read_back(text: str) -> float:
 # --------------------------------------------------------------------------------------------- numbers
 
 
-def assert_peaks_are(found: Page, peaks: xr.Dataset, forces: dict[str, str]) -> None:
-    """The table's rows in order, each with value and angle, are those of `peaks`."""
-    rows = iter(found.sections["Peaks"][1:])
-    for name, shown in forces.items():
+def assert_peaks_are(report: Page, peaks: xr.Dataset, forces: dict[str, str]) -> None:
+    """Check that the table's rows, in order, have the values and angles of `peaks`."""
+    rows = iter(report.sections["Peaks"][1:])
+    for name, title in forces.items():
         for ending in ("_max", "_min") if f"{name}_max" in peaks else ("_peak",):
             row = next(rows)
-            assert row[0][0] == shown
+            assert row[0][0] == title
             assert row[2][1] == [float(peaks[name + ending])]
             assert row[3][1] == [float(peaks[f"{name}{ending}_at"])]
     assert next(rows, None) is None
@@ -95,71 +95,71 @@ def assert_peaks_are(found: Page, peaks: xr.Dataset, forces: dict[str, str]) -> 
         ("loop", {"normal_force": "normal force"}),
     ],
 )
-def test_peaks_are_those_of_peaks(name, forces):
+def test_the_table_of_peaks_equals_peaks(name, forces):
     assert_peaks_are(demo(name), ls.peaks(ls.example(name)), forces)
 
 
 def test_a_press_in_numbers(press):
-    scene, found = ls.example("press"), Page(press)
+    scene, report = ls.example("press"), Page(press)
     forces = {"F12": "F₁₂", "F32": "F₃₂", "F43": "F₄₃", "F14": "F₁₄", "T12": "T₁₂"}
-    assert_peaks_are(found, ls.peaks(scene), forces)
+    assert_peaks_are(report, ls.peaks(scene), forces)
     summaries = ls.peaks(scene, of=["F43_bound", "F43_mean", "F43_rms"])
-    row = found.rows("Peaks")["F₄₃"]
+    row = report.rows("Peaks")["F₄₃"]
     assert row[0][0] == "pin C: rocker on coupler"
     assert [row[k][1][0] for k in (3, 4, 5)] == [float(summaries[f"F43_{kind}"]) for kind in ("bound", "mean", "rms")]
-    checks, check = found.rows("Checks"), ls.check(scene)
+    checks, check = report.rows("Checks"), ls.check(scene)
     assert checks["Grashof class"][0][0] == "crank-rocker"
     assert checks["transmission angle"][0][1][0] == pytest.approx(float(check.transmission_angle_min), rel=1e-9)
     assert checks["transmission angle"][1][0] == "caution"  # 33° are less than the usual 40°
     assert checks["toggles"] == [("none", []), ("ok", [])]
-    duty, drive = ls.duty(scene), found.rows("Drive")
+    duty, drive = ls.duty(scene), report.rows("Drive")
     assert drive["power"][0][1] == pytest.approx([float(duty.power_min), float(duty.power_max)], rel=1e-9)
     assert drive["work fed in a cycle"][0][1] == [float(duty.work_fed)]
     wheel = ls.flywheel(scene, fluctuation=0.02)
     assert drive["flywheel for 2 % fluctuation"][0][1] == [pytest.approx(float(wheel.flywheel_inertia), rel=1e-12)]
     geometry = ls.geometry(scene)
-    assert found.rows("Geometry")["swing of the rocker"][0][1] == [float(geometry.swing)]
-    assert found.rows("Geometry")["turns round at"][0][1] == geometry.reversal_angle.values.tolist()
+    assert report.rows("Geometry")["swing of the rocker"][0][1] == [float(geometry.swing)]
+    assert report.rows("Geometry")["turns round at"][0][1] == geometry.reversal_angle.values.tolist()
     shaking = ls.peaks(scene, of=["Fs", "Fs_rms"])
     force = [float(shaking.Fs_peak), float(shaking.Fs_peak_at), float(shaking.Fs_rms)]
-    assert found.rows("Shaking, by the inertia of the links")["force"][0][1] == force
+    assert report.rows("Shaking, by the inertia of the links")["force"][0][1] == force
 
 
-def test_what_is_printed_is_the_number_to_its_digits(press):
-    shown = Page(press).numbers
-    assert len(shown) > 50
-    for text, value in shown:
-        if text == "0":  # what cancels: work and mean torque of a press without friction
+def test_printed_numbers_are_rounded_values(press):
+    numbers = Page(press).numbers
+    assert len(numbers) > 50
+    for text, value in numbers:
+        if text == "0":  # terms that cancel: work and mean torque of a press without friction
             assert abs(value) < 1e-10
         else:
             assert read_back(text) == pytest.approx(value, rel=0.03 if "·10" in text else 6e-4, abs=0.051)
 
 
-def test_a_slider_has_its_centre_of_gravity_in_the_table_of_links():
-    """Its number, length, mass, inertia and place."""
+def test_the_table_of_links_has_the_sliders_centre_of_gravity():
+    """The row has number, length, mass, inertia and position."""
     crank, rod = ls.Bar(0.05, **STEEL), ls.Bar(0.15, **STEEL)
-    for place, said in (((0.0, 0.0), "on its first pin"), ((0.02, 30.0), "20 mm at 30°")):
+    for place, text in (((0.0, 0.0), "on its first pin"), ((0.02, 30.0), "20 mm at 30°")):
         slider = dict(zip(("slider_cg_distance", "slider_cg_angle"), place, strict=True))
         table = page_inputs.links(ls.Scene(ls.SliderCrank(crank, rod, 0.5, **slider), 30.0))
         cells = re.findall("<td>(.*?)</td>", str(table).replace("\u202f", " "))
-        assert said in cells
+        assert text in cells
 
 
-def test_inputs_are_as_a_person_writes_them(press):
-    found = Page(press)
-    links = {row[0][0]: [cell[0].replace("\u202f", " ") for cell in row[1:]] for row in found.sections["Machine"]}
+def test_inputs_are_printed_in_readable_units(press):
+    report = Page(press)
+    links = {row[0][0]: [cell[0].replace("\u202f", " ") for cell in row[1:]] for row in report.sections["Machine"]}
     # 7750 kg/m³ · 80 mm · 20 mm · 20 mm; m (L² + w²)/12
     assert links["2 crank"] == ["80 mm", "0.248 kg", "1.4053·10⁻⁴ kg m²", "40 mm at 0°", "bar 20 × 20 mm, 7750 kg/m³"]
-    rows = found.rows("Motion") | found.rows("Machine")
-    said = {key: cells[0][0].replace("\u202f", " ") for key, cells in rows.items()}
-    assert said["ground"] == "200 mm"
-    assert said["speed of the crank"] == "300 rpm (31.416 rad/s) counter-clockwise"
-    assert said["gravity"] == "9.81 m/s² down"
-    assert said["load 1"] == "(0, −355.86) N on the coupler, 100 mm at 15° from its first pin"  # 80 lbf
-    assert said["load 2"] == "−12 N m on the rocker"
+    rows = report.rows("Motion") | report.rows("Machine")
+    text = {key: cells[0][0].replace("\u202f", " ") for key, cells in rows.items()}
+    assert text["ground"] == "200 mm"
+    assert text["speed of the crank"] == "300 rpm (31.416 rad/s) counter-clockwise"
+    assert text["gravity"] == "9.81 m/s² down"
+    assert text["load 1"] == "(0, −355.86) N on the coupler, 100 mm at 15° from its first pin"  # 80 lbf
+    assert text["load 2"] == "−12 N m on the rocker"
 
 
-def test_loads_of_all_kinds_are_named():
+def test_loads_of_all_kinds_are_described():
     machine = ls.example("press").mechanism
     loads = [
         ls.Spring(("ground", 0.3, 0.0), ("rocker", 0.1, 0.0), rate=2000.0, free_length=0.05),
@@ -167,8 +167,8 @@ def test_loads_of_all_kinds_are_named():
         ls.Load("rocker", torque=lambda theta2: 3.0 * np.sin(np.radians(theta2))),
     ]
     scene = ls.Scene(machine, omega2=-20.0, alpha2=5.0, loads=loads)
-    said = Page(tag("h2", "All") + page_inputs.settings(scene) + page_inputs.loads(scene)).rows("All")
-    text = {key: cells[0][0].replace("\u202f", " ") for key, cells in said.items()}
+    rows = Page(tag("h2", "All") + page_inputs.settings(scene) + page_inputs.loads(scene)).rows("All")
+    text = {key: cells[0][0].replace("\u202f", " ") for key, cells in rows.items()}
     assert text["speed of the crank"] == "190.99 rpm (20 rad/s) clockwise"
     assert text["its acceleration"] == "5 rad/s²"
     ends = "from ground at (300 mm, 0 mm), to rocker, 100 mm at 0° from its first pin"
@@ -178,25 +178,25 @@ def test_loads_of_all_kinds_are_named():
     assert text["gravity"] == "none"
 
 
-def test_the_scene_stands_in_the_page(press):
+def test_the_page_contains_the_scene(press):
     assert parse_scene(Page(press).texts["pre"]) == ls.example("press")
 
 
-# ------------------------------------------------------------------------------------- what it consists of
+# ------------------------------------------------------------------------------------- contents
 
 
 @pytest.mark.parametrize("name", ["press", "loop"])
-def test_it_stands_alone(name):
+def test_the_page_is_self_contained(name):
     with mock.patch.object(page_figures, "of_bearings_and_shaking", return_value=Markup()):  # four are enough
         text = page(ls.example(name))
-    found = Page(text)
+    report = Page(text)
     assert text.startswith("<!DOCTYPE html>\n")
-    assert not found.tags & {"script", "link", "iframe", "object", "embed", "base"}
-    assert len(found.references) == {"press": 4, "loop": 1}[name]
-    assert all(reference.startswith("data:image/svg+xml;base64,") for reference in found.references)
+    assert not report.tags & {"script", "link", "iframe", "object", "embed", "base"}
+    assert len(report.references) == {"press": 4, "loop": 1}[name]
+    assert all(reference.startswith("data:image/svg+xml;base64,") for reference in report.references)
     assert "http:" not in text and "https:" not in text and "@import" not in text and "url(" not in text
     assert "default-src 'none'" in text
-    for source in found.images.values():
+    for source in report.images.values():
         drawn = base64.b64decode(source.partition(",")[2]).decode()
         assert drawn.rstrip().endswith("</svg>")
         assert all(target.startswith(("#", "data:")) for target in re.findall(r'href="([^"]*)"', drawn))
@@ -220,28 +220,28 @@ def test_names_are_escaped(press):
 
 
 @pytest.mark.parametrize("name", names())
-def test_each_demo_has_what_applies_to_it(name):
-    found = demo(name)
+def test_each_demo_has_its_sections_and_figures(name):
+    report = demo(name)
     linkage = {"Machine", "Motion", "Checks", "Peaks", "Geometry", "Drive"}
     shaking = "Shaking, by the inertia of the links"
     expected = {"Machine", "Checks", "Peaks", "Motion"} if name == "loop" else linkage | {shaking}
-    assert found.sections.keys() == expected
-    assert len(found.images) == {"press": 10, "engine": 9, "quick-return": 9, "loop": 1}[name]
-    assert not found.warning
-    assert "nan" not in found.texts.get("td", "") and "–" not in found.texts["data"]
-    verdicts = {row[-1][0] for row in found.sections["Checks"]}
+    assert report.sections.keys() == expected
+    assert len(report.images) == {"press": 10, "engine": 9, "quick-return": 9, "loop": 1}[name]
+    assert not report.warning
+    assert "nan" not in report.texts.get("td", "") and "–" not in report.texts["data"]
+    verdicts = {row[-1][0] for row in report.sections["Checks"]}
     assert verdicts <= {"ok", "caution", ""} or name == "loop"
 
 
-def test_an_engine_tells_its_stroke_and_friction():
-    found = demo("engine")
-    assert found.rows("Geometry")["stroke of the slider"][0][0] == "86.00\u202fmm"
-    assert found.rows("Drive")["work of friction"][0][1] == [float(ls.duty(ls.example("engine")).work_of_friction)]
-    assert found.rows("Checks")["friction"][0][1] == [float(ls.check(ls.example("engine")).friction_to_jam), 0.05]
-    assert "2 turns" in found.rows("Motion")["cycle"][0][0]
+def test_a_report_of_an_engine_has_stroke_and_friction():
+    report = demo("engine")
+    assert report.rows("Geometry")["stroke of the slider"][0][0] == "86.00\u202fmm"
+    assert report.rows("Drive")["work of friction"][0][1] == [float(ls.duty(ls.example("engine")).work_of_friction)]
+    assert report.rows("Checks")["friction"][0][1] == [float(ls.check(ls.example("engine")).friction_to_jam), 0.05]
+    assert "2 turns" in report.rows("Motion")["cycle"][0][0]
 
 
-def test_the_same_scene_gives_the_same_bytes_whatever_the_settings():
+def test_a_scene_gives_the_same_bytes_whatever_the_settings():
     ls.report(ls.example("loop"), "once.html")
     with mpl.rc_context({"lines.linewidth": 9.0, "axes.facecolor": "red", "font.family": "monospace"}):
         ls.report(ls.example("loop"), "again.html")
@@ -249,85 +249,85 @@ def test_the_same_scene_gives_the_same_bytes_whatever_the_settings():
     assert Path("once.html").read_bytes() == Path("again.html").read_bytes()
 
 
-# ------------------------------------------------------------------------------- what is not as it should be
+# ------------------------------------------------------------------------------- warnings
 
 
-def test_a_partial_revolution_is_said_at_the_top(undrawn):
+def test_a_partial_revolution_is_a_warning_at_the_top(undrawn):
     scene = double_rocker()
     text = page(scene)
-    found, check = Page(text), ls.check(scene)
+    report, check = Page(text), ls.check(scene)
     assert text.index('class="warning"') < text.index("<h2>")
-    assert "It does not run all the way round." in found.warning
-    assert "cannot assemble from 62.7° to 297.3°" in found.warning
-    assert "the peak is infinite: F₁₂, F₃₂, F₄₃, F₁₄, T₁₂." in found.warning
+    assert "It does not run all the way round." in report.warning
+    assert "cannot assemble from 62.7° to 297.3°" in report.warning
+    assert "the peak is infinite: F₁₂, F₃₂, F₄₃, F₁₄, T₁₂." in report.warning
     limits = [float(check.arc_start[0]), float(check.arc_end[0]) % 360.0]
-    assert found.rows("Checks")["assembly"][0][1] == limits
-    assert found.rows("Checks")["assembly"][1][0] == "caution"
-    assert sorted(found.rows("Checks")["toggles"][0][1]) == sorted(limits)
-    assert found.rows("Peaks")["F₁₂"][1] == ("∞\u202fN", [np.inf])
-    assert [cell[0] for cell in found.sections["Peaks"][0]] == ["", "", "peak", "at θ₂", "bound"]  # there is no mean
-    assert "Geometry" not in found.sections
-    assert list(found.rows("Drive")) == ["power"]
-    assert "Orders of the shaking force" not in found.images
+    assert report.rows("Checks")["assembly"][0][1] == limits
+    assert report.rows("Checks")["assembly"][1][0] == "caution"
+    assert sorted(report.rows("Checks")["toggles"][0][1]) == sorted(limits)
+    assert report.rows("Peaks")["F₁₂"][1] == ("∞\u202fN", [np.inf])
+    assert [cell[0] for cell in report.sections["Peaks"][0]] == ["", "", "peak", "at θ₂", "bound"]  # there is no mean
+    assert "Geometry" not in report.sections
+    assert list(report.rows("Drive")) == ["power"]
+    assert "Orders of the shaking force" not in report.images
 
 
 def test_a_car_that_leaves_the_track(undrawn):
     car = ls.LoopTrack(radius=30.0, mass=700.0)
     scene = ls.Scene(car, speed=30.0, gravity=(0.0, -9.81), profile="energy")
-    found = Page(page(scene))
+    report = Page(page(scene))
     # v² = v0² − 2 R g (1 − cos θ), and the force ends where v² = −R g cos θ: cos θ = (2 − v0²/(R g))/3
     leaves = np.degrees(np.arccos((2.0 - 30.0**2 / (30.0 * 9.81)) / 3.0))
-    assert found.rows("Checks")["leaves track at"][0][1] == [pytest.approx(leaves, abs=1e-9)]
-    assert "does not stay on the track" in found.warning
-    assert "left track from 110.6° to 360.0°" in found.warning
+    assert report.rows("Checks")["leaves track at"][0][1] == [pytest.approx(leaves, abs=1e-9)]
+    assert "does not stay on the track" in report.warning
+    assert "left track from 110.6° to 360.0°" in report.warning
 
 
-def test_nothing_at_any_angle(undrawn, monkeypatch):
-    """Friction that wedges everywhere, looked at where it does."""
+def test_a_report_without_a_result_at_any_angle(undrawn, monkeypatch):
+    """The part lies where friction jams."""
     engine = ls.SliderCrank(ls.Link(0.04, 1.0, 1e-3), ls.Link(0.14, 0.5, 1e-3), slider_mass=0.5, friction=5.0)
-    found = Page(page(ls.Scene(engine, omega2=100.0), part=(70.0, 75.0)))
-    assert "There is no result at any angle." in found.warning
-    assert "jammed" in found.warning
-    assert not found.images
+    report = Page(page(ls.Scene(engine, omega2=100.0), part=(70.0, 75.0)))
+    assert "There is no result at any angle." in report.warning
+    assert "jammed" in report.warning
+    assert not report.images
 
 
 def test_part_of_a_turn(undrawn):
     scene = double_rocker(gravity=(0.0, -9.81))
-    found = Page(page(scene, part=(-50.0, 50.0)))
-    assert not found.warning
-    assert found.rows("Checks")["assembly"][1][0] == found.rows("Checks")["toggles"][1][0] == "ok"
+    report = Page(page(scene, part=(-50.0, 50.0)))
+    assert not report.warning
+    assert report.rows("Checks")["assembly"][1][0] == report.rows("Checks")["toggles"][1][0] == "ok"
     expected = peaks_of_part(scene, scene.mechanism.peak_quantities("crank"), (-50.0, 50.0))
     sampled = ls.peaks(scene, theta2=np.linspace(-50.0, 50.0, 1001))
     assert float(expected.F32_peak) == pytest.approx(float(sampled.F32_peak), rel=1e-4)
     assert float(expected.F32_peak) >= float(sampled.F32_peak)
-    assert_peaks_are(found, expected, {"F12": "F₁₂", "F32": "F₃₂", "F43": "F₄₃", "F14": "F₁₄", "T12": "T₁₂"})
-    assert len(found.images) == 9
+    assert_peaks_are(report, expected, {"F12": "F₁₂", "F32": "F₃₂", "F43": "F₄₃", "F14": "F₁₄", "T12": "T₁₂"})
+    assert len(report.images) == 9
     assert Page(page(scene, part=(-70.0, 50.0))).rows("Checks")["toggles"][1][0] == "caution"
 
 
-def test_a_machine_that_carries_nothing(undrawn):
+def test_a_machine_without_mass_and_load(undrawn):
     massless = ls.FourBar(*(ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18)), ground=0.2)
-    found = Page(page(ls.Scene(massless, omega2=0.0)))
-    assert found.rows("Peaks")["F₁₂"][1][1] == [0.0]
-    assert "Shaking force" not in found.images
-    assert list(found.rows("Drive")) == ["power"]
+    report = Page(page(ls.Scene(massless, omega2=0.0)))
+    assert report.rows("Peaks")["F₁₂"][1][1] == [0.0]
+    assert "Shaking force" not in report.images
+    assert list(report.rows("Drive")) == ["power"]
 
 
 # ----------------------------------------------------------------------------------------------- refusals
 
 
-def refused(*given, **words) -> str:
-    with pytest.raises(ValueError, match=r".") as told:
-        ls.report(*given, **words)
+def refused(*arguments, **words) -> str:
+    with pytest.raises(ValueError, match=r".") as text:
+        ls.report(*arguments, **words)
     assert not list(Path().iterdir())
-    return str(told.value)
+    return str(text.value)
 
 
-def test_a_scene_over_designs_says_how_to_choose_one():
+def test_a_scene_over_designs_is_refused_with_the_remedy():
     scene = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24)}, n=8)
-    told = refused(scene, "report.html")
-    assert "over several designs, design (8)" in told
-    assert "ls.report(ls.scene_at(scene, {'design': 0}), ...)" in told and "isel" in told
+    message = refused(scene, "report.html")
+    assert "over several designs, design (8)" in message
+    assert "ls.report(ls.scene_at(scene, {'design': 0}), ...)" in message and "isel" in message
     press = ls.example("press").mechanism
     both = ls.Scene(ls.FourBar(press.crank, press.coupler, press.rocker, press.ground, branch="both"), omega2=1.0)
     assert "{'branch': 'open'}" in refused(both, "report.html")
@@ -342,7 +342,7 @@ def test_one_design_of_a_study(undrawn):
     ]
 
 
-def test_what_is_asked_for_must_be_a_report():
+def test_refusals_of_report():
     scene = ls.example("loop")
     assert "its ending must be .html or .htm: a report is a page" in refused(scene, "report.pdf")
     assert "must be a Dataset of linksweep, or a Scene" in refused("press.toml", "report.html")

@@ -22,7 +22,7 @@ def spike(width: float, at: float = 77.7):
 
 @pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
 def test_exact_peaks_see_a_narrow_load_at_its_break(width):
-    """At the top of the spike the load is -1000 N: the peak is at least the force there, and next to nothing more."""
+    """The spike reaches -1000 N: the exact peak is at least the pin force there, and hardly larger."""
     top = ls.sweep(pushed(-1000.0), [77.7], of=["F43y", "F32"])
     peaks = ls.peaks(pushed(spike(width), breaks=[77.7]), of=["F32"])
     assert peaks.F32_peak == pytest.approx(top.F32.item(), rel=2e-6 if width > 1e-3 else 1e-7)

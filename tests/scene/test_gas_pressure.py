@@ -302,7 +302,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("changes", "message"), REFUSED)
-def test_what_is_refused_says_why(changes, message):
+def test_refusals_of_gas_pressure(changes, message):
     with pytest.raises(ValueError) as refused:  # noqa: PT011
         scene(**changes)
     assert str(refused.value).startswith(message)

@@ -186,7 +186,7 @@ def test_a_hundred_thousand_designs_of_three_distributions():
 
 
 def test_a_normal_is_finite_where_the_uniform_draw_is_0(monkeypatch):
-    """Where a normal would be −∞; it stays within the finest step of Sobol points, 6.2 deviations."""
+    """The normal would be −∞ there; it stays within the finest step of Sobol points, 6.2 deviations."""
     zeros = SimpleNamespace(random=np.zeros)
     monkeypatch.setattr(np.random, "default_rng", lambda seed: zeros)
     (value,) = drawn(ls.Normal(0.0, 1.0), n=1, path="omega2", method="random")

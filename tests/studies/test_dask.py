@@ -1,4 +1,4 @@
-"""Scenes of dask arrays give lazy results, and a cluster computes studies: the same numbers, to the bit."""
+"""Scenes of dask arrays give lazy results, and a cluster computes studies, equal to the bit."""
 
 import logging
 import os
@@ -27,12 +27,12 @@ def lazy(scene: ls.Scene, chunk: int = 2) -> ls.Scene:
 
 
 def never(*shape: int) -> dask.array.Array:
-    """Numbers that must not be asked for."""
+    """Return numbers that must not be computed."""
 
-    def asked():
-        raise RuntimeError("asked for")
+    def compute_none():
+        raise RuntimeError("computed")
 
-    return dask.array.from_delayed(dask.delayed(asked)(), shape, float)
+    return dask.array.from_delayed(dask.delayed(compute_none)(), shape, float)
 
 
 def computed(ds: xr.Dataset) -> xr.Dataset:
@@ -40,17 +40,17 @@ def computed(ds: xr.Dataset) -> xr.Dataset:
 
 
 def assert_equal(lazy: xr.Dataset, expected: xr.Dataset) -> None:
-    """Equal to the bit, with all that is said about it."""
-    found = computed(lazy)
-    assert list(found.variables) == list(expected.variables)
-    xr.testing.assert_identical(found.drop_attrs(deep=False), expected.drop_attrs(deep=False))
+    """Check that a lazy result and its attributes equal the expected ones to the bit."""
+    eager = computed(lazy)
+    assert list(eager.variables) == list(expected.variables)
+    xr.testing.assert_identical(eager.drop_attrs(deep=False), expected.drop_attrs(deep=False))
     for name, values in expected.variables.items():
-        assert found[name].dims == values.dims
-        assert values.dtype.kind in "OUT" or found[name].values.tobytes() == values.values.tobytes()
+        assert eager[name].dims == values.dims
+        assert values.dtype.kind in "OUT" or eager[name].values.tobytes() == values.values.tobytes()
 
 
 def with_status_over_all(peaks: xr.Dataset, like: xr.Dataset) -> xr.Dataset:
-    """Peaks whose status has all dims that it could have had."""
+    """Return peaks with the status broadcast to all dims of the designs."""
     dims = like.status.dims
     status = peaks.status.variable.set_dims({dim: like.sizes[dim] for dim in dims})
     return peaks.assign(status=status)
@@ -60,31 +60,31 @@ def with_status_over_all(peaks: xr.Dataset, like: xr.Dataset) -> xr.Dataset:
 
 
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "one"])
-def test_a_lazy_sweep_is_the_sweep(scene):
+def test_a_lazy_sweep_equals_the_eager_one(scene):
     scene = SCENES[scene]()
-    found, expected = ls.sweep(lazy(scene), 48), ls.sweep(scene, 48)
-    assert all(values.chunks is not None for values in found.data_vars.values())
-    assert_equal(found, expected)
+    outcome, expected = ls.sweep(lazy(scene), 48), ls.sweep(scene, 48)
+    assert all(values.chunks is not None for values in outcome.data_vars.values())
+    assert_equal(outcome, expected)
 
 
 @pytest.mark.parametrize("scene", [name for name in SCENES if name != "one"])
-def test_lazy_peaks_are_the_peaks(scene):
+def test_lazy_peaks_equal_the_eager_ones(scene):
     scene = SCENES[scene]()
-    found, expected = (
+    outcome, expected = (
         ls.peaks(lazy(scene), **{scene.mechanism.index: 48}),
         ls.peaks(scene, **{scene.mechanism.index: 48}),
     )
-    assert_equal(found, with_status_over_all(expected, found))
+    assert_equal(outcome, with_status_over_all(expected, outcome))
 
 
-def test_lazy_exact_peaks_are_the_peaks():
-    found, expected = ls.peaks(lazy(many(), 25), ["F32"]), ls.peaks(many(), ["F32"])
-    assert found.F32_peak.chunks == ((25, 25, 10),)
-    assert_equal(found, with_status_over_all(expected, found))
-    assert found.attrs == expected.attrs
+def test_lazy_exact_peaks_equal_the_eager_ones():
+    peaks, expected = ls.peaks(lazy(many(), 25), ["F32"]), ls.peaks(many(), ["F32"])
+    assert peaks.F32_peak.chunks == ((25, 25, 10),)
+    assert_equal(peaks, with_status_over_all(expected, peaks))
+    assert peaks.attrs == expected.attrs
 
 
-def test_attributes_are_those_of_the_eager_result():
+def test_attributes_equal_those_of_the_eager_result():
     for scene in (grid(), sliding(), gas()):
         assert ls.sweep(lazy(scene), theta2=8).attrs == ls.sweep(scene, theta2=8).attrs
         assert ls.peaks(lazy(scene), theta2=8).attrs == ls.peaks(scene, theta2=8).attrs
@@ -101,23 +101,23 @@ print(*{"dask.array", "distributed", "pint"}.intersection(sys.modules))
 """
 
 
-def test_a_scene_of_plain_numbers_wakes_neither_dask_nor_pint():
-    """They take longer to import than a sweep does; xarray imports them to see whether numbers are theirs."""
+def test_a_scene_of_plain_numbers_imports_neither_dask_nor_pint():
+    """Importing them takes longer than a sweep; xarray would do so to recognize their arrays."""
     assert subprocess.run([sys.executable, "-c", AWAKE], capture_output=True, text=True, check=True).stdout == "\n"
 
 
-def test_nothing_is_computed_before_it_is_asked_for():
+def test_nothing_is_computed_before_compute():
     length = xr.DataArray(never(4), dims="a")
     torque = xr.DataArray(never(4, 6), {"theta2": np.arange(6) * 60.0}, ("a", "theta2"))
     mechanism = replace(PRESS.mechanism, coupler=replace(PRESS.mechanism.coupler, length=length))
     scene = replace(PRESS, mechanism=mechanism, loads=[ls.Load("rocker", torque=torque)])
-    for result in (ls.peaks(scene, ["F32"]), ls.sweep(scene), ls.sweep(scene, solver="dense")):
-        assert result.sizes["a"] == 4
-        with pytest.raises(RuntimeError, match="asked for"):
-            computed(result)
+    for outcome in (ls.peaks(scene, ["F32"]), ls.sweep(scene), ls.sweep(scene, solver="dense")):
+        assert outcome.sizes["a"] == 4
+        with pytest.raises(RuntimeError, match="computed"):
+            computed(outcome)
 
 
-def test_no_door_looks_at_lazy_numbers():
+def test_no_constructor_computes_lazy_numbers():
     numbers = [xr.DataArray(never(3), dims="a") for _ in range(8)]
     cycles = [
         ls.OttoCycle(*numbers[:2], intake_pressure=numbers[2], gamma=numbers[3]),
@@ -131,17 +131,17 @@ def test_no_door_looks_at_lazy_numbers():
     assert ls.peaks(car).sizes == {"a": 3}
 
 
-def test_what_designs_share_is_what_any_of_them_has():
-    """The rod's angle does not depend on friction: where friction wedges in one block, another still has it."""
+def test_shared_values_come_from_any_design_that_has_them():
+    """The rod's angle is independent of friction: where friction jams in one block, another block has the value."""
     whole = ls.sweep(sliding(), theta2=24, of=["theta3", "T12"])
-    wedged = whole.status == 4
+    jammed = whole.status == 4
     assert whole.theta3.dims == ("aside", "theta2")
-    assert (wedged.any("mu") & ~wedged.all("mu")).any()
+    assert (jammed.any("mu") & ~jammed.all("mu")).any()
     assert_equal(ls.sweep(lazy(sliding(), 1), theta2=24, of=["theta3", "T12"]), whole)
 
 
-def test_which_way_a_crank_turns_is_not_known_before():
-    """Without masses the speed matters by its sign alone, for the strokes of the cycle; in each block it is one."""
+def test_the_direction_of_a_lazy_crank_is_known_block_by_block():
+    """Without masses only the sign of the speed matters, by the strokes of the cycle; it is constant in each block."""
     massless = ls.SliderCrank(ls.Link(0.04, 0.0, 0.0), ls.Link(0.14, 0.0, 0.0), slider_mass=0.0)
     scene = replace(gas(), mechanism=massless)
     expected = ls.sweep(scene, theta2=24, of=["F14y"])
@@ -149,18 +149,18 @@ def test_which_way_a_crank_turns_is_not_known_before():
     assert_equal(ls.sweep(lazy(scene), theta2=24, of=["F14y"]), expected)
 
 
-def test_peaks_are_not_cut_along_what_designs_share():
-    found, whole = (ls.peaks(scene, ["theta3", "F32"], theta2=24) for scene in (lazy(sliding(), 1), sliding()))
-    assert found.F32_peak.chunks == ((1, 1, 1), (4,))
-    assert_equal(found, with_status_over_all(whole, found))
+def test_peaks_are_not_chunked_along_shared_dims():
+    outcome, whole = (ls.peaks(scene, ["theta3", "F32"], theta2=24) for scene in (lazy(sliding(), 1), sliding()))
+    assert outcome.F32_peak.chunks == ((1, 1, 1), (4,))
+    assert_equal(outcome, with_status_over_all(whole, outcome))
 
 
-def test_requests_of_one_scene_are_kept_apart():
+def test_requests_of_one_scene_do_not_mix():
     scene = lazy(grid())
     fast, dense = (ls.sweep(scene, theta2=8, of=["T12"], solver=solver) for solver in ("fast", "dense"))
     both = dask.compute(fast, dense, scheduler="threads")
-    for found, solver in zip(both, ("fast", "dense"), strict=True):
-        assert_equal(found, ls.sweep(grid(), theta2=8, of=["T12"], solver=solver))
+    for outcome, solver in zip(both, ("fast", "dense"), strict=True):
+        assert_equal(outcome, ls.sweep(grid(), theta2=8, of=["T12"], solver=solver))
     assert not both[0].T12.equals(both[1].T12)
 
 
@@ -173,21 +173,21 @@ def test_a_lazy_number_without_dims_is_a_number():
     assert_equal(ls.sweep(lazy(scene, 20), theta2=6), ls.sweep(eager, theta2=6))
 
 
-def test_a_lazy_load_over_the_angle_is_cut_along_the_designs_alone():
+def test_a_lazy_load_over_the_angle_is_chunked_along_the_designs_only():
     scene = SCENES["moving"]()
     path = "loads[1].torque"
-    found = ls.peaks(replaced(scene, {path: scene.arrays[path].chunk({"n": 2, "theta2": 5})}), ["T12"], theta2=30)
+    peaks = ls.peaks(replaced(scene, {path: scene.arrays[path].chunk({"n": 2, "theta2": 5})}), ["T12"], theta2=30)
     expected = ls.peaks(scene, ["T12"], theta2=30)
-    assert found.T12_peak.chunks == ((2, 2, 1), (2,))
-    assert np.array_equal(computed(found).T12_peak, expected.T12_peak)
-    assert "scene" not in found.attrs  # its numbers are nowhere in the Dataset
+    assert peaks.T12_peak.chunks == ((2, 2, 1), (2,))
+    assert np.array_equal(computed(peaks).T12_peak, expected.T12_peak)
+    assert "scene" not in peaks.attrs  # lazy numbers are not stored in the Dataset
 
 
 # -------------------------------------------------------------------------------------------------------- errors
 
 
 def spoiled(value: float) -> ls.Scene:
-    """A lazy scene of six designs, of which the fifth is not allowed; they have no labels."""
+    """Return a lazy scene of six unlabelled designs, of which the fifth is refused."""
     length = np.full(6, 0.2)
     length[4] = value
     link = replace(PRESS.mechanism.coupler, length=xr.DataArray(length, dims="design").chunk(2))
@@ -195,17 +195,17 @@ def spoiled(value: float) -> ls.Scene:
 
 
 @pytest.mark.parametrize("value", [-0.1, 0.0, np.nan])
-def test_what_is_wrong_with_a_design_is_said_when_it_is_computed(value):
+def test_a_refused_design_raises_when_computed(value):
     expected = f"coupler.length = {value:g} m at design = 4: must be "
-    for found in (ls.sweep(spoiled(value), theta2=6), ls.peaks(spoiled(value), ["T12"], theta2=6)):
-        assert refused(computed, found).startswith(expected)
-        assert computed(found.isel(design=slice(0, 4))).status.values.max() == 0  # its neighbours are untouched
+    for outcome in (ls.sweep(spoiled(value), theta2=6), ls.peaks(spoiled(value), ["T12"], theta2=6)):
+        assert refused(computed, outcome).startswith(expected)
+        assert computed(outcome.isel(design=slice(0, 4))).status.values.max() == 0  # other designs are computed
 
 
 @pytest.mark.parametrize(
     "call", [ls.check, lambda scene: ls.system(scene, 10.0), lambda scene: ls.study(scene, "a.nc")]
 )
-def test_what_is_not_lazy_says_it_at_once(call, tmp_path, monkeypatch):
+def test_eager_functions_refuse_a_bad_lazy_design_at_once(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert refused(call, spoiled(-0.1)).startswith("coupler.length = -0.1 m at design[4]: must be greater than 0")
     assert not os.listdir()
@@ -226,7 +226,7 @@ def test_dask_is_not_needed():
 # ------------------------------------------------------------------------------------------------------- studies
 
 
-def test_a_lazy_scene_is_the_same_study(tmp_path):
+def test_a_study_of_a_lazy_scene_equals_the_eager_one(tmp_path):
     ls.study(grid(), tmp_path / "eager.nc", of=["F32"], chunk=9, theta2=24)
     ls.study(lazy(grid()), tmp_path / "lazy.nc", of=["F32"], chunk=9, theta2=24)
     assert (tmp_path / "lazy.nc").read_bytes() == (tmp_path / "eager.nc").read_bytes()
@@ -234,8 +234,8 @@ def test_a_lazy_scene_is_the_same_study(tmp_path):
 
 def test_a_lazy_result_is_saved_block_by_block(tmp_path):
     ls.save(ls.sweep(lazy(grid()), theta2=12), tmp_path / "lazy.nc")
-    with xr.open_dataset(tmp_path / "lazy.nc") as found:
-        assert_equal(found.drop_encoding(), ls.sweep(grid(), theta2=12))
+    with xr.open_dataset(tmp_path / "lazy.nc") as ds:
+        assert_equal(ds.drop_encoding(), ls.sweep(grid(), theta2=12))
     assert ls.load_scene(tmp_path / "lazy.nc") == grid()
 
 
@@ -253,13 +253,13 @@ def cluster():
 
 @pytest.fixture
 def client(cluster):
-    """Of a cluster of two processes, which are there, or there again."""
+    """Return a client of a cluster of two processes, waiting until both run."""
     cluster.wait_for_workers(2, timeout=60)
     return cluster
 
 
 def slowly() -> ls.Scene:
-    """Sixty designs whose load takes its time."""
+    """Return sixty designs with a slow load."""
 
     def torque(theta2):
         time.sleep(0.02)
@@ -276,7 +276,7 @@ def without_a_cluster(patch) -> None:
 
 
 def only_on_the_cluster(patch) -> None:
-    """No chunk is computed in this process from now on, but for the one design that is tried out."""
+    """Forbid chunks in this process, except the one design that is tried first."""
     compute = Job.compute
 
     def tried(job, block, threads):
@@ -320,7 +320,7 @@ def test_a_study_survives_the_loss_of_a_worker(client, tmp_path, monkeypatch):
     assert (tmp_path / "study.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
 
 
-def test_a_study_begun_here_goes_on_there(client, tmp_path, monkeypatch):
+def test_a_study_begun_locally_continues_on_the_cluster(client, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         without_a_cluster(patch)
         path, whole = stopped_study(tmp_path, patch)
@@ -330,12 +330,12 @@ def test_a_study_begun_here_goes_on_there(client, tmp_path, monkeypatch):
     after_each_chunk(monkeypatch, lambda kept: ahead.append(len(sent) - len(kept.kept) + 3))
     ls.study(many(), path, of=["F32"], chunk=6, client=client)
     assert path.read_bytes() == whole
-    assert len(sent) == 7  # of ten chunks three were there
+    assert len(sent) == 7  # three of ten chunks existed
     assert ahead[0] == 4  # two for each of two workers
     assert all(len(part.omega2) == 6 for _, part, *_ in sent)  # each with its own designs only
 
 
-def test_a_study_that_is_stopped_takes_its_chunks_back(client, tmp_path, monkeypatch):
+def test_a_stopped_study_cancels_its_chunks(client, tmp_path, monkeypatch):
     def stop(kept):
         if len(kept.kept) == 2:
             raise KeyboardInterrupt
@@ -350,18 +350,19 @@ def test_a_study_that_is_stopped_takes_its_chunks_back(client, tmp_path, monkeyp
 
 def test_workers_of_another_version_are_refused(client, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster_module, "version", lambda name: "9.9")
-    said = refused(ls.study, many(), tmp_path / "study.nc", of=["F32"], chunk=30, theta2=6)
+    message = refused(ls.study, many(), tmp_path / "study.nc", of=["F32"], chunk=30, theta2=6)
     assert (
-        said == f"a worker has linksweep {ls.peaks(PRESS).linksweep_version}, and this is 9.9: install the same on all"
+        message
+        == f"a worker has linksweep {ls.peaks(PRESS).linksweep_version}, and this is 9.9: install the same on all"
     )
 
 
 def test_lazy_results_are_computed_on_the_cluster(client):
-    found = client.compute(ls.sweep(lazy(many(), 30), theta2=12, of=["T12"])).result()
-    assert_equal(found, ls.sweep(many(), theta2=12, of=["T12"]))
+    outcome = client.compute(ls.sweep(lazy(many(), 30), theta2=12, of=["T12"])).result()
+    assert_equal(outcome, ls.sweep(many(), theta2=12, of=["T12"]))
 
 
 @pytest.mark.parametrize("client", [5, "tcp://127.0.0.1:8786"])
-def test_what_is_no_client_is_refused(client, tmp_path):
-    said = refused(ls.study, many(), tmp_path / "study.nc", client=client)
-    assert said.startswith(f"client = {client!r}: must be a client of dask.distributed; ")
+def test_an_object_that_is_not_a_client_is_refused(client, tmp_path):
+    message = refused(ls.study, many(), tmp_path / "study.nc", client=client)
+    assert message.startswith(f"client = {client!r}: must be a client of dask.distributed; ")

@@ -1,4 +1,4 @@
-"""Studies: the numbers of peaks, what the command prints, and who sees how far it is."""
+"""Studies: the numbers of peaks, the output of the command, and progress."""
 
 import io
 import os
@@ -35,7 +35,7 @@ from linksweep.studies import run as study_module
         pytest.param("grid", 50_000, marks=pytest.mark.long),
     ],
 )
-def test_a_study_is_what_peaks_gives(scene, chunk, tmp_path):
+def test_a_study_equals_peaks(scene, chunk, tmp_path):
     scene = SCENES[scene]()
     expected = ls.peaks(scene)
     assert_same(ls.study(scene, tmp_path / "study.nc", chunk=chunk).load(), expected)
@@ -45,23 +45,23 @@ def test_a_study_is_what_peaks_gives(scene, chunk, tmp_path):
 
 
 @pytest.mark.parametrize("scene", ["grid", "loop"])
-def test_the_scene_of_a_study_is_back(scene, tmp_path):
+def test_the_scene_of_a_study_is_read(scene, tmp_path):
     scene = SCENES[scene]()
     ls.study(scene, tmp_path / "study.nc", chunk=4)
     assert ls.load_scene(tmp_path / "study.nc") == scene
 
 
 def test_a_variable_has_only_the_dims_that_it_depends_on(tmp_path):
-    found = ls.study(grid(), tmp_path / "study.nc", chunk=4)
-    assert {*found.status.dims} <= {*found.F32_peak.dims}
-    assert {*found.F32_peak.dims} == {"size", "branch", "case", "omega2"}
+    study = ls.study(grid(), tmp_path / "study.nc", chunk=4)
+    assert {*study.status.dims} <= {*study.F32_peak.dims}
+    assert {*study.F32_peak.dims} == {"size", "branch", "case", "omega2"}
 
 
-def test_words_of_peaks_are_passed_on(tmp_path):
+def test_options_of_peaks_are_passed_on(tmp_path):
     angles = np.array([0.0, 10.0, 20.0, 30.0])
-    found = ls.study(many(), tmp_path / "study.nc", of="T12_mean", chunk=7, theta2=angles)
-    assert found.attrs["command"].startswith("linksweep.study(scene, of=['T12_mean'], theta2=array([ 0., 10.")
-    assert found.T12_mean.identical(ls.peaks(many(), "T12_mean", theta2=angles).T12_mean)
+    study = ls.study(many(), tmp_path / "study.nc", of="T12_mean", chunk=7, theta2=angles)
+    assert study.attrs["command"].startswith("linksweep.study(scene, of=['T12_mean'], theta2=array([ 0., 10.")
+    assert study.T12_mean.identical(ls.peaks(many(), "T12_mean", theta2=angles).T12_mean)
 
 
 def test_threads_are_passed_on(tmp_path, monkeypatch):
@@ -74,7 +74,7 @@ def test_threads_are_passed_on(tmp_path, monkeypatch):
     assert seen == [1, 2, 2]  # the first is the one design that is tried out
 
 
-def test_blocks_are_all_designs_once_and_never_too_many():
+def test_blocks_cover_all_designs_once_within_their_size():
     rng = random.Random(3)
     for _ in range(200):
         sizes = {dim: rng.randint(1, 9) for dim in "abc"[: rng.randint(1, 3)]}
@@ -86,7 +86,7 @@ def test_blocks_are_all_designs_once_and_never_too_many():
         assert (counts == 1).all()
 
 
-def test_what_differs_from_chunk_to_chunk_depends_on_what_was_cut():
+def test_variables_that_differ_between_chunks_have_the_chunked_dims():
     def parts(second: float):
         for start, value in ((0, 1.0), (2, second)):
             ds = xr.Dataset({"a": ("n", [1.0, 2.0]), "b": value}, attrs={"scene": ""})
@@ -114,7 +114,7 @@ class Screen(io.StringIO):
         return True
 
 
-def test_who_watches_sees_how_far_it_is(tmp_path, monkeypatch):
+def test_a_terminal_shows_progress(tmp_path, monkeypatch):
     screen = Screen()
     monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
     with monkeypatch.context() as patch:
@@ -125,7 +125,7 @@ def test_who_watches_sees_how_far_it_is(tmp_path, monkeypatch):
 
 
 def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
-    """Else nothing would be seen, and nothing kept, for minutes."""
+    """Larger chunks would show no progress, and store nothing, for minutes."""
     chunks = []
     run = study_module._run
     monkeypatch.setattr(study_module, "SLOW_CHUNK", 25)
@@ -136,7 +136,7 @@ def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
     assert chunks == [1, 3, 1]  # of 60 designs
 
 
-def test_who_does_not_watch_gets_nothing(tmp_path, monkeypatch, capsys):
+def test_no_progress_without_a_terminal(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
     ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=6)
     assert capsys.readouterr() == ("", "")
@@ -202,7 +202,7 @@ def test_the_command_of_one_design_prints_its_peaks(folder, capsys):
         (["scen.toml", "-o", "study.nc"], "scen.toml: there is no such file; did you mean"),
     ],
 )
-def test_the_command_refuses_what_cannot_be(folder, arguments, message, capsys):
+def test_the_command_refuses_bad_arguments(folder, arguments, message, capsys):
     assert main(["study", *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -220,7 +220,7 @@ sys.exit(main())
 """
 
 
-def test_ctrl_c_says_how_to_go_on(folder, capsys):
+def test_ctrl_c_states_how_to_continue(folder, capsys):
     words = ["study", "scene.toml", "-o", "study.nc", "--chunk", "2"]
     process = subprocess.Popen(
         [sys.executable, "-c", INTERRUPTED, *words],
@@ -234,10 +234,10 @@ def test_ctrl_c_says_how_to_go_on(folder, capsys):
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
     assert (process.returncode, out) == (130, "")
-    said = re.fullmatch(
+    text = re.fullmatch(
         r"linksweep: stopped; (\d+) of 60 chunks are done: to go on from there, run the same again\n", err
     )
-    assert 2 <= int(said[1]) <= 20  # the signal may come before the last file counts
+    assert 2 <= int(text[1]) <= 20  # the signal may come before the last file counts
     assert main(words) == 0
     assert main([*words[:3], "whole.nc", *words[4:]]) == 0
     assert Path("study.nc").read_bytes() == Path("whole.nc").read_bytes()

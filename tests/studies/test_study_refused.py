@@ -1,4 +1,4 @@
-"""Studies and files that are of something else, or damaged: refused, and left as they are."""
+"""Studies and files of another request or scene, or damaged, are refused and left unchanged."""
 
 import os
 import random
@@ -31,17 +31,19 @@ def other() -> ls.Scene:
     return replace(scene, omega2=scene.omega2 + 1e-9)
 
 
-def test_a_finished_study_of_something_else_is_refused_and_stays(tmp_path):
+def test_a_finished_study_of_another_request_is_refused_and_kept(tmp_path):
     path = tmp_path / "study.nc"
     ls.study(many(), path, of=["F32"])
     before = content(tmp_path)
     assert refused(ls.study, other(), path, of=["F32"]).startswith(f"{path}: is a study of another scene; move it away")
-    said = refused(ls.study, many(), path, of=["T12"])
-    assert said.startswith(f"{path}: is a study of another request ({{'of': ['F32']}}, not {{'of': ['T12']}}); move it")
+    message = refused(ls.study, many(), path, of=["T12"])
+    assert message.startswith(
+        f"{path}: is a study of another request ({{'of': ['F32']}}, not {{'of': ['T12']}}); move it"
+    )
     assert content(tmp_path) == before
 
 
-def test_functions_of_an_angle_are_told_apart_by_their_values(tmp_path):
+def test_functions_of_an_angle_are_distinguished_by_their_values(tmp_path):
     def scene(size: float) -> ls.Scene:
         return replace(many(), alpha2=lambda theta2: size * np.cos(np.radians(theta2)))
 
@@ -50,7 +52,7 @@ def test_functions_of_an_angle_are_told_apart_by_their_values(tmp_path):
     assert "another scene" in refused(ls.study, scene(2.0), tmp_path / "study.nc", of=["F32"])
 
 
-def test_the_folder_of_something_else_is_refused_and_stays(stopped, monkeypatch):
+def test_the_folder_of_another_study_is_refused_and_kept(stopped, monkeypatch):
     path, _ = stopped
     before = content(path.parent)
     begun = f"{path}.partial: was begun with another"
@@ -62,7 +64,7 @@ def test_the_folder_of_something_else_is_refused_and_stays(stopped, monkeypatch)
     assert content(path.parent) == before
 
 
-def test_a_folder_whose_manifest_is_damaged_is_refused_and_stays(stopped):
+def test_a_folder_with_a_damaged_manifest_is_refused_and_kept(stopped):
     path, _ = stopped
     manifest = Path(f"{path}.partial/manifest.json")
     for text in ("{", "[]", "{}"):
@@ -72,18 +74,18 @@ def test_a_folder_whose_manifest_is_damaged_is_refused_and_stays(stopped):
         assert content(path.parent) == before
 
 
-def test_a_folder_that_is_no_studys_is_refused_and_stays(tmp_path):
+def test_a_folder_that_is_not_of_a_study_is_refused_and_kept(tmp_path):
     (tmp_path / "study.nc.partial").mkdir()
     (tmp_path / "study.nc.partial" / "notes.txt").write_text("mine")
-    said = refused(ls.study, many(), tmp_path / "study.nc")
-    assert said.startswith(
+    message = refused(ls.study, many(), tmp_path / "study.nc")
+    assert message.startswith(
         f"{tmp_path}/study.nc.partial: is no folder of a study: it has no manifest.json; move it away"
     )
     assert os.listdir(tmp_path / "study.nc.partial") == ["notes.txt"]
 
 
 @pytest.mark.parametrize("bytes_", [b"", b"omega2 = 30\n", b"\x89HDF\r\n\x1a\n" + bytes(4000)])
-def test_a_file_that_is_no_study_is_refused_and_stays(bytes_, tmp_path):
+def test_a_file_that_is_not_a_study_is_refused_and_kept(bytes_, tmp_path):
     path = tmp_path / "study.nc"
     path.write_bytes(bytes_)
     assert refused(ls.study, many(), path).startswith(f"{path}: is no study that linksweep finished")
@@ -92,7 +94,7 @@ def test_a_file_that_is_no_study_is_refused_and_stays(bytes_, tmp_path):
     assert os.listdir(tmp_path) == ["study.nc"]
 
 
-def test_two_at_once_are_refused(stopped):
+def test_two_simultaneous_studies_are_refused(stopped):
     path, whole = stopped
     job = Job(many(), ["F32"], {}, 6)
     with partial(Path(f"{path}.partial"), study_module._manifest(job)):
@@ -109,7 +111,7 @@ def test_two_at_once_are_refused(stopped):
         ({"threads": 1.5}, "threads = 1.5: must be a whole number, 1 or more"),
     ],
 )
-def test_a_request_that_cannot_be_is_refused_before_anything_is_written(options, message, tmp_path):
+def test_a_bad_request_is_refused_before_writing(options, message, tmp_path):
     assert refused(ls.study, many(), tmp_path / "study.nc", **options).startswith(message)
     assert refused(ls.study, "press", tmp_path / "study.nc", **options).startswith("scene is a str: must be a Scene")
     assert os.listdir(tmp_path) == []
@@ -133,7 +135,7 @@ def test_a_flipped_bit_is_noticed_wherever_it_is(tmp_path, monkeypatch):
 
 
 def where_is(path: Path, values: xr.DataArray) -> int:
-    """The byte of a file at which an array's numbers begin."""
+    """Return the byte of a file at which an array's numbers begin."""
     place = path.read_bytes().find(values.values.tobytes())
     assert place > 0
     return place
@@ -149,36 +151,36 @@ def test_a_damaged_file_names_the_variable(tmp_path):
         )
 
 
-def test_damage_while_it_is_open_is_noticed_by_the_variable(tmp_path):
+def test_damage_to_an_open_file_is_noticed_when_the_variable_is_read(tmp_path):
     path = tmp_path / "study.nc"
     expected = ls.study(many(), path, of=["F32", "T12"]).load()
-    found = ls.open_study(path)
+    study = ls.open_study(path)
     flipped(path, where_is(path, expected.T12_peak) + 9)
-    assert found.F32_peak.identical(expected.F32_peak)
-    said = refused(lambda: found.T12_peak[3:5].values)
-    assert said.startswith(f"{path}: T12_peak cannot be read: its checksum does not match")
+    assert study.F32_peak.identical(expected.F32_peak)
+    message = refused(lambda: study.T12_peak[3:5].values)
+    assert message.startswith(f"{path}: T12_peak cannot be read: its checksum does not match")
     path.unlink()
-    assert refused(lambda: found.T12_max.values).startswith(f"{path}: T12_max cannot be read: ")
+    assert refused(lambda: study.T12_max.values).startswith(f"{path}: T12_max cannot be read: ")
 
 
 def test_variables_are_read_when_they_are_used(tmp_path):
     expected = ls.study(grid(), tmp_path / "study.nc", chunk=10).load()
-    found = ls.open_study(tmp_path / "study.nc")
-    assert not found.F32_peak.variable._in_memory
-    picked = found.F32_peak.isel(size=slice(None, None, -2), omega2=[2, 1], case=1)
+    study = ls.open_study(tmp_path / "study.nc")
+    assert not study.F32_peak.variable._in_memory
+    picked = study.F32_peak.isel(size=slice(None, None, -2), omega2=[2, 1], case=1)
     assert picked.identical(expected.F32_peak.isel(size=slice(None, None, -2), omega2=[2, 1], case=1))
-    assert found.sel(case="heavy").F32_peak.max() == expected.sel(case="heavy").F32_peak.max()
+    assert study.sel(case="heavy").F32_peak.max() == expected.sel(case="heavy").F32_peak.max()
 
 
 @pytest.mark.parametrize("part", [0.0, 0.3, 0.6, 0.999])
-def test_a_file_that_was_cut_is_refused(part, tmp_path):
+def test_a_truncated_study_is_refused(part, tmp_path):
     path = tmp_path / "study.nc"
     ls.study(many(), path, of=["F32"])
     path.write_bytes(path.read_bytes()[: int(part * path.stat().st_size)])
     assert refused(ls.open_study, path).startswith(f"{path}: is no study that linksweep finished: cut off")
 
 
-def test_a_file_that_is_missing(tmp_path):
+def test_a_missing_study_is_refused(tmp_path):
     assert (
         refused(ls.open_study, tmp_path / "no.nc")
         == f"{tmp_path}/no.nc: there is no such file; linksweep.study makes it"

@@ -1,4 +1,4 @@
-"""Studies that are stopped, killed, or run out of disk: the same call ends with the same file."""
+"""Studies that are stopped, killed, or out of disk space: repeating the call gives an identical file."""
 
 import contextlib
 import errno
@@ -28,7 +28,7 @@ def stopped(tmp_path, monkeypatch):
 # ---------------------------------------------------------------------------------------- stopped and killed
 
 
-def test_a_stopped_study_goes_on(stopped, monkeypatch):
+def test_a_stopped_study_continues(stopped, monkeypatch):
     path, whole = stopped
     assert len(os.listdir(f"{path}.partial")) == 4  # three chunks and a manifest
     computed = stop_after(99, monkeypatch)
@@ -55,7 +55,7 @@ ls.study(many(), input(), of=["F32"], chunk=1)
 
 
 def waiting() -> subprocess.Popen:
-    """A process that waits for the path of the study that it is to do."""
+    """Start a process that waits for the path of the study to compute."""
     tests = Path(__file__).parents[1]
     paths = os.pathsep.join([str(tests / "helpers"), str(tests.parent)])
     environment = {**os.environ, "PYTHONPATH": paths}
@@ -63,8 +63,8 @@ def waiting() -> subprocess.Popen:
 
 
 @pytest.mark.long
-def test_killed_at_random_moments_it_ends_as_the_same_file(tmp_path):
-    """Each time some chunks further than the last, and a moment more."""
+def test_a_study_killed_at_random_moments_gives_the_identical_file(tmp_path):
+    """Each kill comes some chunks, and a moment, after the last."""
     path, rng = tmp_path / "study.nc", random.Random(7)
 
     def chunks() -> int:
@@ -92,9 +92,9 @@ STEPS = ("mkdir", "open", "fsync", "replace", "unlink", "rmdir")
 
 
 def dies_at(step: int, path: Path) -> bool:
-    """Whether a study of three chunks, in another process that dies at its so many-th step on files, died."""
+    """Run a study of three chunks in a process that dies at a step on files; return whether it died."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # other threads are of no account here
+        warnings.simplefilter("ignore", DeprecationWarning)  # steps of other threads do not count
         child = os.fork()
     if child:
         return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
@@ -104,7 +104,7 @@ def dies_at(step: int, path: Path) -> bool:
         def call(*arguments, **options):
             left[0] -= 1
             if left[0] < 0:
-                os._exit(9)  # at once, as kill -9: nothing is tidied up
+                os._exit(9)  # at once, as kill -9: without cleanup
             return function(*arguments, **options)
 
         return call
@@ -118,7 +118,7 @@ def dies_at(step: int, path: Path) -> bool:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_killed_at_every_step_on_files_it_ends_as_the_same_file(tmp_path):
+def test_a_study_killed_at_every_step_on_files_gives_the_identical_file(tmp_path):
     ls.study(many(), tmp_path / "whole.nc", of=["F32"], chunk=20)
     whole = (tmp_path / "whole.nc").read_bytes()
     for step in range(200):
@@ -146,7 +146,7 @@ def test_a_damaged_chunk_is_computed_again(stopped, monkeypatch):
     assert path.read_bytes() == whole
 
 
-def test_files_of_others_in_the_folder_stay(stopped):
+def test_other_files_in_the_folder_are_kept(stopped):
     path, whole = stopped
     (path.parent / "study.nc.partial" / "notes.txt").write_text("mine")
     ls.study(many(), path, of=["F32"], chunk=6)
@@ -155,7 +155,7 @@ def test_files_of_others_in_the_folder_stay(stopped):
     assert ls.study(many(), path, of=["F32"], chunk=6).sizes == {"speed": 60}
 
 
-def test_a_chunk_damaged_while_the_file_is_put_together_is_computed_again(stopped, monkeypatch):
+def test_a_chunk_damaged_during_assembly_is_computed_again(stopped, monkeypatch):
     path, whole = stopped
     layout_of = assemble.layout_of
 
@@ -172,13 +172,13 @@ def test_a_chunk_damaged_while_the_file_is_put_together_is_computed_again(stoppe
 # ------------------------------------------------------------------------------------------ disks that fail
 
 
-def test_a_folder_that_is_missing(tmp_path):
+def test_a_missing_folder_is_refused(tmp_path):
     with pytest.raises(FileNotFoundError) as error:
         ls.study(many(), tmp_path / "results" / "study.nc")
     assert str(error.value) == f"{tmp_path}/results/study.nc: there is no folder {tmp_path}/results; make it first"
 
 
-def test_a_folder_that_may_not_be_written_to(tmp_path, monkeypatch):
+def test_a_folder_without_write_permission_is_refused(tmp_path, monkeypatch):
     def forbidden(path, *_):
         raise PermissionError(errno.EACCES, "Permission denied", str(path))
 
@@ -190,7 +190,7 @@ def test_a_folder_that_may_not_be_written_to(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write anywhere")
-def test_a_folder_that_is_read_only(tmp_path):
+def test_a_read_only_folder_is_refused(tmp_path):
     tmp_path.chmod(0o555)
     try:
         with pytest.raises(PermissionError):
@@ -202,7 +202,7 @@ def test_a_folder_that_is_read_only(tmp_path):
 
 @contextlib.contextmanager
 def files_at_most(size: int):
-    """No file of this process can grow larger: writing more fails, as on a full disk."""
+    """Limit the size of this process's files, so that writing fails as on a full disk."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
@@ -212,7 +212,7 @@ def files_at_most(size: int):
 
 
 @pytest.mark.parametrize(("size", "kept"), [(800, 0), (12_000, 10)])
-def test_a_disk_that_takes_no_more_leaves_the_chunks(stopped, size, kept):
+def test_a_full_disk_keeps_the_chunks(stopped, size, kept):
     path, whole = stopped
     with files_at_most(size), pytest.raises(OSError, match=r"finished chunks stay: '.*study\.nc\.partial'"):
         ls.study(many(), path, of=["F32"], chunk=6)
@@ -222,7 +222,7 @@ def test_a_disk_that_takes_no_more_leaves_the_chunks(stopped, size, kept):
     assert path.read_bytes() == whole
 
 
-def test_a_disk_without_room_for_the_file_is_told_before_it_is_written(stopped, monkeypatch):
+def test_a_disk_without_room_for_the_file_is_refused_before_writing(stopped, monkeypatch):
     path, whole = stopped
     with monkeypatch.context() as patch:
         usage = assemble.shutil.disk_usage(path.parent)
@@ -275,4 +275,4 @@ def test_the_file_appears_whole_and_flushed(tmp_path, monkeypatch):
     assert (kind, designs, path.stat().st_ino) == ("replace", 60, node)
     before = done[: done.index((kind, node, designs))]
     assert ("fsync", node) in before
-    assert done[-1][0] == "fsync"  # of the folder, so that the name stays too
+    assert done[-1][0] == "fsync"  # the folder, so that the name is on disk too
