@@ -41,8 +41,8 @@ from linksweep.scene.loads.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.loads.kinds import *  # noqa: F403  (every kind of load, by its own name)
 from linksweep.scene.scene import Scene
 from linksweep.studies.checked import open_study
-from linksweep.studies.run import study
 from linksweep.studies.scene_at import scene_at
+from linksweep.studies.study import study
 
 __all__ = [
     "Bar",

@@ -36,7 +36,7 @@ from linksweep.results.peaks import peaks
 from linksweep.results.quantities import quantities
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
-from linksweep.studies.run import study
+from linksweep.studies.study import study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -29,8 +29,8 @@ from linksweep.mechanisms.rows.crank import (
     turned,
 )
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
+from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
 from linksweep.physics import advantage, crank_driven
 from linksweep.physics.algebra import planar

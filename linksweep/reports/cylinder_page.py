@@ -12,7 +12,7 @@ from linksweep.analysis.drive.duty import duty, turning_problems
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.pins.bearings import bearings
 from linksweep.base.validate import refuse
-from linksweep.reports import inputs as page_inputs
+from linksweep.reports import scene_tables
 from linksweep.reports import tables as page_tables
 from linksweep.reports.figures import SIZE, Picture, of_shaking, pictures
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, section, symbol, table, tag, tiny
@@ -42,10 +42,10 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
     return {
         "kind": f"{len(machine.crank_angles)} cylinders",
         "warnings": "",
-        "machine": section("One cylinder", page_inputs.links(engine), page_inputs.loads(engine)),
+        "machine": section("One cylinder", scene_tables.links(engine), scene_tables.loads(engine)),
         "left": joined(cylinders, section("Peaks of all together", _peaks(machine, worst))),
         "right": joined(
-            section("Motion", page_inputs.settings(engine)),
+            section("Motion", scene_tables.settings(engine)),
             section("Drive", _drive(machine, threads)),
             section("Main bearings", _mains(mains), tag("p", HINGED, class_="note")) if mains is not None else Markup(),
         ),

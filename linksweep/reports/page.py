@@ -1,6 +1,6 @@
 """report(scene, "report.html"): inputs, checks, peaks and figures of one machine on a page to print, in one file.
 
-The template is `page.html`. Inputs, checks, tables and figures are pieces of their own: `page_inputs`, `page_checks`,
+The template is `page.html`. Inputs, checks, tables and figures are pieces of their own: `scene_tables`, `page_checks`,
 `page_tables`, `page_figures`. There is no date in the page, and the figures are drawn with matplotlib's own settings
 whatever the user's are, so that equal scenes give equal files, byte for byte.
 """
@@ -22,12 +22,12 @@ from linksweep.files.atomic import ending_of
 from linksweep.files.netcdf import write_text
 from linksweep.reports import checks as page_checks
 from linksweep.reports import figures as page_figures
-from linksweep.reports import inputs as page_inputs
+from linksweep.reports import scene_tables
 from linksweep.reports import tables as page_tables
 from linksweep.reports.cylinder_page import parts_of
-from linksweep.reports.inputs import quantity
 from linksweep.reports.markup import Markup, joined, safe, section, tag
 from linksweep.reports.results_of_page import Range, Results, results_of
+from linksweep.reports.scene_tables import quantity
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.file.writing import write_scene
@@ -103,14 +103,14 @@ def report(
 def page(scene: Scene, title: str | None = None, part: Range | None = None, threads: int | None = None) -> str:
     """Return the report as HTML."""
     results = results_of(scene, part, threads)
-    kind = page_inputs.kind_of(scene)
+    kind = scene_tables.kind_of(scene)
     between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
     parts = {
         "title": title or kind,
         "kind": kind + between,
         "version": version("linksweep"),
         "warnings": page_checks.warnings(results),
-        "machine": section("Machine", page_inputs.links(scene), page_inputs.loads(scene)),
+        "machine": section("Machine", scene_tables.links(scene), scene_tables.loads(scene)),
         "left": joined(*_left(results)),
         "right": joined(*_right(results)),
         "figures": page_figures.of_the_cycle(results),
@@ -133,7 +133,7 @@ def _filled(parts: Mapping[str, Any]) -> str:
 
 
 def _left(results: Results) -> Iterator[Markup]:
-    yield section("Motion" if results.linkage else "Machine", page_inputs.settings(results.scene))
+    yield section("Motion" if results.linkage else "Machine", scene_tables.settings(results.scene))
     yield section("Peaks", page_tables.peaks(results), tag("p", EXACTNESS, class_="note"))
     yield section("Geometry", page_tables.geometry(results))
 

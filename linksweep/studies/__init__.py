@@ -1,4 +1,4 @@
 """Compute studies of many designs in chunks that resume after a stop: jobs, cluster, assembly, opening.
 
-`run.study`, `checked.open_study` and `scene_at.scene_at` are public; the command line and reports import them.
+`study.study`, `checked.open_study` and `scene_at.scene_at` are public; the command line and reports import them.
 """

@@ -117,7 +117,7 @@ def test_a_wrong_suffix_is_refused(here, write, allowed, name):
 def test_the_command_line_refuses_a_suffix_before_it_computes(here, monkeypatch, capsys, arguments, message):
     for name in {"sweep", "peaks", "example"}:
         monkeypatch.setattr(f"linksweep.cli.main.{name}", lambda *_, **__: pytest.fail("computed"))
-    monkeypatch.setattr("linksweep.studies.run.Job", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("linksweep.studies.study.Job", lambda *_, **__: pytest.fail("computed"))
     ls.save(ls.example("press"), "press.toml")
     with contextlib.suppress(SystemExit):
         assert main(arguments.split()) == 2

@@ -34,8 +34,8 @@ from linksweep.mechanisms.rows.bodies import (
     position_quantities,
 )
 from linksweep.mechanisms.rows.crank import between_rows, straight_rows
-from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
+from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 

@@ -15,7 +15,7 @@ from html_page import Page
 import linksweep as ls
 from linksweep.cli.main import main
 from linksweep.reports import figures as page_figures
-from linksweep.reports import inputs as page_inputs
+from linksweep.reports import scene_tables
 from linksweep.reports.markup import Markup, tag
 from linksweep.reports.page import page
 from linksweep.results.peaks import peaks_of_part
@@ -140,7 +140,7 @@ def test_the_table_of_links_has_the_sliders_centre_of_gravity():
     crank, rod = ls.Bar(0.05, **STEEL), ls.Bar(0.15, **STEEL)
     for place, text in (((0.0, 0.0), "on its first pin"), ((0.02, 30.0), "20 mm at 30°")):
         slider = dict(zip(("slider_cg_distance", "slider_cg_angle"), place, strict=True))
-        table = page_inputs.links(ls.Scene(ls.SliderCrank(crank, rod, 0.5, **slider), 30.0))
+        table = scene_tables.links(ls.Scene(ls.SliderCrank(crank, rod, 0.5, **slider), 30.0))
         cells = re.findall("<td>(.*?)</td>", str(table).replace("\u202f", " "))
         assert text in cells
 
@@ -167,7 +167,7 @@ def test_loads_of_all_kinds_are_described():
         ls.Load("rocker", torque=lambda theta2: 3.0 * np.sin(np.radians(theta2))),
     ]
     scene = ls.Scene(machine, omega2=-20.0, alpha2=5.0, loads=loads)
-    rows = Page(tag("h2", "All") + page_inputs.settings(scene) + page_inputs.loads(scene)).rows("All")
+    rows = Page(tag("h2", "All") + scene_tables.settings(scene) + scene_tables.loads(scene)).rows("All")
     text = {key: cells[0][0].replace("\u202f", " ") for key, cells in rows.items()}
     assert text["speed of the crank"] == "190.99 rpm (20 rad/s) clockwise"
     assert text["its acceleration"] == "5 rad/s²"

@@ -11,7 +11,7 @@ import xarray as xr
 import linksweep as ls
 from linksweep.base.fields import choice, parameter
 from linksweep.base.frozen import with_sound
-from linksweep.reports.inputs import loads as loads_in_words
+from linksweep.reports.scene_tables import loads as loads_in_words
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.file.writing import write_scene
 from linksweep.scene.grid import crank_grid

@@ -22,7 +22,7 @@ from linksweep.cli.main import main
 from linksweep.scene.designs.selection import blocks
 from linksweep.studies import assemble
 from linksweep.studies import job as chunk_module
-from linksweep.studies import run as study_module
+from linksweep.studies import study as study_module
 
 # ------------------------------------------------------------------------------------ the numbers of peaks
 

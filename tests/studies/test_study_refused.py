@@ -13,7 +13,7 @@ from studies import content, flipped, grid, many, refused, stopped_study
 
 import linksweep as ls
 from linksweep.files import seal
-from linksweep.studies import run as study_module
+from linksweep.studies import study as study_module
 from linksweep.studies.job import Job
 from linksweep.studies.partial import partial
 

@@ -9,7 +9,7 @@ from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.machine import machine_quantities, machine_rows, power_rows
+from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.physics import advantage, coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rpr, inverted_slider_crank
