@@ -276,12 +276,12 @@ def check_pair(machine: Subject, name: str, refusal: str) -> None:
 
 
 @pytest.mark.parametrize(("machine", "name"), pairs(CALLS, MACHINES))
-def test_functions(machine, name, tmp_path):
+def test_a_function_gives_a_result_or_a_sentence(machine, name, tmp_path):
     check_pair(subject(machine), name, sentence(lambda: CALLS[name](subject(machine), tmp_path)))
 
 
 @pytest.mark.parametrize(("machine", "name"), pairs(COMMANDS, MACHINES[:-1]))
-def test_commands(machine, name, tmp_path, capsys):
+def test_a_command_prints_a_result_or_a_sentence(machine, name, tmp_path, capsys):
     """A command gives what it prints, or exits with status 2 and its sentence."""
     code = main([str(argument) for argument in COMMANDS[name](subject(machine), tmp_path)])
     out, err = capsys.readouterr()
@@ -304,7 +304,7 @@ def test_every_command_has_a_call(capsys):
     assert {*commands} == {"demo", *COMMANDS}
 
 
-def test_lacking_lists_pairs_that_there_are():
+def test_every_listed_pair_exists():
     names = {*CALLS} | {f"command.{name}" for name in COMMANDS}
     assert {name for text in LACKING.values() for name in text.split()} <= names
     assert {*LACKING} <= {*MACHINES}

@@ -55,7 +55,7 @@ def turns_fully(turning: float, next_to_it: float, opposite: float, other_neighb
 
 
 def class_by_turning(crank: float, coupler: float, rocker: float, ground: float) -> str:
-    """Which links turn fully against the ground, and the coupler against both its neighbours."""
+    """Return the Grashof class, from which links turn fully against their neighbours."""
     crank_turns = turns_fully(crank, ground, coupler, rocker)
     rocker_turns = turns_fully(rocker, ground, coupler, crank)
     coupler_turns = turns_fully(coupler, crank, rocker, ground) and turns_fully(coupler, rocker, crank, ground)
