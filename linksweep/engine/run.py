@@ -21,7 +21,7 @@ from linksweep.base.memory import require_memory
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
-from linksweep.engine.kernel.writer import TILE, Reduction, Writer
+from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -153,7 +153,7 @@ def room_for(samples: int) -> int:
 
 def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
-    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else TILE))
+    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else 1))
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}

@@ -20,8 +20,8 @@ general, designs = scene(GENERAL), scene(batch(3, *ALL))
 CALLS = {
     "nine unknowns": (partial(ls.sweep, general, 72, of=NINE), 1),
     "nine unknowns of many designs": (partial(ls.sweep, designs, 72, of=NINE, threads=1), 1),
-    "more rows than can be compared": (partial(ls.sweep, general, 72), 1),
-    "more rows than can be compared, of many designs": (partial(ls.sweep, designs, 72, threads=1), 1),
+    "more rows than one loop compares": (partial(ls.sweep, general, 72), 2 + len(PINS)),
+    "more rows than one loop compares, of many designs": (partial(ls.sweep, designs, 72, threads=1), 2 + len(PINS)),
     "T12 alone": (partial(ls.sweep, general, 72, of=("T12",)), 1),
     "magnitudes": (partial(ls.sweep, general, 72, of=PINS), 1 + len(PINS)),
     "peaks": (partial(ls.peaks, designs, theta2=72, threads=1), 1),

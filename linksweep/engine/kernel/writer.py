@@ -6,8 +6,9 @@ deeper loops share its result, that is kept in a row of `scratch` and read back 
 
 Two choices let LLVM vectorise the inner loop, and losing that costs eightfold: row views are taken before a plain loop
 over contiguous rows; and rows of `scratch`, which is flat, lie a distance apart that is a literal in the source, so
-that they provably do not overlap. Where a loop has more result rows than the compiler will check for overlap, results
-are written to `scratch` too, and copied from there.
+that they provably do not overlap. Where a loop has more result rows than the compiler will check for overlap, each
+group of rows has a loop of its own, which repeats the operations that groups share: that takes less time than to write
+results to `scratch` and copy them.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, work)
@@ -37,8 +38,6 @@ COMPARISONS = 128
 DEEPEST = 16
 """Most nested design loops: Python allows 20 nested blocks, and a search has two more inside. Further dims share the
 innermost loop."""
-TILE = 1024
-"""Samples per tile in a kernel without design loops that copies results: the rows of a tile stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class Writer:
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
         self.placed = frozenset(node for node in inputs if node.value in self.PLACED)
         self.profiles = tuple(node for node in inputs if self.per_sample(node) and node not in self.placed)
-        self.copied = self._copied()
+        self.copied = frozenset(self.rows) & self._read_back()
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
         self.named = {*self.rows, *self.singles, *self.scratch}
         self.uses = Counter(x for node in self.nodes for x in node.operands)
@@ -85,15 +84,6 @@ class Writer:
         """Return the number of design loops around a node's operation."""
         deepest = max((k + 1 for k, dim in enumerate(self.plan.loops) if dim in node.dims), default=0)
         return min(deepest, self.innermost)
-
-    def _copied(self) -> frozenset[Node]:
-        """Return the results copied from scratch: those that deeper loops read, and all of a loop that has too many."""
-        copied = set(self.rows) & self._read_back()
-        for level in range(self.innermost + 1):
-            rows = {node for node in self.rows if self.level(node) == level}
-            if len(rows) * (len(rows) - 1) // 2 + len(rows) * len(self.profiles) > COMPARISONS:
-                copied |= rows
-        return frozenset(copied)
 
     def _read_back(self) -> set[Node]:
         """Return the rows that deeper loops read back."""
@@ -155,9 +145,10 @@ class Writer:
         self._sample_loop(level)
         self._reductions(level)
 
-    def _work(self, level: int, per_sample: bool) -> list[Node]:
+    def _of_designs(self, level: int) -> list[Node]:
+        """Return a level's operations that depend on no angle."""
         work = (node for node in self.nodes if node.operator not in ("input", "constant"))
-        return [node for node in work if self.level(node) == level and self.per_sample(node) == per_sample]
+        return [node for node in work if self.level(node) == level and not self.per_sample(node)]
 
     def _single_values(self, level: int) -> None:
         """Write the operations that depend on no angle."""
@@ -165,26 +156,44 @@ class Writer:
         for k, node in enumerate(self.parameters):
             if self.level(node) == level:
                 self.write(depth, f"{self.name(node)} = parameters[{self._at('parameter', k, node)}]")
-        self._assign(self._work(level, per_sample=False), depth)
+        self._assign(self._of_designs(level), depth)
         for k, node in enumerate(self.singles):
             if self.level(node) == level:
                 self.write(depth, f"single[{self._at('single', k, node)}] = {self.name(node)}")
 
     def _sample_loop(self, level: int) -> None:
-        """Write the inner loop over the samples, with the rows that it reads and writes."""
+        """Write the inner loops over the samples, with the rows that they read and write."""
+        depth = level + 1
+        for written in self._groups(level):
+            work = [node for node in self._needed(written) if self.level(node) == level]
+            met = {*written, *(x for node in work for x in node.operands)}
+            read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
+            self._views(depth, read, written)
+            self.write(depth, "for j in range(samples):")
+            self._one_sample(depth + 1, read, work, written)
+            self._copies(depth, [node for node in written if node in self.copied])
+
+    def _groups(self, level: int) -> list[list[Node]]:
+        """Return the rows that a level writes, in groups with a loop each: as many as the compiler will compare."""
+        read = len(self.profiles) + sum(self.level(node) < level for node in self._read_back())
+        most = max((n for n in range(2, COMPARISONS) if n * (n - 1) // 2 + n * read <= COMPARISONS), default=1)
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
-        written = [node for node in written if node not in self.placed]
-        if not written:
-            return
-        copied = [node for node in written if node in self.copied]
-        depth = self._tiles(level + 1) if copied and not self.plan.loops else level + 1
-        work = self._work(level, per_sample=True)
-        met = {*written, *(x for node in work for x in node.operands)}
-        read = sorted((node for node in met - set(work) if self.per_sample(node)), key=lambda node: node.position)
-        self._views(depth, read, written)
-        self.write(depth, "for j in range(samples):")
-        self._one_sample(depth + 1, read, work, written)
-        self._copies(depth, copied)
+        written = sorted((node for node in written if node not in self.placed), key=lambda node: node.position)
+        kept, direct = ([node for node in written if (node in self.scratch) == inside] for inside in (True, False))
+        if len(direct) + len(self.copied.intersection(kept)) <= most:
+            return [written] if written else []
+        return [group for group in (kept, *(direct[k : k + most] for k in range(0, len(direct), most))) if group]
+
+    def _needed(self, rows: list[Node]) -> list[Node]:
+        """Return all operations per sample on which rows depend, of every level."""
+        needed: set[Node] = set()
+        waiting = list(rows)
+        while waiting:
+            node = waiting.pop()
+            if node not in needed and self.per_sample(node) and node.operator not in ("input", "constant"):
+                needed.add(node)
+                waiting.extend(node.operands)
+        return sorted(needed, key=lambda node: node.position)
 
     def _views(self, depth: int, read: list[Node], written: list[Node]) -> None:
         """Write views of the rows that are not in scratch."""
@@ -207,12 +216,6 @@ class Writer:
         for node in written:
             cell = self._scratch_cell(node) if node in self.scratch else f"written_{self.name(node)}[j]"
             self.write(depth, f"{cell} = {self.name(node)}")
-
-    def _tiles(self, depth: int) -> int:
-        """Write the loop over tiles of samples; return the depth inside."""
-        self.write(depth, f"for start in range(first, last, {TILE}):")
-        self.write(depth + 1, f"samples = min({TILE}, last - start)")
-        return depth + 1
 
     def _copies(self, depth: int, copied: list[Node]) -> None:
         for node in copied:

@@ -88,7 +88,8 @@ class SearchWriter(Writer):
         self.write(depth, "places, halves, tags, values = trials[0], trials[1], trials[2], trials[3]")
         self.write(depth, f"for j in range({search.TRIALS} * in_blocks(count)):")
         self.write(depth + 1, f"{TANGENT}, {FAR}, tag = places[j], halves[j], tags[j]")
-        self._assign(self._needed([self.signals[k] for k in tags]), depth + 1)
+        signals = [self.signals[k] for k in tags]
+        self._assign(self._needed(signals), depth + 1)  # of every level: between samples nothing is shared
         chosen = self.name(self.signals[tags[-1]])
         for k in reversed(tags[:-1]):
             chosen = f"{self.name(self.signals[k])} if tag == {float(k)} else ({chosen})"
@@ -96,15 +97,3 @@ class SearchWriter(Writer):
         self.write(depth, f"evaluations += {search.TRIALS} * count")
         self.write(depth, "count = advance(lanes, trials, count, best)")
         self.write(depth, "rounds += 1")
-
-    def _needed(self, signals: list[Node]) -> list[Node]:
-        """Return all operations per sample on the way to these signals, of every level: between samples nothing is
-        shared."""
-        needed: set[Node] = set()
-        waiting = list(signals)
-        while waiting:
-            node = waiting.pop()
-            if node not in needed and self.per_sample(node) and node.operator not in ("input", "constant"):
-                needed.add(node)
-                waiting.extend(node.operands)
-        return sorted(needed, key=lambda node: node.position)
