@@ -266,7 +266,7 @@ def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
 
 
 def below(path: str, kind: FieldKind) -> str:
-    """Return what the paths of an object's fields begin with, of the path of the field that holds it."""
+    """Return the prefix of the paths of an object's fields, from path and kind of the field that holds it."""
     return "" if isinstance(kind, PartField) and kind.inline else path + "."
 
 
@@ -282,7 +282,7 @@ def numbers_in(path: str, value: Any, kind: FieldKind) -> Iterator[tuple[str, An
 
 
 def _is_row(value: Any, count: int | None = None) -> bool:
-    """Return whether a value is a list, or a bare array that can only be one; of this count if one is given."""
+    """Return whether a value is a list, or a bare array that can only be one, of `count` items unless None."""
     bare = isinstance(value, np.ndarray) or (is_quantity(value) and not is_array(value))
     row = isinstance(value, tuple | list) or (bare and np.ndim(value) == 1)
     return row and (count is None or len(value) == count)

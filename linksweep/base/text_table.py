@@ -1,4 +1,4 @@
-"""Lay rows of text out as a table for a terminal."""
+"""Format rows of text as a table for a terminal."""
 
 from __future__ import annotations
 

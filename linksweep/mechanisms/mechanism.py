@@ -55,9 +55,9 @@ class Mechanism(ByContent, ABC):
     position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
     """Description of the index in results."""
     spot: ClassVar[str] = "crank angle"
-    """One value of the index, in a sentence."""
+    """Noun for one value of the index, for sentences and labels."""
     pace: ClassVar[str] = "omega2"
-    """The quantity that states how quickly the index changes."""
+    """The quantity that is the rate of the index."""
     motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
     """Parameters of a scene that the machine takes besides gravity; the first is required."""
     defaults: ClassVar[Mapping[str, Any]] = {"drive": "crank"}
@@ -179,9 +179,9 @@ class Mechanism(ByContent, ABC):
         return replace(self, **changed)
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
-        """Return the first moments mx + i·my [kg m] that links lack for balance, by role; none are known.
+        """Return the first moments mx + i·my [kg m] that links lack for balance, by role; {} where not known.
 
-        `fraction` is that of the first order of a machine that `balances_partly`.
+        `fraction` is the part of the first order to balance, in a machine that `balances_partly`.
         """
         return {}
 
@@ -195,7 +195,7 @@ class Mechanism(ByContent, ABC):
         return ()
 
     def closure_problems(self) -> list[str]:
-        """Return why a single design cannot be assembled at any angle; one of a batch only has no values."""
+        """Return the problem of a single design that can never be assembled; in a batch, its results are NaN."""
         return []
 
     @property
@@ -252,7 +252,7 @@ class Mechanism(ByContent, ABC):
 
 
 def reach_problems(offset: Number, first: Number, second: Number, names: str) -> list[str]:
-    """Return why a single design cannot be assembled: its offset is beyond the reach of two lengths."""
+    """Return the problem of a single design whose offset is beyond the reach of two lengths."""
     if any(hasattr(length, "dims") for length in (offset, first, second)) or abs(offset) <= first + second:
         return []
     return [

@@ -239,7 +239,7 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
 def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
     """Return the largest of a grid's samples, as they are."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
-    refuse([f'of = "{name}": is told of exact peaks only; leave out theta2' for name in exact])
+    refuse([f'of = "{name}": is of exact peaks only; leave out theta2' for name in exact])
     grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))
     sampled = scene.at(grid)
     signals, powers = needed(items)

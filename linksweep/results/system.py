@@ -119,7 +119,7 @@ def system(
 
 
 def as_angles(theta2: Any) -> Any:
-    """Return angles, a single number as one of them: elsewhere it is a count."""
+    """Return angles, a single number as a list of one angle, where other functions take it for a count."""
     angle = to_float64(theta2, "angle")
     return [angle] if isinstance(angle, float) else theta2
 

@@ -1,4 +1,4 @@
-"""Results and analyses ask a machine for its capabilities and name no machine.
+"""Rooms above the mechanisms ask a machine for its capabilities and name no machine.
 
 Names are searched in the syntax tree, so that docstrings may use machines in examples.
 """
@@ -15,7 +15,7 @@ from linksweep.mechanisms.capabilities import CAPABILITIES, lack, offers
 PACKAGE = Path(ls.__file__).parent
 
 
-@pytest.mark.parametrize("room", ["results", "analysis"])
+@pytest.mark.parametrize("room", ["scene", "files", "results", "analysis", "studies", "plot", "reports", "cli"])
 def test_no_machine_is_named(room):
     for path in sorted((PACKAGE / room).rglob("*.py")):
         nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))

@@ -1,7 +1,7 @@
 """Bearings in the pins of a machine over a cycle: load diagrams, pressure, friction, life.
 
-Equations and sources: of rolling bearings `linksweep.analysis.pins.bearing_life`, of plain ones
-`linksweep.physics.bearing`.
+Equations and sources: `linksweep.analysis.pins.bearing_life` for rolling bearings, `linksweep.physics.bearing` for
+plain ones.
 """
 
 from __future__ import annotations
@@ -149,8 +149,8 @@ def bearings(
 
     Notes
     -----
-    Integrals to 1e-10. A machine that moves over part of a turn is taken to come back as it went. Source: equations of
-    `linksweep.analysis.pins.bearing_life` and `linksweep.physics.bearing`.
+    Integrals to 1e-10. A machine that moves over part of a turn is assumed to return the way it came. Source: equations
+    of `linksweep.analysis.pins.bearing_life` and `linksweep.physics.bearing`.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def bearings(
 
 
 def _part_problems(part: Part | None, period: float) -> list[str]:
-    """List why two angles are no ends of a crank's way."""
+    """Return the problem of two angles that cannot be the ends of a part of a turn."""
     if part is None or 0.0 < part[1] - part[0] <= period:
         return []
     ends = f"theta2 = {part[0]:g} … {part[1]:g} degrees"
@@ -258,7 +258,7 @@ def of_life(rotation: Rotation, pin: str, bearing: Bearing) -> dict[str, xr.Data
 
 
 def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
-    """Return how much of the crank's way each angle stands for: as much as others, or half way to its neighbours."""
+    """Return weights of the angles: equal over a cycle; over a part of a turn, half the distances to the neighbours."""
     if part is None:
         return xr.ones_like(angles)
     order = np.argsort(angles.values, kind="stable")

@@ -46,7 +46,7 @@ class Form:
         raise NotImplementedError
 
     def quantities(self, name: str) -> list[Quantity]:
-        """Return the quantities that a sweep may be asked for."""
+        """Return the quantities that can be requested of a sweep."""
         return []
 
 

@@ -67,7 +67,7 @@ def cosine_noise(miss: Number, noise: Number, psi_sin: Number) -> Number:
 
     The angle may be off in its last digit. `miss` is the distance of the toggle's cosine from ±1. Where it is below
     `noise`, rounded lengths may be its only cause: then the mechanism is taken as lying flat at ψ = 0 or 180°, and
-    cosines within twice the miss cannot be told from the toggle's.
+    cosines within twice the miss cannot be distinguished from the toggle's.
     """
     return ANGLE_NOISE * abs(psi_sin) + CHANGE_POINT_NOISE + where(abs(miss) < noise, 2.0 * abs(miss), 0.0)
 

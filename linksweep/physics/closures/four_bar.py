@@ -23,8 +23,8 @@ the sine of the angle between r3 and r4 would have none left.
 
 Where ψ_f = 0 or ψ_s = 180° the mechanism has a change point: it passes through its toggle, flat, and can leave it on
 either branch. With both (parallelogram a = c, b = d; kite a = b, c = d) the side of B→D that C is on changes twice a
-turn, and the branch goes through: the sign of sin ψ gives the side. With only one, such a motion would take two turns
-to come round, so C keeps to its side.
+turn, and the branch goes through: the sign of sin ψ gives the side. With only one, such a motion would repeat after
+two turns, so C keeps to its side.
 """
 
 from linksweep.physics.algebra.arithmetic import Number, sqrt, where

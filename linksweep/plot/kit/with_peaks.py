@@ -1,7 +1,8 @@
-"""A cycle for plots: with samples of its own at its scene's exact peaks, so that these are marked.
+"""Cycle for plots, with additional samples at the exact peaks of its scene, so that plots mark these.
 
-Peaks lie between samples, and of a jump a sample has one side at most. A cycle of one design holds its scene; so the
-angles of the exact peaks of all pins and of the drive are added to it, with one just before and one just behind each.
+Peaks lie between samples, and a sample at a jump has the value of one side at most. A cycle of one design holds its
+scene: so the angles of the exact peaks of all pins and of the drive are added to it, with one just before and one just
+after each.
 """
 
 from __future__ import annotations
@@ -24,11 +25,13 @@ ASIDE = 1e-7
 """Distance from a peak [degree] at which its one-sided limit agrees in all digits that a plot prints."""
 SHAKING = ("Fsx", "Fsy")
 EQUAL = 1e-9
-"""Largest difference, relative to the largest value, between a sample and the scene's own; else it was altered."""
+"""Largest difference between a sample and its scene's value, relative to the largest; an altered sample has more."""
 
 
 def with_peaks(ds: xr.Dataset) -> xr.Dataset:
-    """Return a cycle, or a part of it, with samples at its exact peaks; itself where it is altered, or of designs.
+    """Return a cycle, or a part of it, with samples at its exact peaks.
+
+    A Dataset that was altered, or has several designs, is returned as it is.
 
     Raises ValueError for a Dataset that is not over the crank angle.
     """
@@ -37,7 +40,7 @@ def with_peaks(ds: xr.Dataset) -> xr.Dataset:
         return ds
     try:
         scene = scene_of(ds)
-    except ValueError:  # it has lost its scene, or some of it
+    except ValueError:  # it holds no scene, or only a part of it
         return ds
     angles = ds[INDEX].values.astype(float)
     if len(angles) < 2 or design_labels(scene) or angles_missing(scene):
@@ -64,7 +67,7 @@ def with_peaks(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _samples(scene: Scene, own: xr.Dataset, angles: np.ndarray) -> xr.Dataset | None:
-    """Return a cycle's own variables at other angles; None where one of its samples is not the scene's, but altered."""
+    """Return a cycle's own variables at other angles; None where one of its samples was altered."""
     k = int(np.argmax((own["status"] == 0).values)) if "status" in own else 0
     names = [str(name) for name in own.data_vars]
     more = sweep(scene, np.append(own[INDEX].values[k], angles), of=names)[names]

@@ -25,7 +25,7 @@ from linksweep.scene.scene import Scene
 WIDE = np.radians(20.0)
 """Width from which on an approach is as smooth as the motion of the links and needs no samples of its own [rad]."""
 STEP = 2.0
-"""Step of the even samples that tell which designs have narrow approaches [degree]."""
+"""Step of the even samples that show which designs have narrow approaches [degree]."""
 NARROW_NEAR_TOGGLE = 0.1
 """Width of a near-toggle below which an approach beside it may hide between even samples [rad]."""
 NARROWEST = 1e-9
@@ -54,7 +54,7 @@ class Approaches(NamedTuple):
 def approaches(group: Group, angles: Array, joined: bool = True) -> Approaches:
     """Return the narrow approaches between the crank angles (design, sample) [degree] of a group's designs.
 
-    `joined` says whether the last angle of a design is followed by its first, as on a whole turn.
+    `joined` is True where the last angle of a design is followed by its first, as on a whole turn.
     """
     rows = np.repeat(np.arange(len(angles)), angles.shape[1])
     names = group.scene.approaches()

@@ -1,7 +1,7 @@
-"""Lay paths along arcs: the crank angles between toggles, where a design that moves over part of a turn can stand.
+"""Make paths along arcs: the crank angles between two toggles, over which a design moves that makes no full turn.
 
-An arc is followed by x from −π/2 to π/2 with θ2 = middle + half·sin x: towards a toggle quantities go as the square
-root of the angle that is left, and are smooth in x.
+The parameter of a path along an arc is x from −π/2 to π/2, with θ2 = middle + half·sin x. Near a toggle quantities vary
+as the square root of the angle that remains up to it; as functions of x they are smooth.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from linksweep.scene.curves.quick import STEP
 PER_ARC = 192
 """Even samples of an arc, in x."""
 NEAREST = 1e-5
-"""Distance in x from the end of an arc within which rounding outweighs what is left to gain."""
+"""Distance in x from the end of an arc within which rounding errors exceed any rise left to find."""
 NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
 """Turns away from the nearest one in which an arc may still reach into a piece."""
 LONGEST_PIECE = 180.0
@@ -51,7 +51,7 @@ def arc_ends(group: Any) -> tuple[Array, ...]:
 
 
 def arcs(group: Group) -> Paths:
-    """Return the one or two arcs on which each design can be assembled, but for arcs on which no sample is ok."""
+    """Return the one or two arcs on which each design can be assembled, without arcs on which no sample is ok."""
     return _along(group, arc_ends(group), arc_ends(group))
 
 
@@ -106,7 +106,7 @@ def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array
 
 
 def _ok_somewhere(group: Group, paths: Paths) -> Array:
-    """Return whether some sample of each path is ok; the first few samples show that for most paths."""
+    """Return whether any sample of each path is ok; every 64th sample shows that for most paths."""
     ok = np.zeros(len(paths.row), dtype=bool)
     for some in (paths.x[:, 8::64], paths.x):
         path = np.repeat(np.flatnonzero(~ok), some.shape[1])
@@ -134,7 +134,7 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, closely: bool) -
     quick = _on_arc(_quick_and_even(group), middle, half)
     close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half)
     samples = [shared, graded, sides, quick, *([close] if closely else [])]
-    # no cuts near the ends: what has a mean is smooth there, and rounding spoils samples that lie nearer
+    # no cuts near the ends: a quantity that has a mean is smooth there, and rounding spoils samples nearer to them
     shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
     cuts = [shared, graded[:, ::2], jumps, close[:, ::7], thinned(quick)]
     return in_order(np.concatenate(samples, axis=1)), in_order(np.concatenate(cuts, axis=1))
@@ -152,9 +152,9 @@ def _even() -> Array:
 
 
 def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
-    """Return x of angles on arcs; NaN for angles beyond an arc, or as good as at its end."""
+    """Return x of angles on arcs; NaN for angles beyond an arc, or within NEAREST of its end."""
     away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
-    with np.errstate(invalid="ignore", divide="ignore"):  # beyond, or an arc of one angle
+    with np.errstate(invalid="ignore", divide="ignore"):  # an angle beyond the arc, or an arc of no length
         x = np.arcsin(away / half[:, None])
     return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
 
@@ -166,9 +166,9 @@ def _filled(x: Array) -> Array:
 
 
 def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
-    """Return steps (path, end) for extrapolation to the ends, small against the way in x to the next toggle beyond.
+    """Return steps (path, end) for extrapolation to the ends, small against the distance in x to the next toggle.
 
-    The step is 0 at an end that is no toggle: a signal has a value there.
+    The step is 0 at an end that is no toggle: there a signal has a value, and needs no extrapolation.
     """
     own = np.stack([middle - half, middle + half], axis=1)
     others = np.concatenate([first, last], axis=1)

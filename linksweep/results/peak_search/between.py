@@ -116,7 +116,7 @@ def empty_over_all(scene: Any, names: tuple[str, ...]) -> Field:
 
 
 def _different(scene: Scene, names: tuple[str, ...]) -> Array:
-    """Return the numbers of designs that differ in some of these quantities, one for all that share them."""
+    """Return the numbers of designs, one for each set of designs that share the values of all these quantities."""
     inputs = scene.at_one_angle.inputs
     loops = plan(scene.table, names, inputs.forms).loops
     designs = np.arange(math.prod(inputs.sizes.values())).reshape(tuple(inputs.sizes.values()))
@@ -189,7 +189,8 @@ def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, ste
 
 
 def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
-    """Return a scene's inputs at the distinct angles of a period, the grid of all angles, and each one's place in them.
+    """Return a scene's inputs at the distinct angles of a period, the grid of all angles, and the index of each angle
+    among the distinct ones.
 
     Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle.
     """

@@ -1,8 +1,8 @@
-"""Lay paths through the crank angles of designs, for what the fused search does not cover, and for integrals.
+"""Make paths through the crank angles of designs, for searches that the fused one does not cover, and for integrals.
 
-A whole turn is followed by its angle [degree]: even samples, denser ones about near-toggles by their width, and both
-sides of every jump and kink. Windows are short paths about jumps, kinks and closest approaches. Arcs between toggles:
-`linksweep.results.peak_search.arcs`.
+The parameter of a path over a whole turn is the crank angle [degree]: even samples, denser ones about near-toggles by
+their width, and both sides of every jump and kink. Windows are short paths about jumps, kinks and closest approaches.
+Arcs between toggles: `linksweep.results.peak_search.arcs`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from linksweep.results.peak_search.approaches import (
 from linksweep.results.peak_search.between import Array, Group, by_row, crossing, in_period
 
 PER_TURN = 720
-"""Even samples of a turn: loads over the angle may be as uneven as an indicator diagram."""
+"""Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
 OFF_ROUND = 0.381966
 """First even sample, in steps (1 − 0.618…, the golden section): off round angles, where near-toggles have samples."""
 ASIDE = 1e-9
@@ -44,13 +44,14 @@ Part = tuple[float, float]
 
 
 class Paths(NamedTuple):
-    """Paths of designs, each given by its row in a group: samples to search, and cuts between which to integrate.
+    """Paths of designs, each stated by its row in a group: samples to search, and cuts between which to integrate.
 
     `x` are the samples (path, sample), `before` and `after` their neighbours, `cuts` (path, cut) the ends of smooth
     pieces. On a turn x is the angle [degree]; on an arc θ2 = middle + half·sin x, and `steps` (path, end) are those by
     which limits at its ends are extrapolated, 0 at an end that is no toggle.
 
-    `ends` tells what signals do at the ends of a path: "meet" on a turn, "stop" on an arc, "pass" through a window.
+    `ends` states how signals continue at the ends of a path: "meet" on a turn (the first follows the
+    last), "stop" on an arc, "pass" (they continue beyond) in a window.
     """
 
     row: Array

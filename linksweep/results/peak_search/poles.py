@@ -1,8 +1,9 @@
 """Find poles: crank angles inside a turn or an arc at which quantities grow without bound.
 
-Their possible angles are known in closed form: the dead centres of the drive and of the output, the angles from which
-on friction wedges, and, where the crank turns fully, its change points. A quantity has a pole at such an angle if it
-grows as a power of the distance, on one side at least: neither rounding nor a quantity that has a limit does that.
+Their possible angles are known in closed form: the dead centres of the drive and of the output, the angles at which
+friction begins to jam the machine, and, where the crank turns fully, its change points. A quantity has a pole at such
+an angle if it grows as a power of the distance, on one side at least: neither rounding nor a quantity that has a limit
+does that.
 """
 
 from __future__ import annotations
@@ -30,9 +31,9 @@ Nearer ones have the status of a toggle; two distances, as quantities may grow b
 BESIDE = np.array([1.0, 2.0, 4.0, 8.0])
 """Distances of the samples beside a possible pole, as multiples of the closest one."""
 LEAST_GROWTH = 1.5
-"""Least growth over half the way to a pole, where a quantity that goes as 1/distance**n grows 2**n times."""
+"""Least growth when the distance to a pole halves; a quantity that varies as 1/distance**n grows 2**n times."""
 EVENNESS = 1.1
-"""Factor by which the growths over two halves of the way differ at most: a power grows evenly."""
+"""Factor by which the growths over two halvings differ at most: of a power they are equal."""
 TOGGLE = 2.0
 """Status of a sample in a toggle."""
 OF_OUTPUT = ("torque_ratio", "mechanical_advantage")
@@ -66,7 +67,8 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
 def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) -> tuple[Array, Array, Array]:
     """Return the possible poles of these designs, where they can be assembled, and the signals that are inf there.
 
-    That is the row of the design in the group, the angle [degree], and a truth value (pole, signal).
+    Three arrays: of each pole the row of its design in the group and its angle [degree], and whether each signal is inf
+    there (pole, signal).
     """
     row, angle, step = pole_candidates(group, signals)
     if not len(row):
@@ -93,7 +95,7 @@ def concatenated(parts: list[Candidates]) -> Candidates:
 
 
 def _grows_as_a_power(size: Array) -> Array:
-    """Return whether sizes (…, step), the closest first, grow by the same factor over each half of the way."""
+    """Return whether sizes (…, step), the closest first, grow by the same factor each time the distance halves."""
     with np.errstate(all="ignore"):
         growth = size[..., :-1] / size[..., 1:]
     least, largest = growth.min(axis=-1), growth.max(axis=-1)

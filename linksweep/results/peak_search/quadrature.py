@@ -1,9 +1,9 @@
 """Integrate over the continuous revolution, by adaptive Gauss–Kronrod quadrature (7 and 15 points; QUADPACK's qk15).
 
 The revolution is cut at jumps and, more densely, about near-toggles; a piece is halved until its two rules agree. If
-they never do, the integrand grows so fast towards a pole that it has no integral: that is infinite. Angles at which a
-quantity is not known (jammed, off the track) are left out, of a mean also as to their time. Arcs are followed by x with
-θ2 = middle + half·sin x, as in `linksweep.results.peak_search.arcs`.
+they never do, the integrand grows so fast towards a pole that its integral is infinite. Angles at which a quantity is
+not known (jammed, off the track) are left out of integrals, and their time out of means. The variable on an arc is x,
+with θ2 = middle + half·sin x, as in `linksweep.results.peak_search.arcs`.
 
     mean of q over time = ∫ q dt / ∫ dt,        dt = dθ2/|ω2|        (a car in a loop: dθ/|v|)
 """
@@ -34,16 +34,16 @@ TOLERANCE = 1e-13
 DIVERGENCE = 1e5
 """Size of a piece, relative to the first estimate of the whole, from which on the integral diverges."""
 FIRST_DIVERGENCE = 12
-"""Halvings after which that is checked: a load may have a narrow peak that the first estimate missed."""
+"""Halvings after which divergence is checked: a load may have a narrow peak that the first estimate missed."""
 NOISE, FIRST_NOISE = 0.1, 8
-"""An integrand with more than this share of its pieces open after so many halvings is nothing but rounding, as is the
-shaking moment of a crank alone: in others only kinks, jumps and poles keep pieces open, one or two each."""
+"""An integrand with more than this share of its pieces open after so many halvings is rounding noise alone, as is the
+shaking moment of a crank alone; in others only kinks, jumps and poles keep pieces open, one or two each."""
 LAST_DIGIT = 2.0**-44
 """Spacing of floating-point numbers at an angle of 360 [degree]."""
 POLE = 1e-3
-"""Difference of the rules, relative to a piece where all digits of the angle are spent, that means a pole."""
+"""Difference of the rules, relative to a piece where all digits of the angle are spent, that shows a pole in it."""
 ROUNDING = 1e-13
-"""Difference of the rules, relative to a piece, that is not told from the rounding of its samples."""
+"""Difference of the rules, relative to a piece, up to which rounding of its samples may be the cause."""
 
 NODES = np.array([
     0.991455371120812639206854697526329, 0.949107912342758524526189684047851,

@@ -18,18 +18,19 @@ from linksweep.scene.curves.interpolation import CUBIC, RINGING, OvershootWarnin
 LARGEST = 1e290
 """Values from here on are not interpolated."""
 CLOSEST = 1e-9
-"""Degrees between two angles of an array, at least: they must still differ a period later."""
+"""Least distance between two angles of an array [degree]: they must still differ a period later."""
 TURNS = range(1, 13)
-"""After how many turns of the crank a function may come round."""
+"""Numbers of turns of the crank after which a function may repeat."""
 WITHIN = np.append(0.0, np.arange(0.37, 360.0) / 360.0)
-"""Places in a turn at which a function's turns are compared; it may jump at the first."""
+"""Places, as fractions of a turn, at which the turns of a function are compared; it may jump at the first."""
 
 
 def turns_of_function(function: Any, turn: float) -> int | None:
-    """Return after how many turns of the crank a function of theta2 comes round; None where after none of `TURNS`.
+    """Return the number of turns of the crank after which a function of theta2 repeats; None if it is not in `TURNS`.
 
-    Then it repeats; or keeps its first value, as np.interp does beyond its data; or has its first value there. A
-    function that fails, or is not finite, counts as 1: its problem is reported when it is swept.
+    A function counts as repeating, too, if from then on it keeps its first value, as np.interp does beyond its data, or
+    if it has its first value there. For a function that fails, or is not finite, the number is 1: its problem is
+    reported when it is swept.
     """
     angles = turn * (np.arange(2 * max(TURNS))[:, None] + WITHIN)
     try:
@@ -54,15 +55,15 @@ def turns_of_function(function: Any, turn: float) -> int | None:
 
 
 def turning_problems(path: str, function: Any, turn: float) -> list[str]:
-    """Return the problem of a function of theta2 that does not come round, such as one of radians."""
+    """Return the problem of a function of theta2 that does not repeat, such as one of radians."""
     if turns_of_function(function, turn):
         return []
     angles = turn * np.arange(3)
     gives = ", ".join(f"{value:.6g} at {angle:g}" for value, angle in zip(function(angles), angles, strict=True))
     return [
-        f"{path}: the function gives {gives} degrees: it must come round after some turns, at most {max(TURNS)}; "
+        f"{path}: the function gives {gives} degrees: it must repeat after some turns, at most {max(TURNS)}; "
         "theta2 is in degrees, "
-        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for what starts anew"
+        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for one that starts anew with each turn"
     ]
 
 
@@ -143,7 +144,7 @@ def _as_it_stands(path: str, value: xr.DataArray, grid: Grid) -> xr.DataArray:
 
 
 def _slope_problems(path: str, known: np.ndarray, values: np.ndarray) -> list[str]:
-    """Return why the slopes between values at angles in order would not be numbers."""
+    """Return the problem of values at angles in order between which slopes would overflow."""
     largest, closest = float(np.max(np.abs(values))), float(np.min(np.diff(known), initial=np.inf))
     if largest >= LARGEST:
         return [f"{path} holds {largest:.15g}: is interpolated, so it must be below {LARGEST:g}"]
@@ -217,7 +218,7 @@ def knots(value: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArray:
-    """Return values at the grid's angles, theta2 as their first axis, as an array with the other dims of `value`."""
+    """Return values at the grid's angles, theta2 as their first axis, as an array with the other dims of `like`."""
     others = [dim for dim in like.dims if dim != "theta2"]
     labels = {dim: like[dim].variable for dim in others if dim in like.coords}
     return xr.DataArray(values, {"theta2": grid.angles, **labels}, ("theta2", *others), attrs=like.attrs)
@@ -226,7 +227,10 @@ def over_grid(values: np.ndarray, like: xr.DataArray, grid: Grid) -> xr.DataArra
 def period_problems(
     path: str, known: np.ndarray, values: np.ndarray, period: float, interpolation: str = CUBIC
 ) -> list[str]:
-    """Return why values at angles in order cannot be joined to a periodic curve; a step may hold for any angle."""
+    """Return the problem of values at angles in order that cannot be joined to a periodic curve.
+
+    Steps need no angles all the way round: each holds up to the next.
+    """
     beginning = f"{path}: its {len(known)} angles from {known[0]:g} to {known[-1]:g} degrees"
     span, steps = known[-1] - known[0], interpolation == "step"
     least = 2 if steps else 3

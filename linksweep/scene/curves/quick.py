@@ -73,8 +73,10 @@ def joined(parts: Iterable[Quick]) -> Quick:
 
 
 def of_data(angles: Any, period: float, whole: float) -> Quick:
-    """Return the quick angles of values at known angles of a period [degree] that comes round in a whole one: angles
-    closer than two steps, and between them."""
+    """Return the quick angles of values at known angles: those closer than two steps, and others between them.
+
+    The values repeat after `period`; the angles are over the `whole` period of the scene [degree].
+    """
     known = np.unique(np.mod(np.asarray(angles, dtype=float), period))
     gaps = np.diff(known, append=known[:1] + period)
     close = gaps < 2.0 * STEP

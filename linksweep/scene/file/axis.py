@@ -15,7 +15,7 @@ from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.storable import name_problem
 
 MOST = 1_000_000
-"""Numbers of an axis that is given by its ends."""
+"""Largest count of numbers of an axis that is stated by its ends."""
 KEYS = ("dim", "dims", "values", "unit", "start", "stop", "num", "coords", "theta2", "position", "interpolation")
 PLACES = {"theta2": "angle", "position": "length"}
 """Dims along which a load may change, each short for its own `coords`, and the kinds of these."""

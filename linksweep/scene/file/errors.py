@@ -38,7 +38,7 @@ class Log:
     top : keys that belong at the top of a file
     machine : keys that belong to a mechanism, whose paths leave out "mechanism"
     folder : folder of the file, and of the files that it names
-    whole : whether functions without samples that represent them are refused; else their samples in `arrays` are taken
+    whole : True to refuse functions that no samples represent; False to take their samples from `arrays`
     """
 
     def __init__(

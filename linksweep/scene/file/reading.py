@@ -43,9 +43,9 @@ def parse_scene(
     text, name : str
         The TOML text, and the name of the file in messages.
     arrays : mapping of str to DataArray, optional
-        The arrays that ``{variable = "coupler.length"}`` in the text refers to, as `write_scene` puts it there.
+        The arrays by path, to which ``{variable = "coupler.length"}`` in a text of `write_scene` refers.
     whole : bool
-        True to refuse a function without samples that represent it; else its samples in `arrays` are taken.
+        True to refuse a function that no samples represent; False to take its samples from `arrays`.
 
     Raises
     ------
