@@ -49,7 +49,10 @@ class Reduction:
 
 
 class Writer:
-    """Writer of one kernel, level by level: level k is the body of the k-th design loop, level 0 encloses all loops."""
+    """Writer of one kernel, level by level: level k is the body of the k-th design loop, level 0 encloses all loops.
+
+    `room` is the distance between the starts of two rows of scratch.
+    """
 
     PLACED: tuple[str, ...] = ()
     """Inputs per sample that the kernel itself writes to rows of scratch."""

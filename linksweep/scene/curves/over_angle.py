@@ -63,7 +63,7 @@ def turning_problems(path: str, function: Any, turn: float) -> list[str]:
     return [
         f"{path}: the function gives {gives} degrees: it must repeat after some turns, at most {max(TURNS)}; "
         "theta2 is in degrees, "
-        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) for one that starts anew with each turn"
+        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) to start anew"
     ]
 
 
