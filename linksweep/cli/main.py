@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
@@ -105,11 +105,11 @@ def _parser() -> argparse.ArgumentParser:
     _add_angles(cycle, "number of angles (720)", default=720)
     cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
     add_plot(cycle)
-    cycle.add_argument("--of", "--outputs", type=_names, help="names of quantities, separated by commas")
+    _add_of(cycle, "--outputs")
 
     worst = add("peaks", _peaks, "the worst of each pin force and of the torque")
-    _add_angles(worst, "the largest of so many samples, not the exact peaks")
-    worst.add_argument("--of", type=_names, help="names of the quantities, separated by commas")
+    _add_angles(worst, "number of angles: the largest of these samples, not the exact peaks")
+    _add_of(worst)
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
 
     listed = add("quantities", _quantities, "all quantities of sweep and peaks: names, units, meanings")
@@ -117,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
 
     many = add("study", _study, "peaks of many designs to NetCDF; goes on where it was stopped")
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
-    many.add_argument("--of", type=_names, nargs="+", help="names of quantities")
+    _add_of(many)
     chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
 
@@ -125,7 +125,7 @@ def _parser() -> argparse.ArgumentParser:
 
     page = add("report", _report, "a page to print: inputs, checks, peaks, drive, figures")
     page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
-    page.add_argument("--title", help="its heading (name of the scene file)")
+    page.add_argument("--title", help="heading of the page (name of the scene file)")
     add_part(page, "crank angles of a machine that moves over part of a turn")
     add_commands(commands)
     return parser
@@ -133,6 +133,18 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_angles(parser: argparse.ArgumentParser, text: str, default: int | None = None) -> None:
     parser.add_argument("--theta2", "--theta", dest="angles", type=int, default=default, metavar="N", help=text)
+
+
+class _Names(argparse.Action):
+    """An option that takes names separated by spaces or commas."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option: str | None = None) -> None:
+        setattr(namespace, self.dest, [name for names in values for name in names])
+
+
+def _add_of(parser: argparse.ArgumentParser, *others: str) -> None:
+    text = "names of quantities, as in --of F32 T12, after the scene; see linksweep quantities"
+    parser.add_argument("--of", *others, type=_names, nargs="+", action=_Names, metavar="NAME", help=text)
 
 
 def _demo(options: argparse.Namespace) -> None:
@@ -178,8 +190,7 @@ def _quantities(options: argparse.Namespace) -> None:
 def _study(options: argparse.Namespace) -> None:
     scene = load_scene(options.scene)
     there = options.output.exists()
-    of = None if options.of is None else [name for names in options.of for name in names]
-    with study(scene, options.output, of=of, chunk=options.chunk) as ds:
+    with study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
         print(study_report(ds, scene.mechanism))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
@@ -208,7 +219,7 @@ def _stem(text: str) -> Path:
 def _names(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
     if not names:
-        raise argparse.ArgumentTypeError("must be names, separated by commas")
+        raise argparse.ArgumentTypeError("must be names of quantities, such as F32 T12")
     return names
 
 

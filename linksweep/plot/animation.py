@@ -98,7 +98,10 @@ def animate(
         with small_type():
             return film_of_cylinders(scene.in_memory, frames)
     one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
-    angles: Any = SAMPLES if isinstance(scene, Scene) else scene[one.mechanism.index].values
+    index = one.mechanism.index
+    sound = isinstance(scene, Scene) or index in scene.dims
+    refuse([] if sound else [f"scene has no dimension {index}: take what ls.sweep returns"])
+    angles: Any = SAMPLES if isinstance(scene, Scene) else scene[index].values
     with small_type():
         if one.mechanism.track:
             return _of_track(one, one.mechanism.track, angles, frames)

@@ -14,6 +14,7 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, ORANGE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, panels
+from linksweep.results.compute import require_dataset
 from linksweep.results.sweep import sweep
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ls.plot.flywheel(ls.flywheel(ls.example("press"), fluctuation=0.05)).get_ylabel()
     'crank speed $\\\\omega_2$ [rad/s]'
     """
+    require_dataset(ds, "ls.flywheel")
     refuse([] if "speed" in ds else ["ds has no speed: take what ls.flywheel returns"])
     signals.require_angles(ds)
     angles, speed = signals.revolution(ds, ds["speed"])
@@ -158,6 +160,7 @@ def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
     >>> ls.plot.motor_load(load, servo).get_xlabel()
     'motor speed [rad/s]'
     """
+    require_dataset(ds, "ls.motor_load")
     refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])
     signals.require_angles(ds)
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])

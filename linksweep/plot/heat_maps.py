@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.design.pareto import has_peaks, require_study, variable_problems
+from linksweep.analysis.design.pareto import has_peaks, variable_problems
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.plot.kit import scales, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok
 from linksweep.plot.kit.style import axes_or_new, legend_above
+from linksweep.results.compute import require_dataset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,7 +113,7 @@ def heat_map(
 
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
     """Return the axes x and y."""
-    require_study(ds)
+    require_dataset(ds, "ls.peaks of several designs")
     refuse(variable_problems(ds, "of", name, numbers="fiub"))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])

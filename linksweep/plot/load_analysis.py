@@ -15,7 +15,7 @@ from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
-from linksweep.results.compute import require
+from linksweep.results.compute import require, require_dataset
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
 
@@ -56,6 +56,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     >>> ls.plot.breakdown(ls.breakdown(ls.example("press"), "F32")).get_ylabel()
     'share in $F_{32}$ [N]'
     """
+    require_dataset(ds, "ls.breakdown")
     known = [str(key) for key, item in ds.data_vars.items() if "source" in item.dims]
     refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
     of = known[0] if of is None else of

@@ -14,6 +14,7 @@ from linksweep.plot.kit.colors import BLUE, GREEN, ORANGE, PURPLE, VERMILION
 from linksweep.plot.kit.locus import SIZE, draw_locus
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
+from linksweep.results.compute import require_dataset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,8 +91,10 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     >>> ls.plot.orders(shaking).get_ylabel()
     'amplitude [N]'
     """
+    require_dataset(ds, "ls.orders")
     known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
     names = known if of is None else [of] if isinstance(of, str) else list(of)
+    refuse([] if known else ["ds has no amplitudes: take what ls.orders returns"])
     refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*names} - {*known}])
     chosen = [ds[name + ENDING] for name in names]
     units = {amplitude.attrs["units"] for amplitude in chosen}

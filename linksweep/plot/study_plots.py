@@ -13,13 +13,13 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import front as front_of
-from linksweep.analysis.design.pareto import require_study, variable_problems
+from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import count_problems, refuse
 from linksweep.plot.kit import scales
 from linksweep.plot.kit.colors import BLACK, BLUE, VERMILION
 from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, whole
 from linksweep.plot.kit.style import axes_or_new, grid, legend_above
-from linksweep.results.compute import requested
+from linksweep.results.compute import requested, require_dataset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ def scatter(
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('$F_{32}$ peak [N]', '$T_{12}$ peak [N m]')
     """
-    require_study(ds)
+    require_dataset(ds, "ls.peaks of several designs")
     better = requested("maximize", maximize)
     names = {"x": x, "y": y} | ({} if color is None else {"color": color})
     problems = [problem for path, name in names.items() for problem in variable_problems(ds, path, name)]
@@ -185,7 +185,7 @@ def parallel_coordinates(
     >>> [tick.get_text() for tick in ax.get_xticklabels()][-1]
     '$T_{12}$ peak\\n[N m]'
     """
-    require_study(ds)
+    require_dataset(ds, "ls.peaks of several designs")
     of_axes = _axis_names(ds) if of is None else requested("of", of)
     refuse(_problems(ds, of_axes, color, best))
     designs = designs_of(ds, of_axes if color is None else [*of_axes, color])

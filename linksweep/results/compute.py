@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.engine.run import Field, Grid, evaluate
@@ -33,7 +34,7 @@ def requested(path: str, names: Any) -> list[str]:
 def either(**values: Any) -> tuple[str, Any]:
     """Return name and value of the one parameter, of several for one thing, that is not None; refuse two of them."""
     named = {name: value for name, value in values.items() if value is not None}
-    refuse([f"{' and '.join(named)}: are for one thing; give one of them"] if len(named) > 1 else [])
+    refuse([f"{' and '.join(named)} are one parameter under two names: give one of them"] if len(named) > 1 else [])
     return next(iter((named or values).items()))
 
 
@@ -61,6 +62,11 @@ def require_scene(scene: Any) -> None:
     kind = type(scene).__name__
     problem = SEVERAL if kind == "MultiCylinder" else f"scene is a {kind}: must be a Scene; make one with ls.Scene(...)"
     refuse([] if isinstance(scene, Scene) else [problem])
+
+
+def require_dataset(ds: Any, source: str) -> None:
+    """Raise ValueError for anything but a Dataset, naming the function that returns one."""
+    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from {source}"])
 
 
 def require(scene: Any, *capabilities: str) -> None:

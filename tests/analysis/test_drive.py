@@ -250,8 +250,8 @@ def test_designs_fluctuations_and_broken_cycles():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({}, "give one of fluctuation"),
-        ({"fluctuation": 0.1, "inertia": 1.0}, "give one of fluctuation"),
+        ({}, "give either fluctuation"),
+        ({"fluctuation": 0.1, "inertia": 1.0}, "give either fluctuation"),
         ({"fluctuation": 0.0}, "fluctuation = 0: must be greater than 0"),
         ({"fluctuation": 2.0}, "fluctuation = 2.0: must be less than 2"),
         ({"inertia": -1.0}, r"inertia = -1 kg m\^2: must be at least 0"),

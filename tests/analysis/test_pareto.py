@@ -157,7 +157,7 @@ def test_refused_objectives(words, message):
 def test_a_dataset_that_is_not_a_study_is_refused():
     with pytest.raises(ValueError, match="ds holds one design: there is nothing to choose from"):
         ls.pareto(ls.peaks(PRESS, of=["F32"], theta2=8), minimize=["F32_peak"])
-    with pytest.raises(ValueError, match="ds = 3: must be a Dataset over designs"):
+    with pytest.raises(ValueError, match=r"ds = 3: must be a Dataset, as from ls.peaks of several designs"):
         ls.pareto(3, minimize=["F32_peak"])
     cycle = ls.sweep(ls.sample(PRESS, {"omega2": (20, 30)}, n=4), theta2=8, of=["F32"])
     with pytest.raises(ValueError, match=r"minimize: F32 depends on theta2, and must not; ls\.peaks"):

@@ -307,12 +307,26 @@ def test_missing_quantities_are_named(cycles):
     for draw, word in ((plot.forces, "F12"), (plot.torque, "T12"), (plot.bearing, "F32x"), (plot.cycle, "F12")):
         with pytest.raises(ValueError, match=f"sweep with of=.*{word}"):
             draw(kinematics)
-    with pytest.raises(ValueError, match="pin = 'F33': must be one of F12"):
+    with pytest.raises(ValueError, match="of = 'F33': must be one of F12"):
         plot.bearing(ds, "F33")
     with pytest.raises(ValueError, match=r"frame = 'lnk'.*did you mean"):
         plot.bearing(ds, frame="lnk")
     with pytest.raises(ValueError, match="no dimension theta2"):
         plot.forces(ds.isel(theta2=0))
+
+
+@pytest.mark.parametrize("wrong", [ls.example("press"), "cycle.nc", None])
+@pytest.mark.parametrize("name", sorted(set(plot.__all__) - {"animate", "balance", "mechanism", "over_speed"}))
+def test_anything_but_a_dataset_is_refused(name, wrong):
+    arguments = {"heat_map": ("F32_peak",), "motor_load": (ls.Motor(speeds=(0.0, 600.0), torques=(4.0, 1.0)),)}
+    words = {"scatter": {"x": "F32_peak", "y": "T12_peak"}}
+    with pytest.raises(ValueError, match=r"^ds = .*: must be a Dataset, as from ls\."):
+        getattr(plot, name)(wrong, *arguments.get(name, ()), **words.get(name, {}))
+
+
+def test_a_film_of_peaks_is_refused():
+    with pytest.raises(ValueError, match=r"scene has no dimension theta2: take what ls.sweep returns"):
+        plot.animate(ls.peaks(ls.example("press"), theta2=36))
 
 
 def test_import_does_not_import_matplotlib():

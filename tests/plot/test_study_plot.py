@@ -312,7 +312,7 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
 @pytest.mark.parametrize(
     ("draw", "message"),
     [
-        (lambda: ls.plot.heat_map(3, "F32_peak"), "ds = 3: must be a Dataset over designs, as from ls.peaks"),
+        (lambda: ls.plot.heat_map(3, "F32_peak"), "ds = 3: must be a Dataset, as from ls.peaks of several designs"),
         (lambda: ls.plot.heat_map(GRID, "F32_peek"), "of: nothing is named 'F32_peek'; did you mean \"F32_peak\"?"),
         (
             lambda: ls.plot.heat_map(GRID, "F32_peak", x="crank.lenght"),

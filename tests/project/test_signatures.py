@@ -132,8 +132,11 @@ def test_decorated_functions_show_their_own_signature():
         (lambda: ls.peaks(CAR, theta2=8), "theta2 = 8: the results of a LoopTrack are over theta: write theta="),
         (lambda: ls.system(CAR, theta2=8.0), "theta2 = 8.0: the results of a LoopTrack are over theta: write theta="),
         (lambda: ls.sweep(PRESS, theta=8), "theta = 8: the results of a FourBar are over theta2: write theta2="),
-        (lambda: ls.sweep(PRESS, 8, theta2=8), "angles and theta2: are for one thing; give one of them"),
-        (lambda: ls.sweep(PRESS, of="T12", outputs="T12"), "of and outputs: are for one thing; give one of them"),
+        (lambda: ls.sweep(PRESS, 8, theta2=8), "angles and theta2 are one parameter under two names: give one of them"),
+        (
+            lambda: ls.sweep(PRESS, of="T12", outputs="T12"),
+            "of and outputs are one parameter under two names: give one of them",
+        ),
         (lambda: ls.sweep(CAR, theta=0), "theta = 0: a count of angles must be at least 1"),
         (lambda: ls.system(PRESS), "theta2 is missing: give an angle or angles, in degrees"),
     ],

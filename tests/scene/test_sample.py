@@ -373,8 +373,8 @@ def test_a_design_chosen_by_xarray():
 @pytest.mark.parametrize(
     ("where", "message"),
     [
-        ({"desing": 1}, 'desing: no dimension of the designs is named so; did you mean "design"?'),
-        ({"theta2": 90.0}, "theta2: no dimension of the designs is named so; there are design"),
+        ({"desing": 1}, "desing = 1: no dim of the designs is 'desing'; did you mean \"design\"?"),
+        ({"theta2": 90.0}, "theta2 = 90.0: no dim of the designs is 'theta2'; its dims are design"),
         ({"design": 8}, "design = 8: must be one of its 8 labels, of which the nearest is 7"),
         ({"design": 3.5}, "design = 3.5: must be one of its 8 labels"),
         ({"design": [1, 2]}, "design = [1, 2]: must be one label"),

@@ -16,7 +16,7 @@ import xarray as xr
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
-from linksweep.results.compute import requested
+from linksweep.results.compute import requested, require_dataset
 from linksweep.results.dataset import with_units
 from linksweep.scene.grid import whole_turns
 
@@ -61,7 +61,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     >>> parts.Fsy_amplitude.sel(order=[1, 2]).round(-1).values.tolist()
     [4460.0, 820.0]
     """
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
+    require_dataset(ds, "ls.sweep")
     names = requested("of", of)
     index = next((dim for dim in indices() if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])

@@ -8,7 +8,8 @@ import xarray as xr
 
 from linksweep.base.checked_number import checked_pair
 from linksweep.base.fields import PairField
-from linksweep.base.validate import Rule, quote, refuse
+from linksweep.base.validate import Rule, refuse
+from linksweep.results.compute import require_dataset
 
 POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m from A")
 
@@ -41,7 +42,7 @@ def shaking_moment(ds: xr.Dataset, *, about: tuple[Any, Any] = (0.0, 0.0)) -> xr
     >>> about_d.units, bool((about_d == shaking.Ms - 0.20 * shaking.Fsy).all())
     ('N m', True)
     """
-    refuse([] if isinstance(ds, xr.Dataset) else [f"ds = {quote(ds)}: must be a Dataset, as from ls.sweep"])
+    require_dataset(ds, "ls.sweep")
     missing = [name for name in ("Fsx", "Fsy", "Ms") if name not in ds]
     advice = 'sweep with of=["Fsx", "Fsy", "Ms"]'
     refuse([f"ds has no {name}: {advice}" for name in missing])

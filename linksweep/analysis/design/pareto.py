@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems, quote, refuse
+from linksweep.base.validate import name_problems, refuse
 from linksweep.mechanisms import indices
-from linksweep.results.compute import requested
+from linksweep.results.compute import requested, require_dataset
 
 FRONT = "front"
 """Dimension of a front whose designs lie along several dims."""
@@ -116,18 +116,12 @@ def _of_more(costs: np.ndarray) -> np.ndarray:
 
 def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
     """Return the objectives, all to be small."""
-    require_study(ds)
+    require_dataset(ds, "ls.peaks of several designs")
     objectives = [("minimize", name) for name in requested("minimize", minimize)]
     objectives += [("maximize", name) for name in requested("maximize", maximize)]
     refuse([] if objectives else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
     refuse([problem for path, name in objectives for problem in variable_problems(ds, path, name, numbers="fiu")])
     return [-ds[name] if path == "maximize" else ds[name] for path, name in objectives]
-
-
-def require_study(ds: Any) -> None:
-    """Raise ValueError for anything but a Dataset."""
-    dataset = isinstance(ds, xr.Dataset)
-    refuse([] if dataset else [f"ds = {quote(ds)}: must be a Dataset over designs, as from ls.peaks"])
 
 
 def variable_problems(ds: xr.Dataset, path: str, name: Any, numbers: str = "") -> list[str]:

@@ -126,7 +126,7 @@ def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int, threads: int |
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
     problems = steady_problems(scene)
     if (fluctuation is None) == (inertia is None):
-        problems.append("give one of fluctuation, as in fluctuation=0.02, and inertia [kg m^2]")
+        problems.append("give either fluctuation, as in fluctuation=0.02, or inertia [kg m^2]")
     return problems
 
 

@@ -20,7 +20,7 @@ from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import Number, choice_problems, count_problems, name_problems, quote, refuse
 from linksweep.physics import bearing as plain
-from linksweep.results.compute import angles_missing, require
+from linksweep.results.compute import angles_missing, require, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.peak_search.paths import Part
@@ -304,8 +304,9 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     >>> spectrum.share.sel(pin="C").sum().round(12).item()
     1.0
     """
-    sound = isinstance(ds, xr.Dataset) and {"F", "rotation_share", "life_status"} <= {*ds}
-    refuse([] if sound else ["ds: must be what ls.bearings returns, with F, rotation_share and life_status"])
+    require_dataset(ds, "ls.bearings")
+    missing = {"F", "rotation_share", "life_status"} - {*ds}
+    refuse([f"ds has no {name}: give what ls.bearings returns" for name in sorted(missing)])
     refuse(count_problems("classes", classes))
     require_memory(f"classes = {quote(classes)}", 8.0 * classes * ds.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(

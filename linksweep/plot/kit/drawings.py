@@ -12,6 +12,7 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.drawing import Drawing
+from linksweep.results.compute import require_dataset
 
 LOST = Drawing(joints={"A": (1, 2), "B": (3, 2), "C": (4, 3), "ground": (1, 4)})
 """Drawing for a Dataset that has lost its scene, which alone states how link 4 is held."""
@@ -55,6 +56,7 @@ def efforts(ds: xr.Dataset) -> list[str]:
 
 def _scene_parameters(ds: xr.Dataset) -> dict[str, Any]:
     """Return the parameters in a Dataset's scene text, which suffice for names even where arrays were dropped."""
+    require_dataset(ds, "ls.sweep")
     text = ds.attrs.get("scene")
     return _parsed(text) if isinstance(text, str) else {}
 

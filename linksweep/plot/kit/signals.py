@@ -67,7 +67,7 @@ def has_pin(ds: xr.Dataset, pin: str) -> bool:
 def _known_force(ds: xr.Dataset, pin: str) -> None:
     known = drawing_of_results(ds).joint_of
     if pin not in known:
-        raise ValueError(f"pin = {pin!r}: must be one of {', '.join(known)}")
+        raise ValueError(f"of = {pin!r}: must be one of {', '.join(known)}")
 
 
 def drive_name(ds: xr.Dataset) -> str:

@@ -40,8 +40,9 @@ def places(where: Mapping[str, Any], labels: Mapping[str, np.ndarray]) -> dict[s
         try:
             at[dim] = _place(label, labels[dim])
         except KeyError:
-            there = f"; there are {', '.join(labels)}" if labels else ""
-            problems.append(f"{dim}: no dimension of the designs is named so{did_you_mean(dim, labels) or there}")
+            there = f"; its dims are {', '.join(labels)}" if labels else "; it is one design, without dims"
+            unknown = f"{dim} = {quote(label)}: no dim of the designs is {dim!r}"
+            problems.append(unknown + (did_you_mean(dim, labels) or there))
         except ValueError as error:
             problems.append(f"{dim} = {error}")
     refuse(problems)
