@@ -85,7 +85,8 @@ def heat_map(
     >>> import linksweep as ls, numpy as np, xarray as xr
     >>> crank = ls.Link(xr.DataArray(np.linspace(0.1, 0.2, 8), dims="crank"), 1.0, 0.01)
     >>> coupler = ls.Link(xr.DataArray(np.linspace(0.4, 0.5, 8), dims="coupler"), 1.0, 0.01)
-    >>> study = ls.peaks(ls.Scene(ls.FourBar(crank, coupler, ls.Link(0.4, 1.0, 0.01), 0.4), 30.0), of=["F32"])
+    >>> machines = ls.FourBar(crank, coupler, ls.Link(0.4, 1.0, 0.01), 0.4)
+    >>> study = ls.peaks(ls.Scene(machines, omega2=30.0), of=["F32"], theta2=360)
     >>> ax = ls.plot.heat_map(study, "F32_peak")
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('coupler length [m]', 'crank length [m]')

@@ -75,7 +75,7 @@ def scatter(
     --------
     >>> import linksweep as ls
     >>> made = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}, n=64)
-    >>> ax = ls.plot.scatter(ls.peaks(made, of=["F32", "T12"]), x="F32_peak", y="T12_peak")
+    >>> ax = ls.plot.scatter(ls.peaks(made, of=["F32", "T12"], theta2=360), x="F32_peak", y="T12_peak")
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('$F_{32}$ peak [N]', '$T_{12}$ peak [N m]')
     """
@@ -181,7 +181,7 @@ def parallel_coordinates(
     --------
     >>> import linksweep as ls
     >>> made = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}, n=64)
-    >>> ax = ls.plot.parallel_coordinates(ls.peaks(made, of=["F32", "T12"]))
+    >>> ax = ls.plot.parallel_coordinates(ls.peaks(made, of=["F32", "T12"], theta2=360))
     >>> [tick.get_text() for tick in ax.get_xticklabels()][-1]
     '$T_{12}$ peak\\n[N m]'
     """

@@ -117,6 +117,7 @@ def dies_at(step: int, path: Path) -> bool:
         os._exit(0)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_a_study_killed_at_every_step_on_files_gives_the_identical_file(tmp_path):
     ls.study(many(), tmp_path / "whole.nc", of=["F32"], chunk=20)

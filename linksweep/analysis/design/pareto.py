@@ -53,7 +53,8 @@ def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[s
     Examples
     --------
     >>> import linksweep as ls
-    >>> study = ls.peaks(ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "omega2": (20, 30)}, n=64))
+    >>> designs = ls.sample(ls.example("press"), {"coupler.length": (0.2, 0.24), "omega2": (20, 30)}, n=64)
+    >>> study = ls.peaks(designs, theta2=360)
     >>> front = ls.pareto(study, minimize=["F32_peak"], maximize=["omega2"])
     >>> bool((front.omega2.diff("design") > 0).all())  # in order of F32_peak: a larger force buys more speed
     True
