@@ -211,7 +211,7 @@ def test_load_diagrams_show_the_forces_of_bearings(frame):
         (lambda: ls.bearings(PRESS, 3.0), "pins = 3.0: must be as"),
         (lambda: ls.Bearing(diameter=-0.02), "diameter = -0.02 m: must be greater than 0"),
         (lambda: ls.Bearing(kind="needle"), "kind = 'needle': must be one of ball, roller"),
-        (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "ds has no F: give what ls.bearings returns"),
+        (lambda: ls.load_spectrum(ls.sweep(PRESS, theta2=4)), "ds has no F, rotation_share, life_status: give what"),
     ],
 )
 def test_refusals(call, message):

@@ -305,8 +305,8 @@ def load_spectrum(ds: xr.Dataset, *, classes: int = 10) -> xr.Dataset:
     1.0
     """
     require_dataset(ds, "ls.bearings")
-    missing = {"F", "rotation_share", "life_status"} - {*ds}
-    refuse([f"ds has no {name}: give what ls.bearings returns" for name in sorted(missing)])
+    missing = [name for name in ("F", "rotation_share", "life_status") if name not in ds]
+    refuse([f"ds has no {', '.join(missing)}: give what ls.bearings returns"] if missing else [])
     refuse(count_problems("classes", classes))
     require_memory(f"classes = {quote(classes)}", 8.0 * classes * ds.sizes.get("pin", 1))
     share, largest = xr.apply_ufunc(
