@@ -15,7 +15,8 @@ from linksweep.analysis.design.pareto import pareto
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.drive.motor import Motor, motor_load
-from linksweep.analysis.pins.bearings import Bearing, bearings, load_spectrum
+from linksweep.analysis.pins.bearing import Bearing
+from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation

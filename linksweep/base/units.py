@@ -294,17 +294,14 @@ def _factor(spelling: str, kind: str) -> Fraction:
 @cache
 def _all_factors() -> dict[str, Fraction]:
     """Return all factors by unit, as pint defines them; they are cached for later processes."""
-    name = f"units_{_digest(repr((version('pint'), _NOT_IN_PINT, KINDS)))}"
+    digest = hashlib.sha256(repr((version("pint"), _NOT_IN_PINT, KINDS)).encode()).hexdigest()
+    name = f"units_{digest[:24]}"
     if kept := recall(name):
         return {unit: Fraction(factor) for unit, factor in json.loads(kept).items()}
     pairs = [(spelling, kind.unit) for kind in KINDS.values() for spelling in kind.spellings]
     factors = {f"{spelling} in {si}": _converted(spelling, si) for spelling, si in pairs}
     keep(name, json.dumps({unit: str(factor) for unit, factor in factors.items()}, indent=1).encode())
     return factors
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
 def _converted(spelling: str, si: str) -> Fraction:

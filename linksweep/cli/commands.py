@@ -18,7 +18,8 @@ from linksweep.analysis.balance.counterweights import counterweights, with_count
 from linksweep.analysis.balance.orders import orders
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
-from linksweep.analysis.pins.bearings import EXPONENTS, FRAMES, Bearing, bearings
+from linksweep.analysis.pins.bearing import EXPONENTS, Bearing
+from linksweep.analysis.pins.bearings import FRAMES, bearings
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.base.units import quantity
 from linksweep.base.validate import refuse

@@ -79,16 +79,12 @@ def by_blocks(*, of_samples: bool) -> Callable[[Function[P]], Function[P]]:
             scene = arguments[0] if arguments else options.get("scene")
             if not isinstance(scene, Scene) or not lazy_paths(scene):
                 return function(*arguments, **options)
-            others = {name: _reusable(value) for name, value in options.items() if name != "scene"}
+            others = {n: list(v) if isinstance(v, Iterator) else v for n, v in options.items() if n != "scene"}
             return _lazily(computed, scene, arguments[1:], others, of_samples)
 
         return computed
 
     return decorate
-
-
-def _reusable(value: Any) -> Any:
-    return list(value) if isinstance(value, Iterator) else value
 
 
 def _lazily(

@@ -54,11 +54,11 @@ class Rotation(NamedTuple):
     damage: Mapping[str, xr.DataArray]
 
     def life(self, pin: str, capacity: Any, exponent: float) -> dict[str, xr.DataArray]:
-        """Return rotation, equivalent load, life and its status of the bearing in a pin."""
+        """Return rotation, equivalent load, life (NaN without a capacity) and its status of the bearing in a pin."""
         rotation = self.rotation[pin].where(self.solved > 0.0)
         mean = (self.damage[pin] / rotation.where(rotation > 0.0)).where(rotation > 0.0)
         equivalent = mean ** (1.0 / exponent)
-        life = (capacity / equivalent) ** exponent
+        life = ((np.nan if capacity is None else capacity) / equivalent) ** exponent
         hours = life * MILLION / (rotation / 360.0) * self.time / 3600.0
         status = self._status(pin)
         return {"rotation": rotation, "equivalent_load": equivalent, "L10": life, "L10h": hours, "life_status": status}

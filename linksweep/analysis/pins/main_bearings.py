@@ -10,8 +10,8 @@ from collections.abc import Mapping
 
 import xarray as xr
 
+from linksweep.analysis.pins.bearing import TEXTS, Bearing, bearing_problems, journal_results, side_by_side
 from linksweep.analysis.pins.bearing_life import rotation_under_load
-from linksweep.analysis.pins.bearings import TEXTS, Bearing, bearing_problems, of_life, on_journal, side_by_side
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, refuse
 from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
@@ -48,8 +48,8 @@ def main_bearings(
     parts = [
         {"F": cycle[force], "F_peak": highest[f"{force}_peak"], "F_peak_at": highest[f"{force}_peak_at"]}
         | _in_frames(cycle, force)
-        | on_journal(cycle, force, speed, xr.ones_like(cycle["theta2"]), fitted[name])
-        | of_life(rotation, name, fitted[name])
+        | journal_results(cycle, force, speed, xr.ones_like(cycle["theta2"]), fitted[name])
+        | rotation.life(name, fitted[name].capacity, fitted[name].exponent)
         for name, force in mains.items()
     ]
     results = side_by_side(parts, "main", mains, MAIN_TEXTS)

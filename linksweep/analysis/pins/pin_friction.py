@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.bearings import Bearing, checked_pins
+from linksweep.analysis.pins.bearing import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.physics.bearing import friction_circle
 from linksweep.results.dataset import flags, joined, with_units

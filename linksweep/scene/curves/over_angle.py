@@ -62,8 +62,7 @@ def turning_problems(path: str, function: Any, turn: float) -> list[str]:
     gives = ", ".join(f"{value:.6g} at {angle:g}" for value, angle in zip(function(angles), angles, strict=True))
     return [
         f"{path}: the function gives {gives} degrees: it must repeat after some turns, at most {max(TURNS)}; "
-        "theta2 is in degrees, "
-        f"so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) to start anew"
+        f"theta2 is in degrees, so write np.sin(np.radians(theta2)), or np.mod(theta2, {turn:g}) to start anew"
     ]
 
 

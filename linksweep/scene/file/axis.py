@@ -70,14 +70,10 @@ def _dims(table: dict[str, Any], problems: list[str]) -> list[str]:
     dims = table.get("dims", [table.get("dim")])
     if key not in table:
         problems.append('dim: missing; write dim = "name of the design axis"')
-    elif not isinstance(dims, list) or len({*filter(_is_name, dims)}) < len(dims):
+    elif not isinstance(dims, list) or len({dim for dim in dims if not name_problem(dim)}) < len(dims):
         must = "a list of different names" if key == "dims" else "a name"
         problems.append(f"{key} = {as_toml(table[key])}: must be {must}")
     return dims
-
-
-def _is_name(dim: Any) -> bool:
-    return not name_problem(dim)
 
 
 def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
