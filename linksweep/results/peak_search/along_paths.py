@@ -1,7 +1,7 @@
 """Search for peaks along paths, with the functions of the fused search: `linksweep.engine.peaks.search`.
 
-Signals are evaluated at the samples of each path; lanes about their summits are refined until they promise nothing
-above the peak that stands. Ends of arcs are reached by extrapolation, poles by their place.
+Signals are evaluated at the samples of each path; lanes about their summits are refined until none can exceed the
+current peak. Limits at the ends of arcs are extrapolated; poles are known by their angles.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from linksweep.results.peak_search.poles import poles
 NODES = 8
 """Samples near the end of an arc from which a signal is extrapolated to the end."""
 PROBE, LEAST_PROBE = 0.025, 1e-5
-"""Distance from the end, as part of a step and at least, of the sample that tells whether a signal is unbounded."""
+"""Distance from the end, as part of a step and at least, of the sample that shows whether a signal is unbounded."""
 NEAR_PERIOD = 1e-6
 """Distance from the end of a period within which a peak counts as at its start [degree]: less than its accuracy."""
 
@@ -31,7 +31,7 @@ PathsOf = Callable[[Any], Paths]
 
 
 class SignalPeak(NamedTuple):
-    """A signal's largest value, its angle [degree], a bound on how much higher it may be, and the samples it took."""
+    """A signal's largest value, its angle [degree], a bound on how much higher it may be, and the count of samples."""
 
     value: Field
     angle: Field
@@ -40,7 +40,7 @@ class SignalPeak(NamedTuple):
 
 
 Best = tuple[Array, Array, Array, Array]
-"""The best of each signal on each path: arrays (path, signal) of the numbers that `SignalPeak` has."""
+"""The highest value of each signal on each path: arrays (path, signal) of the four numbers of a `SignalPeak`."""
 
 
 def nothing(field: Field) -> SignalPeak:
@@ -67,8 +67,8 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
             continue
         places = group.some(paths.row).places
         at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
-        standing = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
-        best = _search(group, tuple(peaks), paths, np.stack(standing, axis=1), threads)
+        current = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
+        best = _search(group, tuple(peaks), paths, np.stack(current, axis=1), threads)
         best = best if paths.steps is None else _with_limits(group, tuple(peaks), paths, best, threads)
         for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
             _raise(peak, index, *(numbers[:, k] for numbers in best))
@@ -88,17 +88,17 @@ def raise_to_poles(group: Any, peaks: dict[str, SignalPeak], threads: int | None
 
 
 def _flat_index(field: Field, places: Places, count: int) -> Array:
-    """Return the row-major index into a field's values of each of so many places."""
+    """Return the row-major index into a field's values of each of `count` places."""
     if not field.dims:
         return np.zeros(count, dtype=int)
     return np.ravel_multi_index(tuple(places[dim] for dim in field.dims), field.values.shape)
 
 
 def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bound: Array, taken: Array) -> None:
-    """Replace a signal's peak at each index by the highest best of that index, where it is higher."""
+    """Replace a signal's peak at each index by the highest of the paths with that index, where that is higher."""
     value, angle, bound, samples = (field.values.reshape(-1) for field in peak)
     height = np.nan_to_num(best, nan=-np.inf)
-    order = np.lexsort((-np.arange(len(at)), height, at))  # by index, then height; of equals the first path comes last
+    order = np.lexsort((-np.arange(len(at)), height, at))  # by index, then height; of equals the first path is last
     last = order[np.append(at[order][1:] != at[order][:-1], True)]  # the highest of each index
     place = at[last]
     with np.errstate(invalid="ignore"):
@@ -115,8 +115,8 @@ def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bou
 # ------------------------------------------------------------------------------------- lanes about summits
 
 
-def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Array, threads: int | None) -> Best:
-    """Return the best of each signal on each path; lanes that cannot exceed `standing` (path, signal) are dropped."""
+def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+    """Return the highest of each signal on each path; lanes that cannot exceed `current` (path, signal) are dropped."""
     count_of_paths, per_path = paths.x.shape
     every = np.repeat(np.arange(count_of_paths), per_path)
     values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
@@ -128,7 +128,7 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
     with np.errstate(all="ignore"):
         where = paths.x, paths.before, paths.after, paths.ends == "meet"
         count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
-        best[search.PEAK] = np.fmax(best[search.PEAK], standing.ravel())
+        best[search.PEAK] = np.fmax(best[search.PEAK], current.ravel())
         kept = np.flatnonzero(_promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
         count = len(kept)
         lanes[:, :count] = lanes[:, kept]
@@ -149,9 +149,9 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, standing: Arra
 
 
 def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
-    """Return which lanes promise more than the peak that stands.
+    """Return whether each lane can exceed the current peak of its signal.
 
-    At the ends of a window, beyond which the signals go on unseen, no lane does: it may be a slope, not a summit.
+    No lane at an end of a window counts, as the signals continue beyond: it may lie on a slope, not about a summit.
     """
     tag, x = lanes[search.TAG].astype(int), lanes[search.XB]
     ratio = (lanes[search.XC] - x) / (x - lanes[search.XA])
@@ -165,7 +165,7 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
 
 
 def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Best, threads: int | None) -> Best:
-    """Return the best on arcs, raised to the limits at their ends: infinite where a signal is unbounded."""
+    """Return the highest values on arcs, raised to the limits at their ends: inf where a signal is unbounded."""
     value, angle, bound, samples = best
     for end, side in enumerate((-1.0, 1.0)):
         limit, error = _limits(group, signals, paths, end, np.abs(value), threads)
@@ -179,7 +179,7 @@ def _with_limits(group: Group, signals: tuple[str, ...], paths: Paths, best: Bes
 def _limits(
     group: Group, signals: tuple[str, ...], paths: Paths, end: int, peak: Array, threads: int | None
 ) -> tuple[Array, Array]:
-    """Return the limits (path, signal) at one end of arcs, and their errors: polynomials through samples before it."""
+    """Return limits (path, signal) at one end of arcs, and their errors, by polynomials through samples before it."""
     step = paths.steps[:, end]
     probes = np.maximum(PROBE * step, LEAST_PROBE)[:, None] * [1.0, 0.1]
     before = np.concatenate([step[:, None] * np.arange(1.0, NODES + 1), probes], axis=1)
@@ -188,7 +188,7 @@ def _limits(
     values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
     values = values.reshape(len(signals), *before.shape).swapaxes(0, 1)
     probe, closer = values[..., -2], values[..., -1]
-    # ten times closer in x: what goes as 1/x is ten times as large, a signal with a limit hardly changes
+    # ten times closer in x: a signal that varies as 1/x is ten times as large, a signal with a limit hardly changes
     infinite = (np.abs(closer) > 5.0 * np.abs(probe)) & (np.abs(closer) > 0.1 * np.nan_to_num(peak))
     limit, other = (_extrapolated(values[..., :n]) for n in (NODES, NODES - 1))
     error = np.where(infinite, 0.0, np.abs(limit - other))

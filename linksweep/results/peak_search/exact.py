@@ -1,7 +1,7 @@
 """Find the exact peaks of a scene: its signals' largest values over the continuous revolution, for every design.
 
-Where the crank turns fully and no load changes with the angle, the fused search inside the kernel does it. Its samples
-know neither jumps nor the closest approaches of springs: paths about these are searched besides. Designs that move
+Where the crank turns fully and no load changes with the angle, the fused search inside the kernel finds them. Its
+samples ignore jumps and the closest approaches of springs: paths about these are searched too. Designs that move
 over part of a turn, and scenes with loads over the angle, are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
