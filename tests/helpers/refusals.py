@@ -15,6 +15,7 @@ FOUR_BAR = ls.FourBar(crank=BAR, coupler=LINK, rocker=DISK, ground=0.2)
 LOAD = ls.Load("coupler", force=(0.0, -80.0), at=(0.1, 15.0), torque=2.0)
 LOOP = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, thrust=10_000.0)
 SCENE = ls.Scene(FOUR_BAR, omega2=30.0, loads=[ls.Load("rocker", torque=1.0), LOAD])
+TURNED = "; for a point on the other side turn its angle by 180 degrees"
 
 
 def coupler(**changes) -> ls.Scene:
