@@ -219,7 +219,9 @@ def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
     spelled = {name.lower(): name for name in known}
-    close = difflib.get_close_matches(str(word).lower(), spelled, n=1, cutoff=0.6)
+    word = str(word).lower()
+    close = difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
+    close += [name for name in spelled if f"{name}_".startswith(f"{word}_") or word.startswith(f"{name}_")]
     return f'; did you mean "{spelled[close[0]]}"?' if close else ""
 
 

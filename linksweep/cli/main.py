@@ -126,7 +126,7 @@ def _parser() -> argparse.ArgumentParser:
     page = add("report", _report, "a page to print: inputs, checks, peaks, drive, figures")
     page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
     page.add_argument("--title", help="heading of the page (name of the scene file)")
-    add_part(page, "crank angles of a machine that moves over part of a turn")
+    add_part(page, "crank angles [degree] of a machine that moves over part of a turn")
     add_commands(commands)
     return parser
 

@@ -346,6 +346,6 @@ def _quantities(drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
         *bodies.drive_quantities(bodies.drive_torque(FourBar.drives[drive], drive)),
         Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
         Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
-        Quantity("mechanical_advantage", "1", "force of the rocker at C per force on the crank at B, square to them"),
+        Quantity("mechanical_advantage", "1", "force across the rocker at C per force across the crank at B"),
         *machine_quantities(BODIES, PINS, LINKS, loads),
     ]

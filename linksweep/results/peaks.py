@@ -83,7 +83,7 @@ def peaks(
     theta : int or array_like, default None
         Count of positions of a car in a loop, or positions [degree], in place of theta2.
     solver : {"fast", "superposed"}, default "fast"
-        As in `linksweep.sweep`; "superposed" is for samples.
+        As in `linksweep.sweep`; "superposed" needs a count of angles or angles.
     threads : int, default None
         Largest number of threads; None for all cores. Results do not depend on it.
 
@@ -97,8 +97,8 @@ def peaks(
     Raises
     ------
     ValueError
-        If a name is unknown, an angle is no finite number or has the name of another machine's index, or exact peaks
-        are to be superposed.
+        If a name is unknown, an angle is no finite number, `theta` is passed for a machine with a crank or `theta2`
+        for a car in a loop, or exact peaks are to be superposed.
 
     Notes
     -----

@@ -51,8 +51,8 @@ def sweep(
         Scene of any number of designs.
     angles : int or array_like, default None
         Count N of crank angles, for the grid arange(N)·360/N (·720/N where a load takes two turns, as in a four-stroke
-        engine), or the angles themselves [degree]; None for 720. ``sweep(scene, 360)``, or by the name of the machine's
-        index, as follows.
+        engine), or the angles themselves [degree]; None for 720. ``sweep(scene, 360)`` is short for
+        ``sweep(scene, theta2=360)``.
     theta2 : int or array_like, default None
         Count of crank angles, or the angles [degree].
     theta : int or array_like, default None
@@ -73,13 +73,13 @@ def sweep(
     -------
     Dataset
         Over (design dims…, theta2); each variable has only the dims that it depends on, with unit and sign in its
-        attributes. `status` says what happened at each sample; where it is not 0 (ok), values are NaN.
+        attributes. `status` states for each sample whether it is ok; where it is not 0 (ok), values are NaN.
 
     Raises
     ------
     ValueError
-        If a name is unknown, an angle is no finite number or has the name of another machine's index, or the
-        `error_bound` of superposed sums is requested.
+        If a name is unknown, an angle is no finite number, `theta` is passed for a machine with a crank or `theta2`
+        for a car in a loop, or the `error_bound` of superposed sums is requested.
 
     Notes
     -----

@@ -350,7 +350,10 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
             "of: word holds <U32 values, which must be numbers",
         ),
         (lambda: ls.plot.heat_map(OVER_ANGLE, "F32"), "of: F32 depends on theta2, and must not; ls.peaks"),
-        (lambda: ls.plot.scatter(SAMPLE, x="F32", y="T12_peak"), "x: nothing is named 'F32'; there are F32_peak, "),
+        (
+            lambda: ls.plot.scatter(SAMPLE, x="F32", y="T12_peak"),
+            "x: nothing is named 'F32'; did you mean \"F32_peak\"?",
+        ),
         (lambda: ls.plot.scatter(SAMPLE, x="F32_peak", y="T12_peak", color=3), "color: nothing is named 3"),
         (
             lambda: ls.plot.scatter(SAMPLE, x="F32_peak", y="T12_peak", maximize=["crank.length"]),

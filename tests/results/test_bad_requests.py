@@ -183,7 +183,7 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.sweep(SCENE, 8, of=["wibble"]), "of: nothing is named 'wibble'; there are theta3, theta4, "),
         (lambda: ls.sweep(SCENE, 8, of=[5]), "of = 5: must be names of quantities"),
         (lambda: ls.sweep(SCENE, 8, of=[""]), "of: nothing is named ''; there are theta3, theta4, "),
-        (lambda: ls.peaks(SCENE, ["F23y", "F32_maen"]), "of: nothing is named 'F32_maen'; there are theta3, theta4, "),
+        (lambda: ls.peaks(SCENE, ["F23y", "F32_maen"]), "of: nothing is named 'F32_maen'; did you mean \"F32\"?"),
         (lambda: ls.peaks(SCENE, "T13"), 'of: T13 belongs to drive="coupler"; with drive="crank" give T12'),
         (
             lambda: ls.sweep(replace(SCENE, drive="rocker"), 8, of=["T12"]),

@@ -33,7 +33,8 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     after : Scene
         Scene after the change.
     of : str, list of str or mapping
-        Names of sizes, "F32_peak", "T12_ripple", "Fs_rms", or a mapping with such names as keys.
+        Quantities with one of the endings `_peak` (largest magnitude), `_rms` and `_ripple` (root mean square about the
+        mean), such as "F32_peak"; or a mapping with such names as keys.
     theta2 : int, default 720
         Count of crank angles over the cycle.
     threads : int, default None

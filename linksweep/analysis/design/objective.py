@@ -169,7 +169,7 @@ def objective(
     Raises
     ------
     ValueError
-        If a parameter or name is unknown, or a range is none or is refused by the scene.
+        If a parameter or name is unknown, a range is no pair (low, high), or the scene refuses its values.
 
     Examples
     --------
