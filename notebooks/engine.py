@@ -229,9 +229,9 @@ ax.grid(alpha=0.3)
 # %% [markdown]
 # ## A measured diagram
 #
-# With a measured diagram the pressure stands in a CSV file beside the scene file, with its columns named in the first line. At crank
-# angles between the samples it is interpolated by a periodic cubic spline, and at the samples it is what was measured. (Here the
-# "measurement" is the ideal cycle every 4°; a spline rounds off its jumps, as a real engine does.)
+# With a measured diagram the pressure stands in a CSV file beside the scene file, with its columns named in the first line. Between
+# the samples it is interpolated, by default by a periodic cubic spline. Where a diagram jumps, a spline leaves the range of the
+# samples, and linksweep warns of it; `interpolation = "pchip"` stays within them. (Here the "measurement" is the ideal cycle every 4°.)
 
 # %%
 folder = Path(tempfile.mkdtemp())
@@ -254,6 +254,7 @@ rod = {length = "145 mm", mass = "0.6 kg", inertia = "2.2e-3 kg m^2", cg_distanc
 type = "GasPressure"
 bore = "86 mm"
 pressure = {csv = "indicator.csv", column = "p", unit = "bar"}
+interpolation = "pchip"
 """)
 measured = ls.sweep(ls.load_scene(folder / "engine.toml"))
 print(f"mean torque delivered: {-float(measured.T12.mean()):.1f} N m, with the cycle itself {mean:.1f} N m")

@@ -131,7 +131,7 @@ def test_all_problems_of_a_mechanism_are_reported_together():
         ground_angle=np.inf,
     ) == [
         "crank = None: must be a Link, Bar or Disk",
-        "coupler.length = '8 cm': must be a number in m, not text; numbers with units stand in scene files",
+        "coupler.length = '8 cm': must be a number in m, not text; in Python write a number, or a quantity of pint",
         "coupler.mass = nan kg: must be finite and at least 0",
         f"coupler.cg_distance = -0.1 m: must be at least 0{TURNED}",
         "rocker.length = 0 m: must be greater than 0",
@@ -154,7 +154,7 @@ def test_all_problems_of_a_scene_are_reported_together():
     ) == [
         "alpha2 = True: must be a number in rad/s^2, not a truth value",
         "gravity[1] = nan m/s^2: must be finite",
-        "gravity[2] = '9.81': must be a number in m/s^2, not text; numbers with units stand in scene files",
+        "gravity[2] = '9.81': must be a number in m/s^2, not text; in Python write a number, or a quantity of pint",
         "omega2: missing; give FourBar a number in rad/s",
         "drive = 'croupler': must be one of crank, coupler, rocker; did you mean \"coupler\"?",
         "loads[1] has neither force nor torque: give force=(Fx, Fy), torque=..., or both",
@@ -163,7 +163,7 @@ def test_all_problems_of_a_scene_are_reported_together():
         f"loads[2].at[1] = -1 m: must be at least 0{TURNED}",
         "loads[2].at[2] = nan degree: must be finite",
         "loads[2].frame = 'x': must be one of ground, link",
-        "loads[2].torque = '1 N m': must be a number in N m, not text; numbers with units stand in scene files",
+        "loads[2].torque = '1 N m': must be a number in N m, not text; in Python write a number, or a quantity of pint",
     ]
 
 
