@@ -1,4 +1,4 @@
-"""Compute the worst of each quantity over the continuous revolution, and its angle."""
+"""Compute the largest value of each quantity over the continuous revolution, and its angle."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ Averages = dict[Power, Field]
 
 
 class Result(NamedTuple):
-    """Largest values and means, with the scene at the angles that decide its status, and how far it is assembled."""
+    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design."""
 
     sampled: Scene
     grid: Grid
@@ -237,7 +237,7 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
 
 
 def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
-    """Return the largest of a grid's samples, as they are."""
+    """Return the largest of a grid's samples, without refinement."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is of exact peaks only; leave out theta2' for name in exact])
     grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))

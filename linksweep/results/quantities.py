@@ -35,7 +35,7 @@ class AvailableQuantity:
     dims : tuple of str
         The dims that it depends on: those of designs, and theta2.
     default : bool
-        Whether `linksweep.sweep` computes it where no names are given.
+        True where `linksweep.sweep` computes it by default.
     long_name : str
         Its meaning, and how its sign counts.
     """

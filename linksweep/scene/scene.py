@@ -91,7 +91,7 @@ class Scene(ByContent):
     Labels are numbers, truth values, texts or times, and names of dims are those that NetCDF allows: what a file would
     not return as it was written is refused.
 
-    The derivative of an omega2 that is an array is that of its spline; of a function it is found by differences, to
+    The derivative of an omega2 that is an array is that of its spline; of a function it is computed by differences, to
     1e-9 of the largest. An alpha2 beside it is used as it is, and `linksweep.check` states how far the two differ.
 
     Examples

@@ -1,4 +1,4 @@
-"""plan(table, request, inputs): select the operations that a request needs, and how often each is done.
+"""Plan a request: select the operations that it needs, and decide how often each is done.
 
 The plan walks back from the requested names to the inputs and keeps the operations on the way. An operation's dims are
 the union of its operands' dims, so operations that depend on geometry alone are shared by all masses.

@@ -34,7 +34,7 @@ def relative_bound(
 
     `exact(name)` tells whether an input is exact. Nodes in `certain` are computed in double-double. This analysis would
     take each of their operations for a rounded one, so it treats them as inputs, with the error of a double-double
-    cosine, in the units given, in addition.
+    cosine, relative to the number that `certain` has for each, in addition.
     """
     known = {node: INPUT * abs(node) + PAIR * unit for node, unit in certain.items()}
     # tracing replaces −(−x) by x, so the operand of a negated node needs the bound, too

@@ -1,6 +1,6 @@
 """Values that a parameter of a study may take: a range, a few values, a normal distribution, a tolerance.
 
-Each gives the values below which lie given fractions of all (its quantiles), so that any even set of fractions in
+Each returns the values below which stated fractions of all lie (its quantiles), so that any even set of fractions in
 (0, 1) becomes an even set of values.
 """
 
