@@ -152,7 +152,7 @@ def _part_problems(part: Any, period: float) -> list[str]:
     if problems:
         return problems
     first, last = part
-    bounds = f"must be the first and the last angle, at most {period:g} degrees on"
+    bounds = f"must be a pair (first, last), first less than last by at most {period:g} degrees"
     return [] if first < last <= first + period else [f"theta2 = ({first:g}, {last:g}): {bounds}"]
 
 

@@ -18,7 +18,7 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 SEVERAL = (
-    "scene is a MultiCylinder, which this does not take; give a Scene, such as its engine, or ask it for four.sweep(), "
+    "scene is a MultiCylinder: must be a Scene, such as its engine; for several cylinders there are its sweep(), "
     "ls.peaks, ls.duty, ls.flywheel, ls.bearings, ls.report, ls.plot.animate"
 )
 

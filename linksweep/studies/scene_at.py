@@ -46,6 +46,8 @@ def scene_at(ds: xr.Dataset | Scene, where: Mapping[str, Any] | None = None, /, 
     >>> bool(ls.peaks(best).F32_peak == study.F32_peak.min())
     True
     """
+    named = where is None or isinstance(where, Mapping)
+    refuse([] if named else [f"where = {quote(where)}: must name the dim of each label, as in design=17"])
     request = {**(where or {}), **labels}
     if isinstance(ds, Scene):
         return chosen(ds, request)

@@ -346,7 +346,7 @@ def test_refusals_of_report():
     scene = ls.example("loop")
     assert "its ending must be .html or .htm: a report is a page" in refused(scene, "report.pdf")
     assert "must be a Dataset of linksweep, or a Scene" in refused("press.toml", "report.html")
-    assert "theta2 = (50, 10): must be the first and the last angle" in refused(
+    assert "theta2 = (50, 10): must be a pair (first, last), first less than last" in refused(
         scene, "report.html", theta2=(50.0, 10.0)
     )
     assert "theta2 = 720: must be a pair" in refused(scene, "report.html", theta2=720)

@@ -164,8 +164,8 @@ def test_designs_that_move_over_part_of_a_turn_have_no_sums():
         (lambda: ls.peaks(FOUR, of=["F32x"]), "of: nothing is named 'F32x'; did you mean \"F32\"?"),
         (lambda: ls.peaks(FOUR, theta2=720), "theta2 = 720: must be left out: peaks of several cylinders are exact"),
         (lambda: FOUR.sweep(of=["F_mian1"]), "of: nothing is named 'F_mian1'; did you mean \"F_main1\"?"),
-        (lambda: ls.sweep(FOUR), "scene is a MultiCylinder, which this does not take"),
-        (lambda: ls.breakdown(FOUR, "F32"), "scene is a MultiCylinder, which this does not take"),
+        (lambda: ls.sweep(FOUR), "scene is a MultiCylinder: must be a Scene, such as its engine"),
+        (lambda: ls.breakdown(FOUR, "F32"), "scene is a MultiCylinder: must be a Scene, such as its engine"),
         (lambda: ls.flywheel(FOUR, fluctuation=2.0), "fluctuation = 2.0: must be less than 2"),
         (
             lambda: replace(FOUR, main_positions=(0.0, 0.2)),

@@ -390,6 +390,11 @@ def test_missing_labels_are_refused(where, message):
         assert str(error.value).startswith(message)
 
 
+def test_a_label_without_its_dim_is_refused():
+    with pytest.raises(ValueError, match="where = 17: must name the dim of each label, as in design=17"):
+        ls.scene_at(PRESS, 17)
+
+
 def test_scene_at_refuses_results_without_designs():
     with pytest.raises(ValueError, match="ds = 3: must be a Dataset of linksweep, or a Scene"):
         ls.scene_at(3, design=1)
