@@ -2,59 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import chain
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any
 
-import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, quote, refuse
-from linksweep.engine.kernel.writer import Reduction
-from linksweep.engine.quantity import Quantity, opposite_of
-from linksweep.engine.run import Field, Grid, reduce_rows
-from linksweep.engine.trace.plan import plan
-from linksweep.results.compute import (
-    angles_missing,
-    angles_of,
-    assembly_of,
-    changing_pace,
-    compute,
-    either,
-    only_where,
-    planned,
-    quantity_problems,
-    requested,
-    require_scene,
-    surely_ok,
-)
+from linksweep.results.compute import angles_of, either, requested, require_scene
+from linksweep.results.cylinders.cylinder_peaks import peaks_of_cylinders
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dask_blocks import by_blocks
-from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
-from linksweep.results.peak_search.along_paths import SignalPeak
-from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peak_search.poles import with_dead_centres
-from linksweep.results.peak_search.quadrature import Power, means
-from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid, in_order
+from linksweep.results.scene_peaks import peaks_of_scene
 from linksweep.scene.scene import Scene
 
 SOLVERS = ("fast", "superposed")
-SUMMARIES = ("mean", "rms", "bound", "samples")
-STATUS_ANGLES = 720
-"""Angles of a turn at which the status is computed, if the mechanism's numbers do not show that it is always ok."""
-PARTIAL, UNBOUNDED = 1, 3
-
-
-class Request(NamedTuple):
-    """A requested summary of a quantity: a largest value of signals, or a mean of powers."""
-
-    quantity: Quantity
-    summary: str
-    signals: tuple[str, ...] = ()
-    powers: tuple[Power, ...] = ()
 
 
 @by_blocks(of_samples=False)
@@ -122,244 +85,22 @@ def peaks(
     """
     word, angles = either(theta2=theta2, theta=theta)
     refuse([*count_problems("threads", threads), *_solver_problems(solver, angles)])
+    names = None if of is None else requested("of", of)
     if isinstance(scene, MultiCylinder):
-        from linksweep.results.cylinders.cylinder_peaks import peaks_of_cylinders  # here: it imports this module
-
         exact = "must be left out: peaks of several cylinders are exact"
         refuse([] if angles is None else [f"{word} = {quote(angles)}: {exact}"])
-        return peaks_of_cylinders(scene.in_memory, of, threads)
+        return peaks_of_cylinders(scene.in_memory, names, threads)
     require_scene(scene)
-    angles = angles_of(scene, theta2=theta2, theta=theta)
-    names = None if of is None else requested("of", of)
-    items = _requests(scene, names)
-    result = _exact(scene, items, threads) if angles is None else _of_samples(scene, angles, items, threads, solver)
-    grid = "" if angles is None else f", {result.grid.dim}={len(result.grid.angles)}"
-    by = "" if solver == "fast" else f", solver={solver!r}"
-    command = f"linksweep.peaks(scene{'' if names is None else f', of={names}'}{grid}{by})"
-    return _dataset(scene, items, result, command, threads)
+    return peaks_of_scene(scene, names, threads, angles_of(scene, theta2=theta2, theta=theta), solver)
 
 
 @by_blocks(of_samples=False)
 def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
     """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
-    names = requested("of", of)
-    items = _requests(scene, names)
-    result = _exact(scene, items, threads, part)
-    return _dataset(scene, items, result, f"linksweep.peaks(scene, of={names})", threads)
+    return peaks_of_scene(scene, requested("of", of), threads, part=part)
 
 
 def _solver_problems(solver: Any, angles: Any) -> list[str]:
     problems = choice_problems("solver", solver, SOLVERS)
     missing = 'solver = "superposed": is for samples, which designs share; exact peaks have each their own: give theta2'
     return problems or ([missing] if solver == "superposed" and angles is None else [])
-
-
-Averages = dict[Power, Field]
-
-
-class Result(NamedTuple):
-    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design."""
-
-    sampled: Scene
-    grid: Grid
-    assembly: Field
-    largest: dict[str, SignalPeak]
-    averages: Averages
-
-
-def _dataset(scene: Scene, items: list[Request], result: Result, command: str, threads: int | None) -> xr.Dataset:
-    status = status_of(scene, result, threads)
-    coordinates = design_coordinates(result.sampled)
-    variables = labelled(items, result) | {"status": status}
-    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
-
-
-def labelled(items: list[Request], result: Result) -> dict[str, xr.Variable]:
-    """Return the variables of all requests, with units and meanings."""
-    order, named = tuple(result.sampled.inputs.sizes), chain.from_iterable(_named(item, result) for item in items)
-    return {name: variable(field, units, meaning, order) for name, field, units, meaning in named}
-
-
-def parsed_requests(
-    quantities: Mapping[str, Quantity], names: Iterable[str], problems_of: Callable[[str], list[str]]
-) -> list[Request]:
-    """Return the requests that names such as "F32", "T12_mean" state; raise ValueError for other names."""
-    requests, problems = [], []
-    for name in names:
-        stem, _, ending = name.rpartition("_")
-        stem, ending = (stem, ending) if stem in quantities and ending in SUMMARIES else (name, "peak")
-        if stem not in quantities or stem == "cond":
-            problems += problems_of(name)
-        else:
-            requests.append(_request(quantities[stem], ending))
-    refuse(problems)
-    return requests
-
-
-def _requests(scene: Scene, names: list[str] | None) -> list[Request]:
-    quantities = scene.table.quantity
-    known = [name for name in quantities if name != "cond"]
-    default = scene.mechanism.peak_quantities(scene.drive)
-    return parsed_requests(
-        quantities, default if names is None else names, lambda n: quantity_problems("of", n, known, scene)
-    )
-
-
-def _request(quantity: Quantity, summary: str) -> Request:
-    """Return a request: a magnitude has the peak of its square, a least value is the largest of the opposite."""
-    name, squared = quantity.name, quantity.squared
-    if summary == "mean":
-        return Request(quantity, summary, powers=((name, 1),))
-    if summary == "rms":
-        return Request(quantity, summary, powers=((squared, 1) if squared else (name, 2),))
-    return Request(quantity, summary, signals=(squared,) if squared else (name, opposite_of(name)))
-
-
-def needed(items: list[Request]) -> tuple[tuple[str, ...], tuple[Power, ...]]:
-    """Return the signals and the powers of all requests, each once."""
-    signals = dict.fromkeys(signal for item in items for signal in item.signals)
-    return tuple(signals), tuple(dict.fromkeys(power for item in items for power in item.powers))
-
-
-def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part | None = None) -> Result:
-    refuse(angles_missing(scene))
-    turns = round(scene.period / scene.mechanism.period)
-    angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
-    assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
-    if part is not None:
-        largest = peaks_within(scene, signals, part, threads)
-    else:
-        largest = exact_peaks(scene, signals, assembly, threads) if signals else {}
-    sampled = scene.at_one_angle
-    averages = means(scene, powers, changing_pace(sampled), threads) if powers and part is None else {}
-    return Result(sampled, grid, with_dead_centres(scene, assembly), largest, averages)
-
-
-def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
-    """Return the largest of a grid's samples, without refinement."""
-    exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
-    refuse([f'of = "{name}": is of exact peaks only; leave out theta2' for name in exact])
-    grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))
-    sampled = scene.at(grid)
-    signals, powers = needed(items)
-    largest = {signal: Reduction("largest_sample", signal) for signal in signals}
-    pace = changing_pace(sampled)
-    averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
-    reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
-    request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
-    reduced = {}
-    if reductions:
-        reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    extremes = {}
-    for signal, reduction in largest.items():
-        value, angle = reduced[reduction]
-        extremes[signal] = SignalPeak(value, angle, value, value)
-    averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
-    averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
-    return Result(sampled, grid, assembly_of(scene, threads), extremes, averaged)
-
-
-def _over_time(
-    sampled: Scene, grid: Grid, powers: tuple[Power, ...], pace: str, threads: int | None, solver: str
-) -> Averages:
-    """Return means of a grid's samples, each weighted by the time that the crank takes for it."""
-    names = tuple(dict.fromkeys([name for name, _ in powers] + [pace]))
-    fields, averages = compute(sampled, grid, names, threads, solver=solver), {}
-    for name, power in powers:
-        dims = tuple(d for d in (*sampled.inputs.sizes, grid.dim) if d in {*fields[name].dims, *fields[pace].dims})
-        value, speed = aligned(fields[name], dims), np.abs(aligned(fields[pace], dims))
-        with np.errstate(all="ignore"):
-            known = ~np.isnan(value / speed)
-            total, time = np.where(known, value**power / speed, 0.0), np.where(known, 1.0 / speed, 0.0)
-            averages[name, power] = Field(dims[:-1], total.sum(axis=-1) / time.sum(axis=-1))
-    return averages
-
-
-def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
-    """Return the status of peaks: the assembly's 0, 1 or 2; 1 if some sample is not ok, 3 if a peak or mean is inf.
-
-    Peaks and means of designs without any sample that is ok become NaN.
-    """
-    sampled, grid, assembly, largest, averages = result
-    order = tuple(sampled.inputs.sizes)
-    status = variable(assembly, "1", "", order)
-    if not surely_ok(scene):
-        least, worst = _extremes_of_status(scene, sampled, grid, threads)
-        status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
-        # on an arc these samples do not decide: the search along paths has looked at it more closely
-        _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)
-    for dims, values in (*(peak.value for peak in largest.values()), *averages.values()):
-        infinite = np.isinf(values)
-        if infinite.any():
-            status = xr.where(variable(Field(dims, infinite), "1", "", order), float(UNBOUNDED), status)
-    dims = tuple(dim for dim in order if dim in status.dims)
-    words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
-    return plain(Field(dims, status.transpose(*dims).values.astype(np.int8)), words)
-
-
-def _extremes_of_status(
-    scene: Scene, sampled: Scene, grid: Grid, threads: int | None
-) -> tuple[xr.Variable, xr.Variable]:
-    """Return the best and the worst status of each design's samples."""
-    reductions = tuple(Reduction(kind, "status") for kind in ("least_sample", "largest_sample"))
-    request = plan(scene.table, ("status",), sampled.inputs.forms)
-    if any(grid.dim in sampled.inputs.fields[name].dims for name in request.inputs if name in sampled.inputs.fields):
-        sampled = scene.at(grid)
-    reduced = reduce_rows(request, reductions, sampled.inputs.fields, grid, sampled.inputs.sizes, threads)
-    least, worst = (variable(reduced[r][0], "1", "", tuple(sampled.inputs.sizes)) for r in reductions)
-    return least, worst
-
-
-def _blank(ok: xr.Variable, largest: dict[str, SignalPeak], averages: Averages) -> None:
-    """Make peaks and means NaN where no design that shares a number is ok."""
-    good = Field(tuple(map(str, ok.dims)), ok.values)
-    if not good.values.all():
-        largest |= peaks_where(good, largest)
-        averages |= {power: only_where(good, field) for power, field in averages.items()}
-
-
-def _named(item: Request, result: Result) -> Iterator[tuple[str, Field, str, str]]:
-    """Yield name, field, unit and meaning of each variable of a request."""
-    quantity, summary, spot = item.quantity, item.summary, result.sampled.mechanism.spot
-    name, units, meaning = quantity.name, quantity.units, quantity.long_name
-    largest = [result.largest[signal] for signal in item.signals]
-    if summary == "mean":
-        yield f"{name}_mean", result.averages[item.powers[0]], units, f"mean over time of: {meaning}"
-    elif summary == "rms":
-        mean_square = result.averages[item.powers[0]]
-        yield f"{name}_rms", _map(np.sqrt, mean_square), units, f"root mean square over time of: {meaning}"
-    elif summary == "bound":
-        bound = _map(_largest, *(_bound(peak, quantity) for peak in largest))
-        yield f"{name}_bound", bound, units, f"how much larger the peak could be of: {meaning}"
-    elif summary == "samples":
-        samples = _map(_largest, *(peak.samples for peak in largest))
-        yield f"{name}_samples", samples, "1", f"{spot}s evaluated for the peak of: {meaning}"
-    elif quantity.squared:
-        yield f"{name}_peak", _map(np.sqrt, largest[0].value), units, f"largest {meaning}"
-        yield f"{name}_peak_at", largest[0].angle, "degree", f"{spot} of the largest {meaning}"
-    else:
-        least = _map(lambda value: 0.0 - value, largest[1].value)
-        yield f"{name}_max", largest[0].value, units, f"largest {meaning}"
-        yield f"{name}_max_at", largest[0].angle, "degree", f"{spot} of the largest {meaning}"
-        yield f"{name}_min", least, units, f"least {meaning}"
-        yield f"{name}_min_at", largest[1].angle, "degree", f"{spot} of the least {meaning}"
-        magnitude = _map(lambda x, y: np.maximum(np.abs(x), np.abs(y)), largest[0].value, least)
-        yield f"{name}_peak", magnitude, units, f"largest magnitude of the {meaning}"
-
-
-def _bound(peak: SignalPeak, quantity: Quantity) -> Field:
-    """Return how much larger a peak could be; for a square v, √(v + δ) − √v = δ/(√(v + δ) + √v)."""
-    if not quantity.squared:
-        return peak.bound
-    value, bound = peak.value.values, peak.bound.values
-    with np.errstate(invalid="ignore"):
-        return Field(peak.value.dims, bound / (np.sqrt(value + bound) + np.sqrt(value)))
-
-
-def _largest(*values: np.ndarray) -> np.ndarray:
-    return np.max(values, axis=0)
-
-
-def _map(function: Callable, *fields: Field) -> Field:
-    return Field(fields[0].dims, function(*(field.values for field in fields)))

@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import name_problems
-from linksweep.results.compute import assembly_of, requested
+from linksweep.results.compute import assembly_of
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
 from linksweep.results.dataset import design_coordinates, joined, origin_attributes
 from linksweep.results.peak_search.quadrature import means
-from linksweep.results.peaks import STATUS_ANGLES, Request, Result, labelled, needed, parsed_requests, peaks, status_of
+from linksweep.results.scene_peaks import (
+    STATUS_ANGLES,
+    Request,
+    Result,
+    labelled,
+    needed,
+    parsed_requests,
+    peaks_of_scene,
+    status_of,
+)
 from linksweep.scene.grid import crank_grid
 
 
-def peaks_of_cylinders(machine: MultiCylinder, of: Iterable[str] | None, threads: int | None = None) -> xr.Dataset:
+def peaks_of_cylinders(machine: MultiCylinder, of: list[str] | None, threads: int | None) -> xr.Dataset:
     """Return the peaks of an engine, as `linksweep.peaks` does.
 
     Forces in the pins of the cylinders are over the dim `cylinder`, counted from 1.
     """
-    names = [name for name in SHAKING if name not in ("Fsx", "Fsy")] if of is None else requested("of", of)
+    names = [name for name in SHAKING if name not in ("Fsx", "Fsy")] if of is None else of
     pins = [name for name in names if name.partition("_")[0] in machine.pin_forces and name not in machine.quantity]
     sums = parsed_requests(
         machine.quantity,
@@ -53,7 +60,9 @@ def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -
 
 def _of_pins(machine: MultiCylinder, names: list[str], threads: int | None) -> xr.Dataset:
     """Return the peaks of each cylinder's own pin forces, at crank angles of the engine."""
-    once = {scene: peaks(scene, names, threads=threads) for scene in machine.cylinders}  # cylinders of a bank are equal
+    once = {
+        scene: peaks_of_scene(scene, names, threads) for scene in machine.cylinders
+    }  # cylinders of a bank are equal
     each = [_shifted(once[s], t.ahead, machine.period) for s, t in zip(machine.cylinders, machine.throws, strict=True)]
     labels = np.arange(1, len(each) + 1)
     arrays = {str(name): joined([one[name] for one in each], "cylinder", labels) for name in each[0].data_vars}
