@@ -6,7 +6,6 @@ largest samples. Colours are Okabe and Ito's, which colour-blind readers tell ap
 that a force on top of another is seen, in grey too.
 """
 
-from linksweep.plot.animation import animate as animate
 from linksweep.plot.balancing import balance as balance
 from linksweep.plot.curves import forces as forces
 from linksweep.plot.curves import torque as torque
@@ -14,6 +13,7 @@ from linksweep.plot.cycle_page import cycle as cycle
 from linksweep.plot.drives import flywheel as flywheel
 from linksweep.plot.drives import motor_load as motor_load
 from linksweep.plot.drives import torque_with_flywheel as torque_with_flywheel
+from linksweep.plot.films.animation import animate as animate
 from linksweep.plot.heat_maps import heat_map as heat_map
 from linksweep.plot.load_analysis import breakdown as breakdown
 from linksweep.plot.load_analysis import over_speed as over_speed

@@ -30,9 +30,6 @@ def refused(*arguments, **options) -> list[str]:
     return str(error.value).split("\n")
 
 
-# ------------------------------------------------------------------------------------------------ paths
-
-
 @pytest.mark.parametrize("name", ["press", "engine", "quick-return", "loop"])
 def test_every_number_can_be_replaced_by_its_path_and_nothing_else_changes(name):
     scene = ls.example(name)

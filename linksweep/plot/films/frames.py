@@ -1,4 +1,4 @@
-"""The film of a machine that moves: the forces in its joints as arrows, and their place on their curves.
+"""Frames of a film: their angles, the places of parts, forces as arrows; the figure with readings and dots on curves.
 
 Frames lie at equal steps of time. Where toggles, or the lengths, end a revolution, the mechanism goes to and fro over
 the longest part that there is; a car stops where it leaves the track. Angles that have no result are skipped.
@@ -6,7 +6,6 @@ the longest part that there is; a car stops where it leaves the track. Angles th
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,18 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.base.memory import require_memory
-from linksweep.base.validate import count_problems, quote, refuse
-from linksweep.files.netcdf import scene_of
-from linksweep.mechanisms.drawing import Drawing, Track
-from linksweep.plot import track as track_plot
-from linksweep.plot.curves import HEADROOM, forces
+from linksweep.base.validate import refuse
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, FORCE_COLORS, GREY, force_color
-from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.style import small_type
-from linksweep.plot.machine import ARROW, CURVE, Shape, draw_ground, draw_links, positions, shape_of
-from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.plot.machine import CURVE, Shape, draw_links, positions, shape_of
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -33,8 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from linksweep.plot.kit.film import Film
 
 SAMPLES = 720  # of the curves, for a scene
 SIZE, DPI = (6.0, 6.4), 90  # inches, and pixels to an inch
@@ -53,62 +43,6 @@ class Frame(NamedTuple):
     angle: float
     shape: Shape
     forces: dict[str, np.ndarray]
-
-
-def animate(
-    scene: xr.Dataset | Scene | MultiCylinder, *, frames: int = 72, point: tuple[float, float] | None = None
-) -> Film:
-    """Make a film of a machine over its cycle: forces as arrows at the pins, and dots on the curves below.
-
-    Parameters
-    ----------
-    scene : Scene, Dataset or MultiCylinder
-        Scene of one design, or a Dataset from `linksweep.sweep` that holds it: then of its angles, where they are no
-        whole cycle.
-    frames : int, default 72
-        Count of frames in a cycle, 25 a second.
-    point : tuple of float, default None
-        Point whose curve is drawn, (distance [m], angle [degree]) as `mechanism` takes it.
-
-    Returns
-    -------
-    Film
-        Film that a notebook shows as the last expression of a cell. ``film.save("machine.gif")`` and
-        ``film.save("machine.html")`` write it. Arrows are to one scale, that of the curves below them; where forces
-        grow without bound, they end a little beyond it.
-
-    Raises
-    ------
-    ValueError
-        For more than one design, and where there is no result at two angles or more.
-
-    Examples
-    --------
-    >>> import linksweep as ls
-    >>> film = ls.plot.animate(ls.example("press"), frames=24)
-    >>> len(film)
-    24
-    """
-    refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
-    require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
-    if isinstance(scene, MultiCylinder):
-        from linksweep.plot.cylinder_film import film_of_cylinders  # here: it imports this file
-
-        refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
-        with small_type():
-            return film_of_cylinders(scene.in_memory, frames)
-    one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
-    index = one.mechanism.index
-    sound = isinstance(scene, Scene) or index in scene.dims
-    refuse([] if sound else [f"scene has no dimension {index}: take what ls.sweep returns"])
-    angles: Any = SAMPLES if isinstance(scene, Scene) else scene[index].values
-    with small_type():
-        if one.mechanism.track:
-            return _of_track(one, one.mechanism.track, angles, frames)
-        return _of_crank(one, drawing_of(one.mechanism), angles, frames, point)
-
-
-# -------------------------------------------------------------------------------------------------- which angles
 
 
 def way(cycle: xr.Dataset, rate: xr.DataArray, frames: int, to_and_fro: bool = True) -> np.ndarray:
@@ -166,37 +100,6 @@ def _at_equal_times(angles: np.ndarray, rate: np.ndarray, count: int) -> np.ndar
         steps = steps / pace
     time = np.concatenate([[0.0], np.cumsum(steps)])
     return np.interp(np.linspace(0.0, time[-1], count), time, angles)
-
-
-# ---------------------------------------------------------------------------------------- a mechanism with a crank
-
-
-def _of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: Any) -> Film:
-    from linksweep.plot.kit.film import Film
-
-    outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
-    cycle = sweep(scene, angles, of=[*outputs, "omega2"])
-    signals.require_one_design(cycle[name] for name in outputs)
-    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
-    figure, machine, curves = panels()
-    forces(cycle, ax=curves)
-    top = curves.get_ylim()[1] / HEADROOM
-    draw_ground(machine, scene, drawing, shots[0].shape)
-    longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
-    arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
-    fit(machine, drawing, shots, arrows)
-    scale(machine, top, longest)
-    say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
-    follow = follower(curves, list(drawing.forces))
-    moving: list[Artist] = []
-
-    def draw(k: int) -> list[Artist]:
-        shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
-        renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
-        texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
-        return [*moving, *say(shot.angle, texts), *follow(shot.angle, sizes)]
-
-    return Film(figure, draw, len(shots))
 
 
 def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) -> list[Frame]:
@@ -281,42 +184,6 @@ def scale(ax: Axes, top: float, longest: float) -> None:
     force = next(digit * decade for digit in ROUND if digit * decade <= 0.7 * top)
     style: dict[str, Any] = {"frameon": False, "color": GREY, "borderpad": 0.8}
     ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} N", "lower left", **style))
-
-
-# -------------------------------------------------------------------------------------------------- a car in a loop
-
-
-def _of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
-    from linksweep.plot.kit.film import Film
-
-    names, index = [track.force, track.speed], {scene.mechanism.index: signals.INDEX}
-    cycle = sweep(scene, angles, of=names).rename(index)
-    signals.require_one_design(cycle[name] for name in names)
-    at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
-    shots = sweep(scene, at, of=names).rename(index)
-    force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
-    figure, ax, curve = panels()
-    radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))
-    track_plot.draw_track(ax, cycle, track.force, radius)
-    track_plot.draw_force(curve, cycle, scene)
-    write = readings(ax, "$\\theta$ =", {track.force: "$F_N$", track.speed: "speed"})
-    follow = follower(curve, [track.force])
-    moving: list[Artist] = []
-
-    def draw(k: int) -> list[Artist]:
-        renewed(ax, moving, partial(_car, ax, at[k], radius, force[k] / largest))
-        values = {track.force: f"{signals.number(force[k])} N", track.speed: f"{signals.number(speed[k])} m/s"}
-        return [*moving, *write(at[k], values), *follow(at[k], {track.force: force[k]})]
-
-    return Film(figure, draw, len(at))
-
-
-def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
-    track_plot.draw_car(ax, radius, angle)
-    track_plot.press(ax, angle, radius * (1.0 + track_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
-
-
-# ------------------------------------------------------------------------------------------- panels, readings, dots
 
 
 def panels() -> tuple[Figure, Axes, Axes]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from linksweep.base.validate import refuse
-from linksweep.plot import animation
+from linksweep.plot.films import frames as film_frames
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.machine import ARROW, draw_ground
@@ -33,39 +33,39 @@ def film_of_cylinders(machine: MultiCylinder, frames: int) -> Film:
     """Return a film over the engine's cycle: every cylinder with the forces in its pins, and the torque of them all."""
     from linksweep.plot.kit.film import Film
 
-    cycle = machine.sweep(animation.SAMPLES, of=["T12"])
+    cycle = machine.sweep(film_frames.SAMPLES, of=["T12"])
     signals.require_one_design([cycle["T12"]])
     angles = np.arange(frames) * (machine.period / frames)
     cylinders = [_turned(machine, k) for k in range(len(machine.crank_angles))]
     drawing = drawing_of(machine.engine.mechanism)
     shots = [
-        animation.frames_of(scene, drawing, np.mod(angles + ahead, machine.period), None)
+        film_frames.frames_of(scene, drawing, np.mod(angles + ahead, machine.period), None)
         for scene, ahead in zip(cylinders, machine.crank_angles, strict=True)
     ]
-    refuse([] if all(len(own) == frames for own in shots) else [animation.NOTHING])
+    refuse([] if all(len(own) == frames for own in shots) else [film_frames.NOTHING])
     figure, panels, curve = _panels(machine)
     top = max(float(np.hypot(*force)) for own in shots for shot in own for force in shot.forces.values())
     for ax, scene, own in zip(panels, cylinders, shots, strict=True):
         draw_ground(ax, scene, drawing, own[0].shape)
     longest = ARROW * max(np.ptp(ax.dataLim.intervaly) for ax in panels)
-    arrows = [[animation.arrows_of(shot, drawing, top, longest) for shot in own] for own in shots]
+    arrows = [[film_frames.arrows_of(shot, drawing, top, longest) for shot in own] for own in shots]
     for ax in dict.fromkeys(panels):
         there = [k for k, other in enumerate(panels) if other is ax]
-        every: list[animation.Frame] = [shot for k in there for shot in shots[k]]
-        animation.fit(ax, drawing, every, [ends for k in there for ends in arrows[k]])
+        every: list[film_frames.Frame] = [shot for k in there for shot in shots[k]]
+        film_frames.fit(ax, drawing, every, [ends for k in there for ends in arrows[k]])
         ax.set_title(", ".join(str(k + 1) for k in there), loc="right", fontsize="small")
         ax.label_outer()
-    animation.scale(panels[0], top, longest)
+    film_frames.scale(panels[0], top, longest)
     curve.plot(cycle["theta2"], cycle["T12"])
     curve.set(xlabel="crank angle $\\theta_2$ [°]", ylabel="torque $T_{12}$ [N m]", xlim=(0.0, machine.period))
     torque = np.interp(angles, cycle["theta2"], cycle["T12"], period=machine.period)
-    write = animation.readings(curve, "$\\theta_2$ =", {"T12": signals.symbol("T12")})
-    follow = animation.follower(curve, ["T12"])
+    write = film_frames.readings(curve, "$\\theta_2$ =", {"T12": signals.symbol("T12")})
+    follow = film_frames.follower(curve, ["T12"])
     moving: list[list[Artist]] = [[] for _ in panels]
 
     def draw(k: int) -> list[Artist]:
         for ax, own, ends, there in zip(panels, shots, arrows, moving, strict=True):
-            animation.renewed(ax, there, partial(animation.draw_frame, ax, drawing, own[k].shape, ends[k], longest))
+            film_frames.renewed(ax, there, partial(film_frames.draw_frame, ax, drawing, own[k].shape, ends[k], longest))
         now = float(torque[k])
         texts = write(float(angles[k]), {"T12": f"{signals.number(now)} N m"})
         return [*(artist for there in moving for artist in there), *texts, *follow(float(angles[k]), {"T12": now})]
@@ -85,8 +85,8 @@ def _panels(machine: MultiCylinder) -> tuple[Figure, list[Axes], Axes]:
     from matplotlib.figure import Figure
 
     places = sorted({*machine.positions})
-    width, height = animation.SIZE
-    figure = Figure((max(width, WIDTH * len(places)), height), animation.DPI, layout="constrained")
+    width, height = film_frames.SIZE
+    figure = Figure((max(width, WIDTH * len(places)), height), film_frames.DPI, layout="constrained")
     grid = figure.add_gridspec(2, len(places), height_ratios=(2.0, 1.0))
     throws = {z: figure.add_subplot(grid[0, k]) for k, z in enumerate(places)}
     return figure, [throws[z] for z in machine.positions], figure.add_subplot(grid[1, :])

@@ -1,0 +1,73 @@
+"""Make the film of a machine: of one scene, or of an engine of several cylinders."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from linksweep.base.memory import require_memory
+from linksweep.base.validate import count_problems, quote, refuse
+from linksweep.files.netcdf import scene_of
+from linksweep.plot.films.cylinder_film import film_of_cylinders
+from linksweep.plot.films.frames import DPI, SAMPLES, SIZE
+from linksweep.plot.films.machine_film import film_of_crank, film_of_track
+from linksweep.plot.kit.drawings import drawing_of
+from linksweep.plot.kit.style import small_type
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from linksweep.plot.kit.film import Film
+
+
+def animate(
+    scene: xr.Dataset | Scene | MultiCylinder, *, frames: int = 72, point: tuple[float, float] | None = None
+) -> Film:
+    """Make a film of a machine over its cycle: forces as arrows at the pins, and dots on the curves below.
+
+    Parameters
+    ----------
+    scene : Scene, Dataset or MultiCylinder
+        Scene of one design, or a Dataset from `linksweep.sweep` that holds it: then of its angles, where they are no
+        whole cycle.
+    frames : int, default 72
+        Count of frames in a cycle, 25 a second.
+    point : tuple of float, default None
+        Point whose curve is drawn, (distance [m], angle [degree]) as `mechanism` takes it.
+
+    Returns
+    -------
+    Film
+        Film that a notebook shows as the last expression of a cell. ``film.save("machine.gif")`` and
+        ``film.save("machine.html")`` write it. Arrows are to one scale, that of the curves below them; where forces
+        grow without bound, they end a little beyond it.
+
+    Raises
+    ------
+    ValueError
+        For more than one design, and where there is no result at two angles or more.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> film = ls.plot.animate(ls.example("press"), frames=24)
+    >>> len(film)
+    24
+    """
+    refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
+    require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
+    if isinstance(scene, MultiCylinder):
+        refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
+        with small_type():
+            return film_of_cylinders(scene.in_memory, frames)
+    one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
+    index = one.mechanism.index
+    sound = isinstance(scene, Scene) or index in scene.dims
+    refuse([] if sound else [f"scene has no dimension {index}: take what ls.sweep returns"])
+    angles: Any = SAMPLES if isinstance(scene, Scene) else scene[index].values
+    with small_type():
+        if one.mechanism.track:
+            return film_of_track(one, one.mechanism.track, angles, frames)
+        return film_of_crank(one, drawing_of(one.mechanism), angles, frames, point)

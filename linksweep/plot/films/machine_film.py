@@ -1,0 +1,95 @@
+"""The film of one machine: its links, or its car, above the curves of its forces."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from linksweep.mechanisms.drawing import Drawing, Track
+from linksweep.plot import track as track_plot
+from linksweep.plot.curves import HEADROOM, forces
+from linksweep.plot.films.frames import (
+    TINY,
+    arrows_of,
+    draw_frame,
+    fit,
+    follower,
+    frames_of,
+    panels,
+    readings,
+    renewed,
+    scale,
+    way,
+)
+from linksweep.plot.kit import signals
+from linksweep.plot.machine import ARROW, draw_ground
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+    from linksweep.plot.kit.film import Film
+
+
+def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: Any) -> Film:
+    """Return the film of a machine with a crank."""
+    from linksweep.plot.kit.film import Film
+
+    outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
+    cycle = sweep(scene, angles, of=[*outputs, "omega2"])
+    signals.require_one_design(cycle[name] for name in outputs)
+    shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
+    figure, machine, curves = panels()
+    forces(cycle, ax=curves)
+    top = curves.get_ylim()[1] / HEADROOM
+    draw_ground(machine, scene, drawing, shots[0].shape)
+    longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
+    arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
+    fit(machine, drawing, shots, arrows)
+    scale(machine, top, longest)
+    say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
+    follow = follower(curves, list(drawing.forces))
+    moving: list[Artist] = []
+
+    def draw(k: int) -> list[Artist]:
+        shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
+        renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
+        texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
+        return [*moving, *say(shot.angle, texts), *follow(shot.angle, sizes)]
+
+    return Film(figure, draw, len(shots))
+
+
+def film_of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
+    """Return the film of a car on a track."""
+    from linksweep.plot.kit.film import Film
+
+    names, index = [track.force, track.speed], {scene.mechanism.index: signals.INDEX}
+    cycle = sweep(scene, angles, of=names).rename(index)
+    signals.require_one_design(cycle[name] for name in names)
+    at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
+    shots = sweep(scene, at, of=names).rename(index)
+    force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
+    figure, ax, curve = panels()
+    radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))
+    track_plot.draw_track(ax, cycle, track.force, radius)
+    track_plot.draw_force(curve, cycle, scene)
+    write = readings(ax, "$\\theta$ =", {track.force: "$F_N$", track.speed: "speed"})
+    follow = follower(curve, [track.force])
+    moving: list[Artist] = []
+
+    def draw(k: int) -> list[Artist]:
+        renewed(ax, moving, partial(_car, ax, at[k], radius, force[k] / largest))
+        values = {track.force: f"{signals.number(force[k])} N", track.speed: f"{signals.number(speed[k])} m/s"}
+        return [*moving, *write(at[k], values), *follow(at[k], {track.force: force[k]})]
+
+    return Film(figure, draw, len(at))
+
+
+def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
+    track_plot.draw_car(ax, radius, angle)
+    track_plot.press(ax, angle, radius * (1.0 + track_plot.BAND * share), radius, linewidth=1.6, mutation_scale=11.0)
