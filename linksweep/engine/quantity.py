@@ -61,7 +61,7 @@ class Total:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """All that a mechanism can compute: rows, the quantities that can be requested, and the sweep's own dim.
+    """Table of a machine: rows, the quantities that can be requested, and the sweep's own dim.
 
     The rows `between` replace others between samples, where no grid tabulates the index.
     """

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from linksweep.base.equality import ByContent
-from linksweep.base.fields import field_problems
+from linksweep.base.fields import ANYTHING, declared, field_problems
 from linksweep.base.validate import Number, choice_problems, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
@@ -269,8 +269,12 @@ def register(kind: Kind) -> Kind:
     """Add a machine to `MECHANISMS`; a decorator of its dataclass, or one call.
 
     Scene, scene files and results look machines up in `MECHANISMS` at the moment of use, so that a machine may be
-    registered at any time; ``del MECHANISMS["ScotchYoke"]`` removes it.
+    registered at any time; ``del MECHANISMS["ScotchYoke"]`` removes it. A field of no stated kind is
+    refused.
     """
+    unstated = [f.name for f in declared(kind) if f.kind is ANYTHING and not isinstance(f.default, str)]
+    advice = "must state what it holds: parameter(...) for a number, of_kind(LINK) for a link"
+    refuse([f"{kind.__name__}.{name}: {advice}" for name in unstated])
     MECHANISMS[kind.__name__] = kind
     return kind
 

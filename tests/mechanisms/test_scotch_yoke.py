@@ -3,6 +3,7 @@
 The closed forms are written in complex numbers and by virtual work; they share no formula with the machine's rows.
 """
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ import xarray as xr
 from scotch_yoke import ScotchYoke
 
 import linksweep as ls
-from linksweep.mechanisms.mechanism import MECHANISMS
+from linksweep.mechanisms.mechanism import MECHANISMS, register
 
 G = 9.81  # m/s²
 CRANK = ls.Link(length=0.10, mass=2.0, inertia=0.01, cg_distance=0.03, cg_angle=20.0)
@@ -22,7 +23,7 @@ BRAKE = ls.Load("crank", torque=-2.0)
 
 
 @pytest.fixture(autouse=True)
-def register():
+def registered():
     with scotch_yoke.registered():
         yield
 
@@ -130,3 +131,13 @@ def test_the_file_knows_it_no_more(scene, tmp_path):
     with pytest.raises(ValueError, match="ScotchYoke"):
         ls.load_scene(tmp_path / "yoke.toml")
     MECHANISMS["ScotchYoke"] = ScotchYoke
+
+
+def test_a_machine_with_a_field_of_no_stated_kind_is_not_registered():
+    @dataclass(frozen=True, eq=False, repr=False)
+    class Undeclared(ScotchYoke):
+        stroke: float = 0.1
+
+    with pytest.raises(ValueError, match=r"^Undeclared\.stroke: must state what it holds: parameter"):
+        register(Undeclared)
+    assert "Undeclared" not in MECHANISMS
