@@ -50,6 +50,7 @@ def test_banks_share_one_crank():
     assert left < 0.0 < right
 
 
+@pytest.mark.long
 def test_a_report_has_the_numbers_of_the_results(tmp_path):
     path, again = tmp_path / "four.html", tmp_path / "again.html"
     for name in (path, again):

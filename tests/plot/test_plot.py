@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import boxes, closed_figures, curves, line, page_hides_nothing, pixels, plt, size_of, texts  # noqa: F401
+from long import long_but
 
 import linksweep as ls
 import linksweep.plot.accessor
@@ -258,7 +259,7 @@ def test_a_few_designs_of_one_signal_get_a_line_each():
         np.testing.assert_array_max_ulp(np.array([*drawn.values()]), values.values, maxulp=2)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", long_but(SCENES, "press"))
 def test_nothing_on_the_page_hides_anything(cycles, name):
     figure = cycles[name].linksweep.cycle()
     assert [bool(ax.get_title(loc="left")) for ax in figure.axes] == [True] * 4

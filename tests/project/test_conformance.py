@@ -227,7 +227,7 @@ def subject(name: str) -> Subject:
 
 
 MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", "inline-four")
-ON_PAPER = {"press", "engine", "quick-return", "inline-four"}
+ON_PAPER = {"press", "engine", "quick-return", "scotch-yoke", "inline-four"}
 """Machines whose report takes seconds: it is a long test."""
 
 

@@ -28,7 +28,7 @@ from linksweep.scene.grid import crank_grid
 EXAMPLES = os.environ.get("LINKSWEEP_FUZZ")
 FOREVER = 60  # seconds: an example takes some hundredths
 fuzzed = settings(
-    max_examples=int(EXAMPLES or 100),
+    max_examples=int(EXAMPLES or 50),
     derandomize=not EXAMPLES,
     deadline=None,
     database=None,

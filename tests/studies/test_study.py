@@ -220,6 +220,7 @@ sys.exit(main())
 """
 
 
+@pytest.mark.long
 def test_ctrl_c_states_how_to_continue(folder, capsys):
     words = ["study", "scene.toml", "-o", "study.nc", "--chunk", "2"]
     process = subprocess.Popen(

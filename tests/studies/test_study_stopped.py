@@ -236,6 +236,7 @@ def test_a_disk_without_room_for_the_file_is_refused_before_writing(stopped, mon
 
 
 @pytest.mark.skipif(not (hasattr(os, "geteuid") and os.geteuid() == 0), reason="only root can make a small disk")
+@pytest.mark.long
 def test_a_full_disk(tmp_path):
     disk = tmp_path / "disk"
     disk.mkdir()

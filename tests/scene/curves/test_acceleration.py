@@ -178,7 +178,9 @@ def test_an_omega2_at_one_angle_without_alpha2_is_refused():
     assert line.endswith("or give alpha2")
 
 
-@pytest.mark.parametrize(("words", "expected"), [({}, False), ({"alpha2": 0.0}, True)])
+@pytest.mark.parametrize(
+    ("words", "expected"), [pytest.param({}, False, marks=pytest.mark.long), ({"alpha2": 0.0}, True)]
+)
 def test_command_line_and_report_state_the_difference_of_alpha2(tmp_path, monkeypatch, capsys, words, expected):
     """30²·0.2·(1 + 0.2·cos θ)·sin θ is largest, 183.4 rad/s², at 79.1 degrees."""
     monkeypatch.chdir(tmp_path)
