@@ -126,7 +126,8 @@ def one_design(path: Path) -> Scene:
     """Return the scene of a file, of one design."""
     scene = load_scene(path)
     several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
-    refuse([f"{path}: has several designs, over {several}; this takes one, peaks and study take many"] * bool(several))
+    if several:
+        refuse([f"{path}: has several designs, over {several}; this takes one, peaks and study take many"])
     return scene
 
 

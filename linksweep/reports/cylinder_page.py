@@ -33,7 +33,8 @@ SIGNALS = [name for name in SHAKING if name not in ("Fsx", "Fsy")]
 def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
     """Return the parts of the page of an engine of one design."""
     engine = machine.engine
-    refuse(["engine: has several designs, and a report shows one; give one"] * bool(design_labels(engine)))
+    if design_labels(engine):
+        refuse(["engine: has several designs, and a report shows one; give one"])
     refuse(turning_problems(engine))
     worst = peaks(machine, of=[*SIGNALS, *(f"{name}_bound" for name in SIGNALS), *PINS], threads=threads)
     refuse([] if int(worst["status"]) == 0 else ["engine: must run all the way round; ls.check tells where it ends"])

@@ -178,7 +178,7 @@ def _largest(arrays: Iterable[xr.DataArray]) -> xr.DataArray:
 
 def _efficiency(scene: Scene, loss: xr.DataArray, theta2: int, threads: int | None) -> xr.DataArray:
     """Return the efficiency by energies over time: a sample stands for the time that the crank takes to the next."""
-    names = ["power", "omega2"] + ["friction_power"] * ("friction_power" in scene.table.quantity)
+    names = [name for name in ("power", "omega2", "friction_power") if name in scene.table.quantity]
     cycle = sweep(scene, theta2, of=names, threads=threads)
     times = 1.0 / abs(cycle["omega2"])
     lost = ((loss - cycle.get("friction_power", 0.0)) * times).sum("theta2", skipna=False)

@@ -56,7 +56,9 @@ def animate(
     >>> len(film)
     24
     """
-    refuse(count_problems("frames", frames) or [f"frames = {frames}: must be 2 or more"] * (frames < 2))
+    refuse(count_problems("frames", frames))
+    if frames < 2:
+        refuse([f"frames = {frames}: must be 2 or more"])
     require_memory(f"frames = {quote(frames)}", float(frames * math.prod(SIZE) * DPI**2))
     if isinstance(scene, MultiCylinder):
         refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])

@@ -187,7 +187,7 @@ class Load(ChangingLoad):
         """Return the load with all that changes over the revolution at its angles."""
         following = self.over is not None
         sample = partial(self._followed, *self._positions(revolution)) if following else revolution.sample
-        rules = (*(FORCE,) * len(self.force or ()), TORQUE)
+        rules = (FORCE, FORCE, TORQUE) if self.force else (TORQUE,)
         *force, torque = (
             sample(at, number, rule) for (at, number), rule in zip(self._changing_at(path), rules, strict=True)
         )
