@@ -102,7 +102,7 @@ class FourBar(Mechanism):
     ground_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
-    links: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
+    roles: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker")
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES

@@ -118,7 +118,7 @@ class InvertedSliderCrank(Mechanism):
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
 
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
-    links: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
+    roles: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES

@@ -42,7 +42,7 @@ class Mechanism(ByContent, ABC):
             crank: AnyLink = of_kind(LINK)
             yoke_mass: Number = parameter("mass", at_least=0.0)
 
-            links = ("crank", "yoke")
+            roles = ("crank", "yoke")
             ...
 
     Scenes, scene files, sweeps, checks, peaks and studies then take it like the machines of this package.
@@ -64,7 +64,7 @@ class Mechanism(ByContent, ABC):
     """Values of those parameters of `motion` that a scene leaves out."""
     drives: ClassVar[Mapping[str, str]] = {}
     """Names of the unknown torque or force, by the part that can be driven."""
-    links: ClassVar[tuple[str, ...]] = ()
+    roles: ClassVar[tuple[str, ...]] = ()
     """Roles of the moving links, on which loads may act."""
     pins: ClassVar[Pins] = {}
     """Numbers of the two links of each pin, by its letter."""
@@ -163,7 +163,7 @@ class Mechanism(ByContent, ABC):
             role: distribution(parts[role])
             if role in parts
             else MassDistribution(*(getattr(self, f"{role}_{name}", 0.0) for name in names))
-            for role in self.links
+            for role in self.roles
         }
 
     def with_masses(self, masses: Mapping[str, MassDistribution]) -> Self:

@@ -100,7 +100,7 @@ class SliderCrank(Mechanism):
     slider_cg_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = DRIVES
-    links: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
+    roles: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES

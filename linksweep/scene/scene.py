@@ -364,4 +364,4 @@ def _own_label(name: str, value: Any) -> Any:
 def _links_of(mechanism: Any) -> tuple[str, ...]:
     """Return the moving links of a mechanism; for an object that is none, those of every mechanism."""
     kinds = [mechanism] if isinstance(mechanism, Mechanism) else MECHANISMS.values()
-    return tuple(dict.fromkeys(role for kind in kinds for role in kind.links))
+    return tuple(dict.fromkeys(role for kind in kinds for role in kind.roles))

@@ -76,7 +76,7 @@ class ScotchYoke(Mechanism):
     yoke_cg_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12"}
-    links: ClassVar[tuple[str, ...]] = ("crank", "yoke")
+    roles: ClassVar[tuple[str, ...]] = ("crank", "yoke")
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = {"A": 2, "B": 2}
     bodies: ClassVar[tuple[Body, ...]] = (CRANK, YOKE)

@@ -112,7 +112,7 @@ def _passing(random: Random) -> Made:
 
 
 def _links(machine: Any) -> tuple[str, ...]:
-    return tuple(link for link in machine.links if link in ("crank", "coupler", "rod", "rocker", "slider"))
+    return tuple(link for link in machine.roles if link in ("crank", "coupler", "rod", "rocker", "slider"))
 
 
 def _axes(machine: Any, link: str, place: float) -> tuple[complex, complex]:

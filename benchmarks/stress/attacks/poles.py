@@ -54,7 +54,7 @@ def _scene(random: Random, kind: str, drive: str) -> ls.Scene:
         break
     steady, push = random.normal(0.0, 5.0), random.normal(0.0, 30.0, 2)
     torque = (lambda t: steady + np.cos(np.radians(t))) if random.random() < 0.2 else steady
-    loads = [ls.Load("crank", torque=torque), ls.Load(mechanism.links[1], force=tuple(push))]
+    loads = [ls.Load("crank", torque=torque), ls.Load(mechanism.roles[1], force=tuple(push))]
     gravity = tuple(random.normal(0.0, 10.0, 2))
     return ls.Scene(mechanism, random.uniform(1.0, 30.0), random.normal(0.0, 100.0), gravity, loads, drive=drive)
 

@@ -118,7 +118,7 @@ def has_friction(scene: Scene) -> bool:
 
 def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
     """Return for each source a scene with its loads alone, and the parameters that silence the other sources."""
-    links = sampled.mechanism.links
+    links = sampled.mechanism.roles
     weightless = FRICTIONLESS | {"gravity_x": 0.0, "gravity_y": 0.0}
     bare = replace(sampled, loads=())
     sources = {f"{link} inertia": (bare, weightless | _massless({*links} - {link})) for link in links}

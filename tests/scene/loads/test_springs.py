@@ -28,7 +28,7 @@ MECHANISMS = {"four-bar": FOUR_BAR, "slider-crank": SLIDER_CRANK, "inverted": IN
 
 def all_kinds(mechanism):
     """Return springs and dampers, linear and torsional, between several pairs of links."""
-    crank, middle, last = mechanism.links
+    crank, middle, last = mechanism.roles
     return [
         ls.Spring(("ground", 0.3, 0.1), (middle, 0.1, 15.0), rate=2000.0, free_length=0.05),
         ls.Spring((last, 0.02, 100.0), (crank, 0.05, -30.0), rate=900.0, free_length=0.0),
@@ -232,7 +232,7 @@ def test_a_spring_does_no_work_in_a_cycle(mechanism):
     """Over a closed cycle, by its own power, and by the drive's work with and without it."""
     frictionless = replace(mechanism, friction=0.0) if mechanism.friction else mechanism
     springs = [load for load in all_kinds(mechanism) if isinstance(load, ls.Spring)]
-    springs.append(ls.TorsionSpring("ground", mechanism.links[2], rate=5.0, free_angle=150.0))
+    springs.append(ls.TorsionSpring("ground", mechanism.roles[2], rate=5.0, free_angle=150.0))
     for spring in springs:
         own = ls.sweep(scene(frictionless, spring), of=["load1_power", "power"])
         bare = ls.sweep(scene(frictionless), of=["power"])
