@@ -18,15 +18,19 @@ CAPABILITIES = {
 """Attributes that `Mechanism` leaves empty and a machine may offer: its name in words, and another way to results."""
 
 
-def offers(kind: type[Mechanism], capability: str) -> bool:
-    """Return whether machines of a kind offer a capability: they replace the empty attribute of `Mechanism`."""
-    attribute = getattr(kind, capability)
+COMPUTED = ("cylinder", "stroke_findings", "balancing_moments")
+"""Those of them that are computed from numbers: the class decides whether a machine has them."""
+
+
+def offers(machine: Mechanism | type[Mechanism], capability: str) -> bool:
+    """Return whether a machine, or a kind of machine, replaces the empty attribute of `Mechanism`."""
+    kind = machine if isinstance(machine, type) else type(machine)
+    attribute = getattr(kind if capability in COMPUTED else machine, capability)
     return bool(attribute) and attribute is not getattr(Mechanism, capability)
 
 
-def lack(machine: Mechanism | type[Mechanism], capability: str) -> str:
+def lack(machine: Mechanism, capability: str) -> str:
     """Return "a LoopTrack, which has no pins: give another machine, …"; empty where it offers the capability."""
-    kind = machine if isinstance(machine, type) else type(machine)
     others = ", ".join(name for name, other in MECHANISMS.items() if offers(other, capability))
-    sentence = f"a {kind.__name__}, which has no {CAPABILITIES[capability]} give another machine ({others})"
-    return "" if offers(kind, capability) else sentence
+    sentence = f"a {type(machine).__name__}, which has no {CAPABILITIES[capability]} give another machine ({others})"
+    return "" if offers(machine, capability) else sentence

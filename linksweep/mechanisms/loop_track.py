@@ -82,10 +82,9 @@ class LoopTrack(Mechanism):
     highlights: ClassVar[Mapping[str, str]] = {"speed": "speed", "a_total": "largest acceleration"}
     track: ClassVar[Track] = Track("radius", "normal_force", "speed", "The track and its force on the car")
 
-    @classmethod
-    def choices(cls) -> Mapping[str, Collection[str]]:
+    def choices(self) -> Mapping[str, Collection[str]]:
         """Return the allowed profiles."""
-        return {"profile": cls.profiles}
+        return {"profile": self.profiles}
 
     def motion_parameters(self, values: Mapping[str, Any]) -> dict[str, Number]:
         """Return the entry speed, the thrust, and 1 or 0 for work that counts or not."""

@@ -134,10 +134,9 @@ class Mechanism(ByContent, ABC):
         """Return unknowns and rows of the square system as the source document prints them."""
         return self.unknowns(drive), self.equations(drive)
 
-    @classmethod
-    def choices(cls) -> Mapping[str, Collection[str]]:
+    def choices(self) -> Mapping[str, Collection[str]]:
         """Return the allowed values of each parameter of `motion` that is a choice."""
-        return {"drive": cls.drives}
+        return {"drive": self.drives}
 
     def motion_parameters(self, values: Mapping[str, Any]) -> dict[str, Number]:
         """Return the numbers of the motion under the names that the physics takes, of a scene's parameters by name."""

@@ -53,11 +53,11 @@ def loop(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['y [m]', 'force of the track $F_N$ [N]']
     """
-    kind = machine_of_results(ds)
-    track = kind.track if kind else None
-    if kind is None or track is None or kind.index not in ds.dims or track.force not in ds:
+    machine = machine_of_results(ds)
+    track = machine.track if machine else None
+    if machine is None or track is None or machine.index not in ds.dims or track.force not in ds:
         raise ValueError("ds has no force of a track over the position: take what ls.sweep returns for a car in a loop")
-    scene, ds = scene_of(ds), ds.rename({kind.index: signals.INDEX})
+    scene, ds = scene_of(ds), ds.rename({machine.index: signals.INDEX})
     signals.require_one_design([ds[track.force]])
     radius = float(getattr(scene.mechanism, track.radius))
     with panels(1, 2, figsize=PAGE, width_ratios=(1.0, 1.15)) as (figure, (left, right)):

@@ -144,20 +144,21 @@ class Scene(ByContent):
 
     def _motion_problems(self) -> list[str]:
         """Return the problems of the parameters for motion: those that the mechanism does not take, or requires."""
-        kind, values = type(self.mechanism), {name: getattr(self, name) for name in MOTION}
-        own, required = ", ".join((*kind.motion, "gravity")), kind.motion[0]
+        machine, values = self.mechanism, {name: getattr(self, name) for name in MOTION}
+        kind, own, required = type(machine).__name__, ", ".join((*machine.motion, "gravity")), machine.motion[0]
         problems = [
-            f"{name} = {quote(value)}: is no parameter of {kind.__name__}; give its own: {own}"
+            f"{name} = {quote(value)}: is no parameter of {kind}; give its own: {own}"
             for name, value in values.items()
-            if name not in kind.motion and not left_out(value)
+            if name not in machine.motion and not left_out(value)
         ]
         if left_out(values[required]):
-            problems.append(f"{required}: missing; give {kind.__name__} {field_rules(Scene)[required].number}")
-        choices = kind.choices().items()
+            problems.append(f"{required}: missing; give {kind} {field_rules(Scene)[required].number}")
+        choices = machine.choices().items()
         return problems + [p for name, allowed in choices for p in choice_problems(name, values[name], allowed)]
 
     def _load_problems(self) -> list[str]:
-        links, loads = _links_of(self.mechanism), self._loads() if isinstance(self.loads, tuple) else []
+        links: tuple[str, ...] = getattr(self.mechanism, "roles", ())
+        loads = self._loads() if isinstance(self.loads, tuple) else []
         actions = [(path, load) for path, load in loads if isinstance(load, Action)]
         return [p for path, load in actions for p in load.problems(path, links)] if links else []  # else none are taken
 
@@ -359,9 +360,3 @@ def _own_label(name: str, value: Any) -> Any:
     """Return an array over a dim of its own name with its values as labels: in a file it is this dim's coordinate."""
     own = isinstance(value, xr.DataArray) and value.dims == (name,) and name not in value.coords
     return value.assign_coords({name: value.values}) if own and not is_lazy(value) else value
-
-
-def _links_of(mechanism: Any) -> tuple[str, ...]:
-    """Return the moving links of a mechanism; for an object that is none, those of every mechanism."""
-    kinds = [mechanism] if isinstance(mechanism, Mechanism) else MECHANISMS.values()
-    return tuple(dict.fromkeys(role for kind in kinds for role in kind.roles))

@@ -1,4 +1,4 @@
-"""Find the machine whose results a Dataset holds, and the drawing that its class declares."""
+"""Find the machine whose results a Dataset holds, and its drawing."""
 
 from __future__ import annotations
 
@@ -13,21 +13,24 @@ from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.results.compute import require_dataset
+from linksweep.scene.file.reading import mechanism_of
 
 LOST = Drawing(joints={"A": (1, 2), "B": (3, 2), "C": (4, 3), "ground": (1, 4)})
 """Drawing for a Dataset that has lost its scene, which alone states how link 4 is held."""
+LOST_DRIVES = ("T12", "T13", "T14", "cylinder_force")
+"""Torques and forces of a drive for such a Dataset."""
 
 
-def joints_of(machine: Mechanism | type[Mechanism]) -> Drawing:
-    """Return the drawing of a machine, or where its class declares none the joints that are its pins.
+def joints_of(machine: Mechanism) -> Drawing:
+    """Return the drawing of a machine, or where it has none the joints that are its pins.
 
     Raises ValueError for a machine without pins.
     """
     return Drawing(machine.pins, machine.journals) if machine.pins and not machine.drawing else drawing_of(machine)
 
 
-def drawing_of(machine: Mechanism | type[Mechanism]) -> Drawing:
-    """Return the drawing of a machine. Raises ValueError where its class declares none."""
+def drawing_of(machine: Mechanism) -> Drawing:
+    """Return the drawing of a machine. Raises ValueError where it has none."""
     if machine.drawing is None:
         raise ValueError(f"cannot draw {lack(machine, 'drawing')}")
     return machine.drawing
@@ -35,23 +38,23 @@ def drawing_of(machine: Mechanism | type[Mechanism]) -> Drawing:
 
 def drawing_of_results(ds: xr.Dataset) -> Drawing:
     """Return the joints of the machine whose results a Dataset holds; `LOST` where it has lost its scene."""
-    kind = machine_of_results(ds)
-    return LOST if kind is None else joints_of(kind)
+    machine = machine_of_results(ds)
+    return LOST if machine is None else joints_of(machine)
 
 
-def machine_of_results(ds: xr.Dataset) -> type[Mechanism] | None:
-    """Return the class of the machine whose results a Dataset holds; None where it has lost its scene."""
-    name = _scene_parameters(ds).get("mechanism", {}).get("type")
-    known = ", ".join(MECHANISMS)
+def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
+    """Return the machine whose results a Dataset holds, for its names alone; None where it has lost its scene."""
+    name, known = _scene_parameters(ds).get("mechanism", {}).get("type"), ", ".join(MECHANISMS)
     refuse([] if name is None or name in MECHANISMS else [f"ds: is of a {name}; registered are {known}: register it"])
-    return None if name is None else MECHANISMS[name]
+    return None if name is None else _machine(ds.attrs["scene"])
 
 
 def efforts(ds: xr.Dataset) -> list[str]:
-    """Return the torque or force of the drive of a Dataset's scene; those of all machines where it has lost it."""
-    kind, drive = machine_of_results(ds), _scene_parameters(ds).get("drive")
-    drives = {part: name for each in ([kind] if kind else MECHANISMS.values()) for part, name in each.drives.items()}
-    return [drives[drive]] if drive in drives else list(drives.values())
+    """Return the torque or force of the drive of a Dataset's scene; every possible one where it has lost it."""
+    machine, drive = machine_of_results(ds), _scene_parameters(ds).get("drive", "")
+    if machine is None:
+        return list(LOST_DRIVES)
+    return [machine.drives[drive]] if drive in machine.drives else list(machine.drives.values())
 
 
 def _scene_parameters(ds: xr.Dataset) -> dict[str, Any]:
@@ -64,3 +67,8 @@ def _scene_parameters(ds: xr.Dataset) -> dict[str, Any]:
 @lru_cache(maxsize=16)
 def _parsed(text: str) -> dict[str, Any]:
     return tomllib.loads(text)
+
+
+@lru_cache(maxsize=16)
+def _machine(text: str) -> Mechanism:
+    return mechanism_of(_parsed(text))

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from linksweep.mechanisms import MECHANISMS
+from linksweep.base.validate import refuse
+from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.file.errors import Log, document
-from linksweep.scene.file.schema import build, kinds_of
+from linksweep.scene.file.schema import build, kinds_of, read
 from linksweep.scene.file.text_file import text_of
-from linksweep.scene.scene import Scene
+from linksweep.scene.scene import MECHANISM, Scene
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -59,6 +60,30 @@ def parse_scene(
     if log.problems:
         raise ValueError(log.report(text, name))
     return scene
+
+
+class StandIns(Mapping[str, xr.DataArray]):
+    """Arrays of one number each, for any path: for a mechanism that is needed for its names alone."""
+
+    def __getitem__(self, path: str) -> xr.DataArray:
+        return xr.DataArray([1.0], dims="design")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
+
+
+def mechanism_of(raw: dict[str, Any]) -> Mechanism:
+    """Make the mechanism of a document of `write_scene`, for its names alone: it may refer to arrays that are lost.
+
+    Raises ValueError for a document that has none.
+    """
+    log = Log(raw, StandIns(), (), (), Path(), whole=False)
+    mechanism: Mechanism = read(MECHANISM, raw.get("mechanism"), ("mechanism",), log)
+    refuse([problem for _, problem in log.problems])
+    return mechanism
 
 
 def _machines(raw: dict[str, Any]) -> list[type]:
