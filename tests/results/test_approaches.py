@@ -6,7 +6,7 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.results.peak_search.approaches import approaches
-from linksweep.results.peak_search.between import groups
+from linksweep.results.peak_search.groups import groups
 
 MACHINE = ls.FourBar(
     ls.Link(0.11, 0.13, 0.02, 0.01, -120.0),

@@ -15,7 +15,8 @@ import numpy as np
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.find_peaks import search_functions
 from linksweep.engine.run import Field
-from linksweep.results.peak_search.between import Array, Group, Places, in_period
+from linksweep.results.peak_search.between import Array, Places, in_period
+from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
 from linksweep.results.peak_search.poles import poles
 

@@ -17,7 +17,8 @@ from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
-from linksweep.results.peak_search.between import Array, Group, crossing, positions_at
+from linksweep.results.peak_search.between import Array, positions_at
+from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene

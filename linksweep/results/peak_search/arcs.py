@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from linksweep.results.peak_search.approaches import approaches
-from linksweep.results.peak_search.between import EVERYWHERE, Array, Group
+from linksweep.results.peak_search.between import EVERYWHERE, Array
+from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import (
     ASIDE,
     QUARTER,

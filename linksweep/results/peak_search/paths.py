@@ -23,7 +23,8 @@ from linksweep.results.peak_search.approaches import (
     approaches_of_turns,
     concatenated,
 )
-from linksweep.results.peak_search.between import Array, Group, by_row, crossing, in_period
+from linksweep.results.peak_search.between import Array, by_row, in_period
+from linksweep.results.peak_search.groups import Group, crossing
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""

@@ -18,7 +18,8 @@ import xarray as xr
 from linksweep.engine.run import Field
 from linksweep.mechanisms.limits.finding import Finding
 from linksweep.results.compute import surely_ok
-from linksweep.results.peak_search.between import PARTLY, Array, Group
+from linksweep.results.peak_search.between import PARTLY, Array
+from linksweep.results.peak_search.groups import Group
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.scene import Scene
 

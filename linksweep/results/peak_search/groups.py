@@ -1,0 +1,146 @@
+"""Divide the designs of a scene into groups that are searched together, by their assembly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import singledispatch
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.engine.run import Field
+from linksweep.engine.trace.plan import plan
+from linksweep.results.peak_search.between import (
+    EVERYWHERE,
+    PARTLY,
+    Array,
+    Places,
+    different_designs,
+    places_of,
+    quantities_at,
+)
+from linksweep.scene.parameters import replaced
+from linksweep.scene.scene import Scene
+
+AT_ONCE = 256
+"""Designs searched together, so that the memory for it does not grow with a study."""
+OWN_AT_ONCE = 16
+"""Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
+so the memory grows with the square of this number."""
+COMBINED = "_combined"
+"""Dim that combines the design dims of loads over the angle."""
+
+
+class Group(NamedTuple):
+    """Some designs of a scene, searched together.
+
+    `scene` may be another scene that has only these designs (see `_with_own_loads`): `designs` are their numbers in
+    `scene`, `places` their indices along the dims of the original scene. `quick` are the crank angles [degree] at which
+    some load or speed over the angle changes quickly, in any design of the original scene.
+    """
+
+    scene: Scene
+    designs: Array
+    places: Places
+    quick: Array
+
+    def some(self, rows: Array) -> Group:
+        """Return the designs in these rows of the group."""
+        return self._replace(designs=self.designs[rows], places={dim: at[rows] for dim, at in self.places.items()})
+
+    def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
+        """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
+        return quantities_at(self.scene, names, self.designs[rows], angles, threads)
+
+    def constants(self, *names: str) -> Array:
+        """Return values (names, designs) of quantities that depend on no angle."""
+        return self.values(names, np.arange(len(self.designs)), np.zeros(len(self.designs)))
+
+    def number(self, number: Any) -> Array:
+        """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
+        if not hasattr(number, "dims"):
+            return np.full(len(self.designs), float(number))
+        places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs)
+        return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
+
+
+@singledispatch
+def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_once: int = AT_ONCE) -> Iterator[Any]:
+    """Yield designs in groups small enough to be searched together.
+
+    Without `designs`, one design stands for all that share the values of these quantities.
+    """
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
+    chosen = different_designs(scene, names) if designs is None else designs
+    step = min(at_once, OWN_AT_ONCE) if own else at_once
+    for first in range(0, len(chosen), step):
+        part = chosen[first : first + step]
+        places = places_of(inputs.sizes, part)
+        yield _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
+
+
+def assembled_groups(
+    scene: Any, names: tuple[str, ...], kinds: tuple[float, ...] = (EVERYWHERE, PARTLY)
+) -> Iterator[tuple[float, Any]]:
+    """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
+    for group in groups(scene, (*names, "assembly")):
+        (assembly,) = group.constants("assembly")
+        for kind in kinds:
+            if np.any(assembly == kind):
+                yield kind, group.some(assembly == kind)
+
+
+@singledispatch
+def empty(scene: Any, names: tuple[str, ...]) -> dict[str, Field]:
+    """Return a Field of NaN for each of these quantities, over its design dims."""
+    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
+    request = plan(scene.table, names, inputs.forms)
+    dims = {name: tuple(dim for dim in request.dims(request.outputs[name]) if dim != index) for name in names}
+    return {name: Field(own, np.full(tuple(inputs.sizes[dim] for dim in own), np.nan)) for name, own in dims.items()}
+
+
+def empty_over_all(scene: Any, names: tuple[str, ...]) -> Field:
+    """Return a Field of NaN over all design dims that some of these quantities have."""
+    fields = empty(scene, names).values()
+    sizes = {dim: n for field in fields for dim, n in zip(field.dims, field.values.shape, strict=True)}
+    return Field(tuple(sizes), np.full(tuple(sizes.values()), np.nan))
+
+
+def _with_own_loads(scene: Scene, places: Places) -> Group:
+    """Return designs as a scene of their own, so that only their own loads are interpolated at their angles."""
+    index = scene.mechanism.index
+    own = [dim for dim in places if any(dim in array.dims for array in scene.arrays.values())]
+    combined, inverse = np.unique(np.stack([places[dim] for dim in own]), axis=1, return_inverse=True)
+    picked = {dim: xr.DataArray(row, dims=COMBINED) for dim, row in zip(own, combined, strict=True)}
+    arrays = {
+        path: array.drop_vars([name for name in array.coords if name != index]).isel(picked, missing_dims="ignore")
+        for path, array in scene.arrays.items()
+    }
+    part = replaced(scene, arrays)
+    sizes = part.at_one_angle.inputs.sizes
+    inside = {COMBINED: inverse.ravel()} | {dim: at for dim, at in places.items() if dim not in own}
+    designs = np.ravel_multi_index(tuple(inside[dim] for dim in sizes), tuple(sizes.values()))
+    return Group(part, designs, places, scene.quick.angles)
+
+
+Point = tuple[Array, Array]
+"""Angles [degree], and the values of a quantity there."""
+
+
+def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, steps: int) -> Array:
+    """Return angles near which a quantity of these designs crosses 0 between two points, by the Illinois method.
+
+    All designs take the same number of steps: one step evaluates them together.
+
+    Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
+    """
+    (a, f_a), (b, f_b) = start, end
+    for _ in range(steps):
+        x = b - f_b * (b - a) / (f_b - f_a)
+        (f,) = group.values((name,), rows, x)
+        beyond = (f < 0.0) == (f_b < 0.0)
+        a, f_a = np.where(beyond, a, b), np.where(beyond, 0.5 * f_a, f_b)
+        b, f_b = x, f
+    return b
