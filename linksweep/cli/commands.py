@@ -26,6 +26,7 @@ from linksweep.base.validate import refuse
 from linksweep.cli import summaries
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import load_scene
+from linksweep.mechanisms.between_links import force_name
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
@@ -196,7 +197,7 @@ def _balance(options: argparse.Namespace) -> None:
     weights = counterweights(scene, radius=options.radius, fraction=options.fraction)
     balanced = with_counterweights(scene, weights)
     drive = scene.mechanism.drives[scene.drive]
-    pins = [f"F{i}{j}_peak" for i, j in scene.mechanism.pins.values()]
+    pins = [f"{force_name(i, j)}_peak" for i, j in scene.mechanism.pins.values()]
     table = compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
     print(summaries.weight_lines(weights))
     print(summaries.balance_table(table))

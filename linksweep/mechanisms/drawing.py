@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base.degrees import cos_sin
+from linksweep.mechanisms.between_links import force_name, is_pin, pair_of
 
 Points = dict[str, np.ndarray]
 
@@ -92,12 +93,12 @@ class Drawing:
     @property
     def forces(self) -> dict[str, str]:
         """Name of the joint of each force, such as F12."""
-        return {f"F{i}{j}": name for name, (i, j) in self.joints.items()}
+        return {force_name(i, j): name for name, (i, j) in self.joints.items()}
 
     @property
     def joint_of(self) -> dict[str, str]:
         """Name of the joint of each force and of its reaction."""
-        return {f"F{i}{j}": name for name, pair in self.joints.items() for i, j in (pair, pair[::-1])}
+        return {force_name(i, j): name for name, pair in self.joints.items() for i, j in (pair, pair[::-1])}
 
     @property
     def pin_forces(self) -> list[str]:
@@ -116,13 +117,13 @@ class Drawing:
 
     def link_of(self, force: str, frame: str) -> int:
         """Return the link of a frame in which a force Fij is plotted; in a slide, link j takes the journal's place."""
-        i, j = int(force[1]), int(force[2])
+        i, j = pair_of(force) or (1, 1)
         journal = self.journals.get(self.joint_of.get(force, ""), j)
         return {"ground": 1, "link": j, "journal": journal, "bearing": i + j - journal}[frame]
 
     def at_pin(self, force: str) -> bool:
-        """Return whether a force acts at a pin, which has a letter for a name."""
-        return len(self.joint_of[force]) == 1
+        """Return whether a force acts at a pin."""
+        return is_pin(self.joint_of[force])
 
     def joint_text(self, force: str) -> str:
         """Return the joint of a force in words: "pin C", "guide"."""

@@ -93,4 +93,5 @@ def written(text: str) -> str:
 def symbol(name: str) -> str:
     """Return F32 as F₃₂; a name in words without its underscores."""
     letter, rest = name[:1], name[1:]
-    return letter + rest.translate(LOWERED) if re.fullmatch(r"\d+|s", rest) else name.replace("_", " ")
+    numbered = re.fullmatch(r"\d+(_\d+)?|s", rest)
+    return letter + rest.replace("_", ",").translate(LOWERED) if numbered else name.replace("_", " ")

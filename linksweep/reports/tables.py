@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.mechanisms.between_links import is_pin
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
 
@@ -57,7 +58,7 @@ def _where(results: Results, name: str) -> str:
     if not at_pin:
         return name_in_words.split(" on the ")[0].split(" about ")[0]
     here, there = (part.partition("(")[2].partition(")")[0] for part in pair.split(" on link "))
-    return f"{'pin ' if len(pin) == 1 else ''}{pin}: {here} on {there}"
+    return f"{'pin ' if is_pin(pin) else ''}{pin}: {here} on {there}"
 
 
 def drive(results: Results) -> Markup:

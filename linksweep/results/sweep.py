@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.mechanisms.between_links import force_name
 from linksweep.results.compute import (
     angles_of,
     blank,
@@ -117,7 +118,7 @@ def sweep(
 def default_names(scene: Scene) -> tuple[str, ...]:
     """Return the names of the quantities that a sweep computes by default: magnitudes of pin forces, too."""
     mechanism = scene.mechanism
-    magnitudes = tuple(f"F{i}{j}" for i, j in mechanism.pins.values())
+    magnitudes = tuple(force_name(i, j) for i, j in mechanism.pins.values())
     return mechanism.kinematics() + mechanism.dynamics(scene.drive) + magnitudes
 
 

@@ -13,6 +13,7 @@ from linksweep.base.checked_number import array_unit_problems, checked_number
 from linksweep.base.conversion import all_to_float64, to_float64
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
+from linksweep.mechanisms.between_links import pair_of
 from linksweep.results.compute import require
 from linksweep.results.dataset import with_units
 from linksweep.results.over_time import mean_over_time
@@ -23,8 +24,6 @@ INERTIA = Rule("inertia", at_least=0.0)
 CURVE = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torque", at_least=0.0)}
 RATIO = Rule("dimensionless", above=0.0)
 EFFICIENCY = Rule("dimensionless", above=0.0)
-DRIVEN = {"T12": 2, "T13": 3, "T14": 4}
-"""Number of the link that each torque turns."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +151,8 @@ def motor_load(
     ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
     refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
-    omega, alpha = f"omega{DRIVEN[torque]}", f"alpha{DRIVEN[torque]}"
+    _, link = pair_of(torque) or (1, 2)
+    omega, alpha = f"omega{link}", f"alpha{link}"
     cycle = sweep(scene, theta2, of=[torque, omega, alpha], threads=threads)
     index = scene.mechanism.index
     T, speed = cycle[torque].broadcast_like(cycle[index]), ratio * cycle[omega]
@@ -172,7 +172,6 @@ def motor_load(
 
 def _problems(scene: Scene, motor: Any) -> list[str]:
     problems = [] if isinstance(motor, Motor) else [f"motor = {quote(motor)}: must be a Motor"]
-    torque = scene.mechanism.drives[scene.drive]
-    if torque not in DRIVEN:
+    if pair_of(scene.mechanism.drives[scene.drive]) is None:
         problems.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
     return problems

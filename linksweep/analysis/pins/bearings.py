@@ -13,6 +13,7 @@ from linksweep.analysis.pins.bearing_life import UNBOUNDED, rotation_under_load
 from linksweep.analysis.pins.main_bearings import main_bearings
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
+from linksweep.mechanisms.between_links import force_name
 from linksweep.results.compute import angles_missing, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import joined, with_units
@@ -98,7 +99,10 @@ def bearings(
     names = [name for pin, pair in links.items() for name in _outputs(scene, pin, pair)]
     cycle = sweep(scene, theta2, of=["omega2", *dict.fromkeys(names)], threads=threads)
     fitted = {pin: (pins or {}).get(pin, Bearing()) for pin in links}
-    forces, exponents = {pin: _force(pair) for pin, pair in links.items()}, {p: b.exponent for p, b in fitted.items()}
+    forces, exponents = (
+        {pin: force_name(*pair) for pin, pair in links.items()},
+        {p: b.exponent for p, b in fitted.items()},
+    )
     rotation = rotation_under_load(scene, forces, exponents, part, threads)
     reach, speeds = _reach(cycle["theta2"], part), {pin: cycle[f"omega_{pin}"] for pin in links}
     parts = [
@@ -126,13 +130,9 @@ def _part_problems(part: Part | None, period: float) -> list[str]:
 
 def _outputs(scene: Scene, pin: str, links: tuple[int, int]) -> list[str]:
     i, j = links
-    force = _force(links)
+    force = force_name(*links)
     frames = [f"{force}{axis}_link{k}" for k in (i, j) if k != 1 for axis in "xy"]
     return [force, f"{force}x", f"{force}y", f"omega_{pin}", *frames]
-
-
-def _force(links: tuple[int, int]) -> str:
-    return "F{}{}".format(*links)
 
 
 def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
@@ -148,7 +148,7 @@ def _reach(angles: xr.DataArray, part: Part | None) -> xr.DataArray:
 
 def _in_frames(cycle: xr.Dataset, i: int, j: int, journal: int) -> dict[str, xr.DataArray]:
     """Return Fx and Fy in the axes of the ground, of the journal's link and of the bearing's."""
-    force, bearing = f"F{i}{j}", i + j - journal
+    force, bearing = force_name(i, j), i + j - journal
     suffixes = ["" if link == 1 else f"_link{link}" for link in (1, journal, bearing)]
     parts = {f"F{axis}": [cycle[f"{force}{axis}{suffix}"] for suffix in suffixes] for axis in "xy"}
     return {name: joined(arrays, "frame", FRAMES) for name, arrays in parts.items()}

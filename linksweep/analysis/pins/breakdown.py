@@ -7,7 +7,6 @@ load on a slider without friction.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -16,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import count_problems, refuse
+from linksweep.mechanisms.between_links import pair_of
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined
@@ -24,8 +24,6 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 FRICTIONLESS = {"friction": 0.0}
-FORCE = re.compile("[FT][0-9][0-9][a-z]?")
-"""Names of forces and torques between two links, as F32x, T12."""
 
 
 def breakdown(
@@ -107,7 +105,7 @@ def _names(scene: Scene, of: Any) -> tuple[str, ...]:
 def forces_of(scene: Scene) -> list[str]:
     """Return the names of forces that are linear in the sources: unknowns of the square system, and their sums."""
     drive = scene.mechanism.drives[scene.drive]
-    numbered = [name for name in scene.table.quantity if FORCE.fullmatch(name)]
+    numbered = [name for name in scene.table.quantity if pair_of(name.rstrip("xynt"))]
     return list(dict.fromkeys([*numbered, drive, "reduced_torque"]))
 
 

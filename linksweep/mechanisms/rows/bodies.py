@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linksweep.engine.quantity import Quantity, Row, Total
+from linksweep.mechanisms.between_links import force_name, pair_of
 from linksweep.physics import crank_driven, inertia, reduced_inertia, shaking
 from linksweep.physics.algebra import planar
 
@@ -196,7 +197,7 @@ def arm_rows(k: int, first: str, second: str | None = None) -> list[Row | Total]
 
 def pin_force_rows(i: int, j: int) -> list[Row | Total]:
     """Return rows of the magnitude of the force of link i on link j, and of the reaction, from its components."""
-    force, back = f"F{i}{j}", f"F{j}{i}"
+    force, back = force_name(i, j), force_name(j, i)
     return [
         Row(planar.square, (f"{force}_squared",), (f"{force}x", f"{force}y")),
         Row(planar.root, (force,), (f"{force}_squared",)),
@@ -211,11 +212,11 @@ def pin_force_quantities(i: int, j: int, pin: str, links: Mapping[int, str]) -> 
     """Return the force of link i on link j, and its reaction, as quantities."""
     quantities = []
     for a, b in ((i, j), (j, i)):
-        place = f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
+        name, place = force_name(a, b), f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
         quantities += [
-            Quantity(f"F{a}{b}x", "N", f"force {place}, component along x (positive to the right)"),
-            Quantity(f"F{a}{b}y", "N", f"force {place}, component along y (positive upwards)"),
-            Quantity(f"F{a}{b}", "N", f"magnitude of the force {place}", squared=f"F{a}{b}_squared"),
+            Quantity(f"{name}x", "N", f"force {place}, component along x (positive to the right)"),
+            Quantity(f"{name}y", "N", f"force {place}, component along y (positive upwards)"),
+            Quantity(name, "N", f"magnitude of the force {place}", squared=f"{name}_squared"),
         ]
     return quantities
 
@@ -241,7 +242,8 @@ def position_quantities(*pins: str) -> list[Quantity]:
 
 def drive_torque(name: str, link: str) -> Quantity:
     """Return the torque of the drive on a link as a quantity."""
-    return Quantity(name, "N m", f"torque of the drive on link {name[2]} ({link}), positive counter-clockwise")
+    _, driven = pair_of(name) or (1, 2)
+    return Quantity(name, "N m", f"torque of the drive on link {driven} ({link}), positive counter-clockwise")
 
 
 def drive_quantities(unknown: Quantity, powers: str = "drive, loads, gravity and inertia") -> list[Quantity]:

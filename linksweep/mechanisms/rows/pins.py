@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.rows.bodies import Body
+from linksweep.mechanisms.between_links import force_name, is_pin
+from linksweep.mechanisms.rows.bodies import Body, xy
 from linksweep.physics import bearing
 
 Pins = Mapping[str, tuple[int, int]]
@@ -17,8 +18,8 @@ Journals = Mapping[str, int]
 
 
 def rotating(pins: Pins) -> dict[str, tuple[int, int]]:
-    """Return the joints that turn: those named by a letter."""
-    return {pin: links for pin, links in pins.items() if len(pin) == 1}
+    """Return the joints that turn: pins, named by a letter."""
+    return {pin: links for pin, links in pins.items() if is_pin(pin)}
 
 
 def pin_rows(pins: Pins, bodies: Iterable[Body]) -> list[Row]:
@@ -29,7 +30,8 @@ def pin_rows(pins: Pins, bodies: Iterable[Body]) -> list[Row]:
     for pin, (i, j) in rotating(pins).items():
         rows.append(Row(bearing.relative_rotation, (f"omega_{pin}",), (rates[j], rates[i])))
         for k in {i, j} - {1}:
-            force, turned = (f"F{i}{j}x", f"F{i}{j}y"), (f"F{i}{j}x_link{k}", f"F{i}{j}y_link{k}")
+            force = xy(force_name(i, j))
+            turned = tuple(f"{part}_link{k}" for part in force)
             rows.append(Row(bearing.in_link_axes, turned, (*force, *by_number[k].axes)))
     return rows
 
@@ -41,12 +43,12 @@ def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
         relative = f"of link {j} ({links[j]}) relative to link {i} ({links[i]}) at pin {pin}"
         rotation = f"angular velocity {relative}, positive counter-clockwise"
         quantities.append(Quantity(f"omega_{pin}", "rad s-1", rotation))
-        force = f"force of link {i} ({links[i]}) on link {j} ({links[j]}) at pin {pin}"
+        name, force = force_name(i, j), f"force of link {i} ({links[i]}) on link {j} ({links[j]}) at pin {pin}"
         for k in sorted({i, j} - {1}):
             axes = f"of link {k} ({links[k]})"
             quantities += [
-                Quantity(f"F{i}{j}x_link{k}", "N", f"{force}, component along the x axis {axes}"),
-                Quantity(f"F{i}{j}y_link{k}", "N", f"{force}, component along the y axis {axes}"),
+                Quantity(f"{name}x_link{k}", "N", f"{force}, component along the x axis {axes}"),
+                Quantity(f"{name}y_link{k}", "N", f"{force}, component along the y axis {axes}"),
             ]
             quantities += _arm_quantities(pin, k, ({i, j} - {k}).pop(), links)
     return quantities

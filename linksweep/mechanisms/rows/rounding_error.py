@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.engine.trace import rounding
 from linksweep.engine.trace.graph import Node
+from linksweep.mechanisms.between_links import force_name
 
 EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
 """Inputs that reach the physics unrounded, as do lengths; others, such as cosines, have been rounded."""
@@ -18,7 +19,7 @@ def row(joints: Mapping[str, tuple[int, int]], closure: Mapping[str, str | float
     `closure` names the numbers that a machine makes in double-double, besides its crank's angle from a near-toggle,
     with the unit of a cosine in each.
     """
-    forces = [f"F{i}{j}{axis}" for i, j in joints.values() for axis in "xy"]
+    forces = [f"{force_name(i, j)}{axis}" for i, j in joints.values() for axis in "xy"]
     certain = {"psi_cos": 1.0, "psi_cos_lo": 1.0, "psi_sin": 1.0, **closure}
     n = len(certain)
 

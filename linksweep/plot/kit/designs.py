@@ -95,8 +95,10 @@ def in_words(name: str) -> str:
     """Return F32_peak as "$F_{32}$ peak", coupler.cg_angle as "coupler cg angle"; a path with numbers as it is."""
     if "[" in name:
         return name
-    first, _, rest = name.replace(".", "_").partition("_")
-    return f"{symbol(first) or first} {rest.replace('_', ' ')}".strip()
+    first, *rest = name.replace(".", "_").split("_")
+    if rest and symbol(f"{first}_{rest[0]}"):
+        first = f"{first}_{rest.pop(0)}"
+    return " ".join([symbol(first) or first, *rest])
 
 
 def whole(count: int) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
+from linksweep.mechanisms.between_links import pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
 
@@ -42,8 +43,7 @@ class Peak(NamedTuple):
 def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the components x and y of a pin force; of F23 as well where the Dataset has only F32."""
     _known_force(ds, pin)
-    back = f"F{pin[2]}{pin[1]}"
-    for name, sign in ((pin, 1.0), (back, -1.0)):
+    for name, sign in ((pin, 1.0), (reaction(pin), -1.0)):
         if f"{name}x" in ds and f"{name}y" in ds:
             return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
     raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with of=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
@@ -52,7 +52,7 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
 def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
     """Return the magnitude of a pin force: the Dataset's own, or from its components."""
     _known_force(ds, pin)
-    for name in (pin, f"F{pin[2]}{pin[1]}"):
+    for name in (pin, reaction(pin)):
         if name in ds:
             return ds[name]
     x, y = components(ds, pin)
@@ -60,8 +60,7 @@ def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
 
 
 def has_pin(ds: xr.Dataset, pin: str) -> bool:
-    back = f"F{pin[2]}{pin[1]}"
-    return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, back))
+    return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, reaction(pin)))
 
 
 def _known_force(ds: xr.Dataset, pin: str) -> None:
@@ -216,8 +215,8 @@ def angle_text(angle: float) -> str:
 
 
 def symbol(name: str) -> str:
-    """Return F32 in mathtext; nothing for a name in words."""
-    return f"${name[0]}_{{{name[1:]}}}$" if name[1:].isdigit() else ""
+    """Return F32 in mathtext, F11_3 with a comma; nothing for a name in words."""
+    return f"${name[0]}_{{{name[1:].replace('_', ',')}}}$" if pair_of(name) else ""
 
 
 def drive_kind(name: str) -> str:

@@ -20,6 +20,7 @@ from linksweep.base.equality import ByContent
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
 from linksweep.engine.quantity import Quantity
+from linksweep.mechanisms.between_links import force_name
 from linksweep.mechanisms.capabilities import lack
 from linksweep.results.compute import either, requested
 from linksweep.results.cylinders.cylinder_sums import (
@@ -149,7 +150,7 @@ class MultiCylinder(ByContent):
     @property
     def pin_forces(self) -> tuple[str, ...]:
         """Magnitudes of the pin forces of one cylinder, which do not depend on its bank angle."""
-        return tuple(f"F{i}{j}" for a, b in self.engine.mechanism.pins.values() for i, j in ((a, b), (b, a)))
+        return tuple(force_name(i, j) for a, b in self.engine.mechanism.pins.values() for i, j in ((a, b), (b, a)))
 
     @property
     def period(self) -> float:
