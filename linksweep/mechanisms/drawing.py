@@ -1,47 +1,57 @@
-"""Numbers and names that a plot needs of a machine: joints, bars, axes of links, block and guide; or a car's track."""
+"""Numbers and names that a plot needs of a machine: joints, links, their axes, blocks, guides; or a car's track."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import Number
 from linksweep.mechanisms.between_links import force_name, is_pin, pair_of
 
 Points = dict[str, np.ndarray]
 
 
 class Frame(NamedTuple):
-    """Axes of a link: the direction of x in words, and the name of its angle [degree], a quantity or a parameter."""
+    """Axes of a link: the direction of x in words, and its angle [degree].
+
+    The angle is a number, or the name of one in the results or among the parameters. It is turned on
+    by `turned` [degree].
+    """
 
     along: str
-    angle: str
+    angle: str | Number
+    turned: Number = 0.0
 
     @property
     def across(self) -> str:
         return self.along.split(",")[0]
 
 
+class Guide(NamedTuple):
+    """A straight line on the ground that a block slides on: a point of it [m], its direction, and whether its distance
+    from A is an offset to be drawn: the point is then the foot of A."""
+
+    point: np.ndarray
+    along: np.ndarray
+    offset: bool = False
+
+
 class Block(NamedTuple):
-    """A link that slides: its number, and the pin at its centre; its sides lie in the axes of its frame.
+    """A block: its number (None without mass), the pin at its centre, and the axes of its sides.
 
     It slides in a guide on the ground, or on a link that turns about a pin: `on` has the number of that link, and the
     pin.
     """
 
-    number: int
+    number: int | None
     pin: str
+    sides: Frame
+    guide: Callable[[Any], Guide] | None = None
     on: tuple[int, str] | None = None
-
-
-class Guide(NamedTuple):
-    """A straight line on the ground that a block slides on: the foot of pin A on it [m], and its direction."""
-
-    foot: np.ndarray
-    along: np.ndarray
 
 
 class Carrier(NamedTuple):
@@ -74,21 +84,24 @@ class Drawing:
 
     `joints` are the pairs of links (i, j) whose force Fij is plotted, by the joint's name: a pin, or a word where links
     touch otherwise. `journals` are the links that carry the pins' journals. `acts_at` is the pin where the arrow of a
-    force starts that acts at no pin. `fixed` returns the pins on the ground [m], `guide` the guide. `moving` are the
-    pins with positions among the quantities. `ideal` are parameters to set aside where only positions are computed.
+    force starts that acts at no pin. `bars` are the pins of each link. `fixed` returns the pins on the ground [m],
+    `wheels` the radius of each gear's pitch circle about its pin [m]. `moving` are the pins with positions among the
+    quantities. `telescopes` are the ends of cylinders. `ideal` are parameters to set aside where only positions are
+    computed.
     """
 
     joints: Mapping[str, tuple[int, int]]
     journals: Mapping[str, int] = field(default_factory=dict)
     frames: Mapping[int, Frame] = field(default_factory=dict)
-    bars: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+    bars: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
     fixed: Callable[[Any], Points] = lambda mechanism: {"A": np.zeros(2)}
     carrier: Carrier = COUPLER
-    block: Block | None = None
-    guide: Callable[[Any], Guide] | None = None
+    blocks: tuple[Block, ...] = ()
+    telescopes: tuple[tuple[str, str], ...] = ()
+    wheels: Callable[[Any], Mapping[str, float]] = lambda mechanism: {}
     acts_at: Mapping[str, str] = field(default_factory=dict)
-    ideal: Mapping[str, float] = field(default_factory=dict)
+    ideal: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def forces(self) -> dict[str, str]:
@@ -107,13 +120,19 @@ class Drawing:
 
     @property
     def angles(self) -> list[str]:
-        """Names of the angles of the links' axes."""
-        return [frame.angle for frame in self.frames.values()]
+        """Names of the angles of the axes of links and blocks."""
+        frames = [*self.frames.values(), *(block.sides for block in self.blocks)]
+        return list(dict.fromkeys(frame.angle for frame in frames if isinstance(frame.angle, str)))
+
+    def with_point_on(self, role: str, number: int) -> Drawing:
+        """Copy with the curve drawn by a point of another link."""
+        first = {block.number: block.pin for block in self.blocks} | {k: pins[0] for k, pins in self.bars.items()}
+        return self if number == self.carrier.number else replace(self, carrier=Carrier(role, number, first[number]))
 
     def start_of(self, force: str) -> str:
         """Return the pin where the arrow of a force starts."""
         joint = self.joint_of[force]
-        return self.acts_at.get(joint, joint)
+        return self.acts_at.get(joint, joint.partition(":")[0])
 
     def link_of(self, force: str, frame: str) -> int:
         """Return the link of a frame in which a force Fij is plotted; in a slide, link j takes the journal's place."""

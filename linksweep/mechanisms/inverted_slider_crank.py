@@ -25,6 +25,7 @@ from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, block_stroke
 
+ROCKER = Frame("rocker", "theta4")
 BLOCK_LENGTH = 1.0
 """Unit length of the block's axes, which lie along and across the rocker's line."""
 SLIDE_FORCES = {
@@ -127,12 +128,12 @@ class InvertedSliderCrank(Mechanism):
     drawing: ClassVar[Drawing] = Drawing(
         joints={name.removesuffix(" (at B)"): links for name, links in PINS.items()},
         journals=JOURNALS,
-        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rocker", "theta4"), 4: Frame("rocker", "theta4")},
+        frames={2: Frame("crank, A→B", "theta2"), 3: ROCKER, 4: ROCKER},
         bars={2: ("A", "B")},
         moving=("B",),
         fixed=ground_pins,
         carrier=Carrier("rocker", 4, "D"),
-        block=Block(3, "B", on=(4, "D")),
+        blocks=(Block(3, "B", ROCKER, on=(4, "D")),),
         acts_at={"slide": "B"},
         ideal={"friction": 0.0},
     )

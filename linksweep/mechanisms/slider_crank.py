@@ -31,12 +31,13 @@ UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y"
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
 SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0, "omega4": 0.0, "alpha4": 0.0}
 """Inputs of the slider as a body that does not turn; its axes lie along and across the guide."""
+GUIDE = Frame("guide", "slide_angle")
 
 
 def _guide(mechanism: Any) -> Guide:
     """Return the guide of a slider-crank as plots draw it."""
     along = direction(mechanism.slide_angle)
-    return Guide(float(mechanism.offset) * np.array([-along[1], along[0]]), along)
+    return Guide(float(mechanism.offset) * np.array([-along[1], along[0]]), along, offset=True)
 
 
 @register
@@ -110,12 +111,11 @@ class SliderCrank(Mechanism):
     drawing: ClassVar[Drawing] = Drawing(
         joints=PINS,
         journals=JOURNALS,
-        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: Frame("guide", "slide_angle")},
+        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: GUIDE},
         bars={2: ("A", "B"), 3: ("B", "C")},
         moving=("B", "C"),
         carrier=Carrier("rod", 3, "B"),
-        block=Block(4, "C"),
-        guide=_guide,
+        blocks=(Block(4, "C", GUIDE, _guide),),
         acts_at={"guide": "C"},
         ideal={"friction": 0.0},
     )

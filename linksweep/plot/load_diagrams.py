@@ -10,11 +10,12 @@ import xarray as xr
 from linksweep.analysis.pins.bearings import FRAMES
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
-from linksweep.mechanisms.drawing import Drawing
+from linksweep.mechanisms.drawing import Drawing, Frame
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import force_color
 from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.locus import BEYOND, SIZE, draw_cross, draw_locus, set_limits
+from linksweep.plot.kit.shape import angle_of
 from linksweep.plot.kit.style import axes_or_new, panels
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.sweep import sweep
@@ -130,18 +131,17 @@ def _locus(ds: xr.Dataset, pin: str, frame: str) -> tuple[np.ndarray, ...]:
     link = drawing.link_of(pin, frame)
     if link != 1:
         refuse([] if link in drawing.frames else [f"frame = {frame!r}: link {link} has no axes; take the ground's"])
-        x, y = _in_link_axes(ds, drawing.frames[link].angle, x, y)
+        x, y = _in_axes(ds, drawing.frames[link], x, y)
     return angles, x, y
 
 
-def _in_link_axes(ds: xr.Dataset, name: str, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the components of a force in axes turned by an angle, a variable of the sweep or a parameter."""
-    if name not in ds:
-        scene = scene_of(ds, whole=False)
-        standing = getattr(scene.mechanism, name, None)
-        angles = {name: standing} if standing is not None else sweep(scene, ds[signals.INDEX].values, of=[name])
-        ds = ds.assign({name: angles[name]})
-    angle = np.radians(signals.revolution(ds, ds[name])[1])
+def _in_axes(ds: xr.Dataset, frame: Frame, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the components of a force in the axes of a frame."""
+    scene, name = scene_of(ds, whole=False), frame.angle
+    if name not in ds and name in scene.table.quantity:
+        ds = ds.assign({str(name): sweep(scene, ds[signals.INDEX].values, of=[str(name)])[name]})
+    angles = xr.DataArray(angle_of(scene, ds, frame), dims=signals.INDEX)
+    angle = np.radians(signals.revolution(ds, angles)[1])
     cos, sin = np.cos(angle), np.sin(angle)
     return cos * x + sin * y, cos * y - sin * x
 

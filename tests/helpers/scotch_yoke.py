@@ -50,6 +50,7 @@ YOKE = Body(
     pin_ratio=("ratio_yoke", 0.0),
     pin_slope=("slope_yoke", 0.0),
 )
+GUIDE = Frame("guide", 0.0)
 TRANSLATES = {"yoke_inertia": 0.0, "yoke_length": 1.0, "r4x": 1.0, "r4y": 0.0, "omega4": 0.0, "alpha4": 0.0}
 """Numbers of the yoke as a body that does not turn; its axes are those of the ground."""
 
@@ -81,16 +82,14 @@ class ScotchYoke(Mechanism):
     journals: ClassVar[Journals] = {"A": 2, "B": 2}
     bodies: ClassVar[tuple[Body, ...]] = (CRANK, YOKE)
     closes_everywhere: ClassVar[bool] = True
-    guide_angle: ClassVar[float] = 0.0
     drawing: ClassVar[Drawing] = Drawing(
         joints=PINS,
         journals=journals,
-        frames={2: Frame("crank, A→B", "theta2"), 4: Frame("guide", "guide_angle")},
+        frames={2: Frame("crank, A→B", "theta2"), 4: GUIDE},
         bars={2: ("A", "B"), 4: ("C", "B")},
         moving=("B", "C"),
         carrier=Carrier("crank", 2, "A"),
-        block=Block(4, "C"),
-        guide=lambda mechanism: Guide(np.zeros(2), np.array([1.0, 0.0])),
+        blocks=(Block(4, "C", GUIDE, lambda mechanism: Guide(np.zeros(2), np.array([1.0, 0.0]))),),
         acts_at={"guide": "C"},
     )
 

@@ -13,8 +13,8 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.films.cylinder_film import film_of_cylinders
 from linksweep.plot.films.frames import DPI, SAMPLES, SIZE
 from linksweep.plot.films.machine_film import film_of_crank, film_of_track
-from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.style import small_type
+from linksweep.plot.machine import drawing_with_point
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.scene import Scene
 
@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 
 
 def animate(
-    scene: xr.Dataset | Scene | MultiCylinder, *, frames: int = 72, point: tuple[float, float] | None = None
+    scene: xr.Dataset | Scene | MultiCylinder,
+    *,
+    frames: int = 72,
+    point: tuple[float, float] | None = None,
+    link: str | None = None,
 ) -> Film:
     """Make a film of a machine over its cycle: forces as arrows at the pins, and dots on the curves below.
 
@@ -36,6 +40,8 @@ def animate(
         Count of frames in a cycle, 25 a second.
     point : tuple of float, default None
         Point whose curve is drawn, (distance [m], angle [degree]) as `mechanism` takes it.
+    link : str, default None
+        Role of the link of that point, as `mechanism` takes it.
 
     Returns
     -------
@@ -72,4 +78,4 @@ def animate(
     with small_type():
         if one.mechanism.track:
             return film_of_track(one, one.mechanism.track, angles, frames)
-        return film_of_crank(one, drawing_of(one.mechanism), angles, frames, point)
+        return film_of_crank(one, drawing_with_point(one, link), angles, frames, point)

@@ -17,7 +17,8 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, FORCE_COLORS, GREY, force_color
-from linksweep.plot.machine import CURVE, Shape, draw_links, positions, shape_of
+from linksweep.plot.kit.shape import CURVE, Shape, positions, shape_of
+from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 

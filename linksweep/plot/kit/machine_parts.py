@@ -1,4 +1,4 @@
-"""Parts of a drawn machine: supports, guide, bars, a block. All take points in the data's coordinates [m]."""
+"""Parts of a drawn machine: supports, guides, links, blocks, cylinders. All take points in the data's coordinates."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def centre_line(ax: Axes, ends: np.ndarray) -> None:
     ax.plot(*ends.T, color=GREY, linewidth=0.8, linestyle=CENTRE_LINE, zorder=2.0)
 
 
-def crank_circle(ax: Axes, radius: float) -> None:
-    """Draw the circle of pin B."""
+def circle(ax: Axes, centre: np.ndarray, radius: float, name: str) -> None:
+    """Draw a thin circle: that of the crank's pin, or a gear's pitch circle."""
     around = np.radians(np.linspace(0.0, 360.0, 181))
-    circle = radius * np.array([np.cos(around), np.sin(around)])
-    ax.plot(*circle, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label="_crank circle")
+    points = centre[:, None] + radius * np.array([np.cos(around), np.sin(around)])
+    ax.plot(*points, color=GREY, alpha=0.55, linewidth=0.8, linestyle="--", zorder=2.0, label=f"_{name}")
 
 
 def rails(ax: Axes, first: np.ndarray, last: np.ndarray, along: np.ndarray, half: float) -> None:
@@ -70,15 +70,35 @@ def bar(ax: Axes, number: int, ends: np.ndarray, behind: bool = False) -> None:
         ax.plot(*ends.T, zorder=2.12 if behind else 2.2, label=f"_link {number}", **style)
 
 
-def number_of_bar(ax: Axes, number: int, ends: np.ndarray, covered: np.ndarray) -> None:
-    """Write a bar's number on it, as far as possible from covered points, the rows of `covered`."""
+def link(ax: Axes, number: int, corners: np.ndarray) -> None:
+    """Draw a link by its pins: a bar, or with three pins and more a plate."""
+    if len(corners) > 2:
+        middle = corners.mean(axis=0)
+        around = np.argsort(np.arctan2(*(corners - middle).T[::-1]))
+        corners = corners[[*around, around[0]]]
+        ax.fill(*corners.T, facecolor=BAR, zorder=2.2)
+    bar(ax, number, corners)
+
+
+def number_of_link(ax: Axes, number: int, ends: np.ndarray, covered: np.ndarray) -> None:
+    """Write a link's number between its first two pins, as far as possible from covered points, the rows of
+    `covered`."""
     places = ends[0] + np.array([0.4, 0.65, 0.15, 0.85])[:, None] * (ends[1] - ends[0])
     free = np.linalg.norm(places[:, None] - covered, axis=2).min(axis=1)
     enough = np.flatnonzero(free > 0.14 * np.linalg.norm(ends[1] - ends[0]))
     number_at(ax, number, places[enough[0] if enough.size else np.argmax(free)])
 
 
-def plate(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
+def telescope(ax: Axes, barrel: np.ndarray, rod: np.ndarray, shortest: float) -> None:
+    """Draw a cylinder: its barrel from the first pin, nearly as long as the cylinder at its shortest, and its rod."""
+    end = barrel + (0.8 * shortest / np.linalg.norm(rod - barrel)) * (rod - barrel)
+    ax.plot(*np.array([end, rod]).T, color=EDGE, linewidth=3.0, zorder=2.18, label="_rod")
+    for width, color in ((11.0, EDGE), (9.0, "white")):
+        style: dict[str, Any] = {"color": color, "linewidth": width, "solid_capstyle": "butt"}
+        ax.plot(*np.array([barrel, end]).T, zorder=2.19, label="_barrel", **style)
+
+
+def tie(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
     """Draw the triangle that ties a point to its link."""
     style: dict[str, Any] = {"facecolor": BAR, "edgecolor": EDGE, "linewidth": 0.8, "alpha": 0.6}
     ax.fill(*corners.T, zorder=2.11 if behind else 2.15, **style)

@@ -1,0 +1,114 @@
+"""The shape of a machine in a position: places of pins and blocks, and the curve that a point draws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.degrees import cos_sin
+from linksweep.mechanisms.drawing import Drawing, Frame
+from linksweep.plot.kit import signals
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+CURVE = 720  # positions along the curve of a point
+BLOCK = 0.26  # of the mean length of bars and frame: half a side of a block
+
+
+class Slide(NamedTuple):
+    """The places of a block's pin and the direction of its sides, (2, angles) each, the last ones the present.
+
+    Places are measured from A, or from the pin of the link that carries the block.
+    """
+
+    places: np.ndarray
+    along: np.ndarray
+
+    def travel(self, origin: np.ndarray) -> tuple[float, float]:
+        """Return the ends of the block's travel along its line [m], from a point."""
+        places = np.sum((self.places - origin[:, None]) * self.along, axis=0)
+        return float(np.nanmin(places)), float(np.nanmax(places))
+
+
+class Shape(NamedTuple):
+    """A machine in a position, lengths in [m]: pins, the curve of a point, blocks, shortest lengths of cylinders."""
+
+    pins: dict[str, np.ndarray]
+    curve: np.ndarray  # (2, angles), closed
+    point: np.ndarray
+    slides: tuple[Slide, ...]
+    shortest: tuple[float, ...]
+
+
+def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
+    """Return the positions of the pins over the revolution and, behind them, at these angles, with their status."""
+    set_aside: dict[str, Any] = dict(drawing.ideal)
+    geometry = Scene(replace(scene.mechanism, **set_aside), omega2=0.0)
+    outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
+    outputs += [name for name in drawing.angles if name in geometry.table.quantity]
+    turn = np.arange(CURVE) * (360.0 / CURVE)
+    cycle = sweep(geometry, theta2=[*turn, *angles], of=outputs)
+    signals.require_one_design(cycle.values())
+    return cycle
+
+
+def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
+    """Return the machine's shape at the last angle of a cycle, with the curves over the others."""
+    carrier, count = drawing.carrier, cycle.sizes[signals.INDEX]
+    fixed = drawing.fixed(scene.mechanism)
+    places = {pin: np.repeat(place[:, None], count, axis=1) for pin, place in fixed.items()}
+    places |= {pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving}
+    cg = scene.mechanism.masses()[carrier.role]
+    distance, turned = point or (cg.cg_distance, cg.cg_angle)
+    x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
+    along, across = (one(distance) * one(part) for part in cos_sin(turned))
+    path = places[carrier.pin] + along * np.array([x, y]) + across * np.array([-y, x])
+    slides = (
+        Slide(places[block.pin] - (places[block.on[1]] if block.on else 0.0), axes_of(scene, cycle, block.sides))
+        for block in drawing.blocks
+    )
+    lengths = (np.hypot(*(places[end] - places[start])) for start, end in drawing.telescopes)
+    return Shape(
+        pins={pin: places[pin][:, -1] for pin in sorted(places)},
+        curve=np.append(path[:, :-1], path[:, :1], axis=1),
+        point=path[:, -1],
+        slides=tuple(slides),
+        shortest=tuple(float(np.nanmin(length)) for length in lengths),
+    )
+
+
+def axes_of(scene: Scene, cycle: xr.Dataset, frame: Frame) -> np.ndarray:
+    """Return the direction of a frame's x axis at each angle of a cycle, (2, angles)."""
+    angle = np.radians(angle_of(scene, cycle, frame))
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def angle_of(scene: Scene, cycle: xr.Dataset, frame: Frame) -> np.ndarray:
+    """Return the angle of a frame's x axis [degree] at each angle of a cycle: a variable of it, or a parameter."""
+    name: Any = frame.angle
+    if isinstance(name, str) and name in cycle:
+        angle = signals.spread(cycle[name], cycle.sizes[signals.INDEX])
+    else:
+        standing = scene.numbers[name][0] if isinstance(name, str) else name
+        angle = np.full(cycle.sizes[signals.INDEX], one(standing))
+    return angle + one(frame.turned) if np.any(frame.turned) else angle
+
+
+def one(number: Any) -> float:
+    """Return a number of a scene of one design; raise ValueError for several."""
+    if isinstance(number, xr.DataArray):
+        signals.require_one_design([number])
+    return float(number)
+
+
+def half_side(drawing: Drawing, shape: Shape) -> float:
+    """Return half a side of the blocks [m]."""
+    pairs = [(shape.pins[pins[0]], shape.pins[pins[1]]) for pins in drawing.bars.values()]
+    lengths = [float(np.hypot(*(end - start))) for start, end in pairs]
+    if "D" in shape.pins:
+        lengths.append(float(np.hypot(*shape.pins["D"])))
+    return BLOCK * sum(lengths) / len(lengths)
