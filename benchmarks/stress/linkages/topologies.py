@@ -1,0 +1,141 @@
+"""Topologies of random linkages: their text, how they are sketched, and what may drive them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from benchmarks.stress.linkages.sketch import Sketch
+
+
+class Topology(NamedTuple):
+    """The text of a linkage, a function that draws its pins, and its drives other than the crank."""
+
+    text: str
+    draw: Callable[[Sketch], None]
+    drives: tuple[str, ...] = ()
+
+
+def four_bar(sketch: Sketch) -> None:
+    sketch.crank()
+    sketch.ground("D", "B")
+    sketch.rrr("C", "B", "D")
+
+
+def watt_1(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "B", "C")
+    sketch.carried("F", "D", "C")
+    sketch.rrr("G", "E", "F")
+
+
+def watt_2(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "D", "C")
+    sketch.ground("G", "E")
+    sketch.rrr("F", "E", "G")
+
+
+def stephenson_1(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "A", "B")
+    sketch.carried("F", "D", "C")
+    sketch.rrr("G", "E", "F")
+
+
+def stephenson_3(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "B", "C")
+    sketch.ground("G", "E")
+    sketch.rrr("F", "E", "G")
+
+
+def slider_six_bar(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "D", "C")
+    sketch.rrp("F", "E", "slide")
+
+
+def knuckle_press(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.rrp("E", "C", "slide")
+
+
+def shaper(sketch: Sketch) -> None:
+    """A block of mass on the crank's pin slides along the arm."""
+    sketch.crank()
+    sketch.ground("D", "B")
+    sketch.line_through("arm", "D", "E", "B", "arm")
+    sketch.rrp("F", "E", "slide")
+
+
+def shaper_with_two_slides(sketch: Sketch) -> None:
+    """A second block joins the arm and the ram."""
+    sketch.crank()
+    sketch.ground("D", "B")
+    sketch.line_through("arm", "D", "E", "B", "arm")
+    sketch.on_line("F", "arm", "B")
+    sketch.guide("slide", "F", sketch.across("arm"))
+
+
+def scotch_yoke(sketch: Sketch) -> None:
+    """A yoke, and a rod and lever on the crank's third pin."""
+    sketch.crank()
+    sketch.carried("C", "A", "B")
+    sketch.yoke("yoke", "slide", "B")
+    sketch.ground("D", "C")
+    sketch.rrr("E", "C", "D")
+
+
+def jansen_leg(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "D", "C")
+    sketch.rrr("F", "B", "D")
+    sketch.rrr("G", "E", "F")
+    sketch.carried("H", "F", "G")
+
+
+def held_cylinder(sketch: Sketch) -> None:
+    """A stick on the rocker, held by a cylinder from the ground; another cylinder follows, or drives."""
+    four_bar(sketch)
+    sketch.carried("E", "D", "C")
+    sketch.ground("G", "E")
+    sketch.rrr("K", "E", "G")
+    sketch.cylinder("held", "G", "K")
+    sketch.ground("H", "C")
+
+
+def geared_five_bar(sketch: Sketch) -> None:
+    sketch.crank()
+    sketch.ground("D", "B")
+    sketch.wheel("wheel", "D", "E", -2.0)
+    sketch.rrr("C", "B", "E")
+
+
+TOPOLOGIES = {
+    "Watt I": Topology("crank A-B, coupler B-C-E, rocker D-C-F, link E-G, arm F-G", watt_1, ("rocker",)),
+    "Watt II": Topology("crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F", watt_2, ("rocker", "output")),
+    "Stephenson I": Topology("crank A-B-E, coupler B-C, rocker D-C-F, left E-G, right F-G", stephenson_1, ("rocker",)),
+    "Stephenson III": Topology(
+        "crank A-B, coupler B-C-E, rocker D-C, rod E-F, output G-F", stephenson_3, ("rocker", "output")
+    ),
+    "six-bar with a slider": Topology(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, ram F on slide", slider_six_bar, ("rocker",)
+    ),
+    "knuckle-joint press": Topology(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide", knuckle_press, ("upper",)
+    ),
+    "shaper with a block of mass": Topology(
+        "crank A-B, block B on arm, arm D-E, rod E-F, ram F on slide", shaper, ("arm",)
+    ),
+    "Whitworth": Topology("crank A-B, arm D-E past B, rod E-F, ram F on slide", shaper, ("arm",)),
+    "shaper with two slides": Topology(
+        "crank A-B, arm D-E past B, block F on arm, ram F on slide", shaper_with_two_slides, ("arm",)
+    ),
+    "scotch yoke": Topology("crank A-B-C, yoke on slide past B, rod C-E, lever D-E", scotch_yoke, ("lever",)),
+    "Jansen leg": Topology("crank A-B, j B-C, top D-C-E, k B-F, c D-F, f E-G, foot F-G-H", jansen_leg, ("top", "c")),
+    "held cylinder": Topology(
+        "crank A-B, coupler B-C, rocker D-C-E, stick E-K, held G~K, jack H~C", held_cylinder, ("rocker", "jack")
+    ),
+    "geared five-bar": Topology("crank A-B, wheel D-E : -2 crank, left B-C, right E-C", geared_five_bar, ("wheel",)),
+}
