@@ -59,22 +59,36 @@ class Total:
         return sum(terms[1:], terms[0]) if terms else 0.0
 
 
+@dataclass(frozen=True)
+class Closure:
+    """The part of a machine that closes at `name` where its `signals` are positive; each may be zero below its noise.
+
+    Signals are smooth over the index wherever the parts before close.
+    """
+
+    name: str
+    signals: tuple[str, ...]
+    noise: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """Table of a machine: rows, the quantities that can be requested, and the sweep's own dim.
 
-    The rows `between` replace others between samples, where no grid tabulates the index.
+    The rows `between` replace others between samples, where no grid tabulates the index. `closures` are the parts that
+    close one after the other, of a machine that has no closed form of where it closes.
     """
 
     index: str
     rows: tuple[Row | Total, ...]
     quantities: tuple[Quantity, ...] = field(default=())
     between: tuple[Row, ...] = field(default=())
+    closures: tuple[Closure, ...] = field(default=())
 
     @cached_property
     def between_samples(self) -> Table:
         """Return the table for samples at half-angle tangents."""
-        return Table(self.index, (*self.rows, *self.between), self.quantities)
+        return Table(self.index, (*self.rows, *self.between), self.quantities, closures=self.closures)
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:

@@ -14,7 +14,6 @@ from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
 from linksweep.mechanisms.capabilities import lack
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 SEVERAL = (
@@ -112,12 +111,6 @@ def planned(scene: Scene, names: tuple[str, ...], forms: InputForms, solver: str
     """Return the plan of a request, superposed if the solver is "superposed"."""
     request = plan(scene.table, names, forms)
     return superposed(request) if solver == "superposed" else request
-
-
-def assembly_of(scene: Scene, threads: int | None = None) -> Field:
-    """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
-    at_one = crank_grid(1, scene.period, scene.mechanism.index)
-    return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
 
 
 def changing_pace(scene: Scene) -> tuple[str, ...]:

@@ -17,7 +17,6 @@ from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import (
     angles_missing,
-    assembly_of,
     changing_pace,
     compute,
     only_where,
@@ -28,6 +27,7 @@ from linksweep.results.compute import (
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
+from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means

@@ -26,6 +26,10 @@ DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
 
+Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""A function of tags and places that returns the values of the tagged signals there."""
+
+
 class Peak(NamedTuple):
     """The peak of a signal: its largest value, its place (half-angle tangent and half turn), a bound on how much higher
     it might be, and the number of evaluations."""
@@ -115,3 +119,16 @@ def find_peaks(
 def search_functions(samples: int) -> Mapping[str, Callable]:
     """Return the functions of `engine.peaks.search`, compiled where there are many samples to search."""
     return compiled_functions(SEARCH_SOURCE) if samples > INTERPRETED_SAMPLES else vars(search)
+
+
+def refine(functions: Mapping[str, Callable], lanes: np.ndarray, count: int, best: np.ndarray, values: Values) -> None:
+    """Advance lanes, the first `count` of `lanes`, until none is left; `best` takes the peaks of their tags."""
+    trials = np.zeros((search.TRIAL_ROWS, search.TRIALS * search.in_blocks(count)))
+    for _ in range(search.ROUNDS):
+        if not count:
+            return
+        functions["place_trials"](lanes, trials, count)
+        column = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
+        tag, x = trials[search.TRIAL_TAG, column].astype(int), trials[search.X, column]
+        trials[search.VALUE, column] = values(tag, x)
+        count = functions["advance"](lanes, trials, count, best)

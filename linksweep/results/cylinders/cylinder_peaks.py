@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import name_problems
-from linksweep.results.compute import assembly_of
 from linksweep.results.cylinders.cylinders_between import exact_peaks_of_sums
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
 from linksweep.results.dataset import design_coordinates, joined, origin_attributes
+from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.quadrature import means
 from linksweep.results.scene_peaks import (
     STATUS_ANGLES,

@@ -69,11 +69,9 @@ class Cylinders(NamedTuple):
         sums = combined(names, rules, throws, cylinders)
         return np.stack([np.broadcast_to(sums[name], angles.shape) for name in names])
 
-    def constants(self, *names: str) -> Array:
-        """Return values (names, designs) of quantities that depend on no angle; no assembly is PARTLY, but NEVER."""
-        values = self.values(names, np.arange(len(self.designs)), np.zeros(len(self.designs)))
-        is_assembly = np.array(names) == "assembly"
-        return np.where(is_assembly[:, None] & (values > EVERYWHERE), NEVER, values)
+    def assembly(self) -> Array:
+        """Return the assembly of each design; it is `NEVER` if one of its cylinders moves over part of a turn."""
+        return np.where(np.max([one.assembly() for one in self.each], axis=0) > EVERYWHERE, NEVER, EVERYWHERE)
 
     def _beside_jumps(self, rows: Array, angles: Array) -> Array:
         """Return angles with those at a jump moved to its nearer side: cylinders that jump together then all do."""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.peaks import search
-from linksweep.engine.peaks.find_peaks import search_functions
+from linksweep.engine.peaks.find_peaks import refine, search_functions
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.between import Array, Places, in_period
 from linksweep.results.peak_search.groups import Group
@@ -122,28 +122,23 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     every = np.repeat(np.arange(count_of_paths), per_path)
     values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
     rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
-    room, tags = search.in_blocks(rows.size // 2 + 1), count_of_paths * len(signals)
-    lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
-    best, samples = np.empty((search.BEST_ROWS, tags)), np.full(count_of_paths, per_path)
+    lanes = np.zeros((search.LANE_ROWS, search.in_blocks(rows.size // 2 + 1)))
+    best, samples = np.empty((search.BEST_ROWS, count_of_paths * len(signals))), np.full(count_of_paths, per_path)
     run = search_functions(rows.size)
+
+    def values_at(tag: Array, x: Array) -> Array:
+        path = tag // len(signals)
+        samples[:] += np.bincount(path, minlength=count_of_paths)
+        values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
+        return values[tag % len(signals), np.arange(len(tag))]
+
     with np.errstate(all="ignore"):
         where = paths.x, paths.before, paths.after, paths.ends == "meet"
         count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
         best[search.PEAK] = np.fmax(best[search.PEAK], current.ravel())
         kept = np.flatnonzero(_promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
-        count = len(kept)
-        lanes[:, :count] = lanes[:, kept]
-        for _ in range(search.ROUNDS):
-            if not count:
-                break
-            run["place_trials"](lanes, trials, count)
-            column = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
-            tag, x = trials[search.TRIAL_TAG, column].astype(int), trials[search.X, column]
-            path = tag // len(signals)
-            values = group.values(signals, paths.row[path], paths.angles(path, x), threads)
-            trials[search.VALUE, column] = values[tag % len(signals), np.arange(len(tag))]
-            samples += np.bincount(path, minlength=count_of_paths)
-            count = run["advance"](lanes, trials, count, best)
+        lanes[:, : len(kept)] = lanes[:, kept]
+        refine(run, lanes, len(kept), best, values_at)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)

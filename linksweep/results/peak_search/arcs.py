@@ -44,6 +44,8 @@ LONGEST_PIECE = 180.0
 @singledispatch
 def arc_ends(group: Any) -> tuple[Array, ...]:
     """Return the starts and the ends (design, arc) of each design's arcs [degree]; () for a machine without arcs."""
+    if group.limits is not None:
+        return group.limits.arc_start, group.limits.arc_end
     for findings, numbers in group.scene.mechanism.findings():
         checks = findings(*map(group.number, numbers))
         if "arc_start" in checks:
@@ -88,7 +90,8 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
     x, cuts = _samples_and_cuts(group.some(row), middle, half, closely)
     before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
     before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
-    steps = _steps(toggles[0][row], toggles[1][row], middle, half)
+    near = np.empty((len(row), 0)) if group.limits is None else group.limits.near_toggle[row]
+    steps = _steps(np.concatenate([toggles[0][row], toggles[1][row], near], axis=1), middle, half)
     paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
     return paths.some(_ok_somewhere(group, paths))
 
@@ -96,7 +99,7 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
 def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array, ...]:
     """Return starts and ends (design, piece) of a part, where a design can be assembled [degree]; NaN for no piece."""
     edges = np.linspace(*part, 1 + math.ceil((part[1] - part[0]) / LONGEST_PIECE))[:, None]
-    (kind,) = group.constants("assembly")
+    kind = group.assembly()
     whole = (kind[:, None] == EVERYWHERE) | (not toggles)
     turn = [np.where(whole, ends, np.nan) for ends in (0.0, 360.0)]
     arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
@@ -166,14 +169,14 @@ def _filled(x: Array) -> Array:
     return np.where(np.isnan(x), arbitrary, x)
 
 
-def _steps(first: Array, last: Array, middle: Array, half: Array) -> Array:
-    """Return steps (path, end) for extrapolation to the ends, small against the distance in x to the next toggle.
+def _steps(toggles: Array, middle: Array, half: Array) -> Array:
+    """Return steps (path, end) for extrapolation to the ends, small against the distance in x to the next toggle or
+    near-toggle.
 
     The step is 0 at an end that is no toggle: there a signal has a value, and needs no extrapolation.
     """
     own = np.stack([middle - half, middle + half], axis=1)
-    others = np.concatenate([first, last], axis=1)
-    away = np.abs(np.mod(own[:, :, None] - others[:, None, :] + 180.0, 360.0) - 180.0)
+    away = np.abs(np.mod(own[:, :, None] - toggles[:, None, :] + 180.0, 360.0) - 180.0)
     away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)  # the least is the end itself
     steps = np.clip(0.01 * np.sqrt(2.0 * away[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
     return np.where(away[:, :, 0] < ASIDE, steps, 0.0)

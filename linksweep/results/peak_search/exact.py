@@ -1,8 +1,8 @@
 """Find the exact peaks of a scene: its signals' largest values over the continuous revolution, for every design.
 
-Where the crank turns fully and no load changes with the angle, the fused search inside the kernel finds them. Its
-samples ignore jumps and the closest approaches of springs: paths about these are searched too. Designs that move
-over part of a turn, and scenes with loads over the angle, are searched along paths alone.
+Where the crank turns fully, no load changes with the angle and near-toggles are known in closed form, the fused search
+inside the kernel finds them. Its samples ignore jumps and the closest approaches of springs: paths about these are
+searched too. Other designs and scenes are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
 """
@@ -46,7 +46,8 @@ def exact_peaks(
     scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
 ) -> dict[str, SignalPeak]:
     """Return the peak of each signal over the continuous revolution, for every design; NaN where it has none."""
-    peaks = _fused_first(scene, signals, assembly, threads) if scene.steady else _by_paths(scene, signals, threads)
+    fused = scene.steady and not scene.table.closures
+    peaks = _fused_first(scene, signals, assembly, threads) if fused else _by_paths(scene, signals, threads)
     _raise_to_poles(scene, peaks, threads)
     return peaks
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import singledispatch
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.peak_search.between import (
@@ -20,6 +22,7 @@ from linksweep.results.peak_search.between import (
     places_of,
     quantities_at,
 )
+from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -37,17 +40,20 @@ class Group(NamedTuple):
 
     `scene` may be another scene that has only these designs (see `_with_own_loads`): `designs` are their numbers in
     `scene`, `places` their indices along the dims of the original scene. `quick` are the crank angles [degree] at which
-    some load or speed over the angle changes quickly, in any design of the original scene.
+    some load or speed over the angle changes quickly, in any design of the original scene. `limits` are those of the
+    designs, None where closed forms take their place.
     """
 
     scene: Scene
     designs: Array
     places: Places
     quick: Array
+    limits: Limits | None = None
 
     def some(self, rows: Array) -> Group:
         """Return the designs in these rows of the group."""
-        return self._replace(designs=self.designs[rows], places={dim: at[rows] for dim, at in self.places.items()})
+        places = {dim: at[rows] for dim, at in self.places.items()}
+        return self._replace(designs=self.designs[rows], places=places, limits=self.limits and self.limits.some(rows))
 
     def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
         """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
@@ -56,6 +62,18 @@ class Group(NamedTuple):
     def constants(self, *names: str) -> Array:
         """Return values (names, designs) of quantities that depend on no angle."""
         return self.values(names, np.arange(len(self.designs)), np.zeros(len(self.designs)))
+
+    def assembly(self) -> Array:
+        """Return the assembly of each design: `EVERYWHERE`, `PARTLY` or `NEVER`."""
+        return self.constants("assembly")[0] if self.limits is None else self.limits.assembly
+
+    def near_toggles(self) -> tuple[Array, Array]:
+        """Return the angles of near-toggles (design, nth) from the mechanism's `near_toggle_angle` [degree], and their
+        half-widths as tangents of half the angle; NaN where other designs have more."""
+        if self.limits is not None:
+            return self.limits.near_toggle, self.limits.near_toggle_width
+        widths = self.constants(NEAR_WIDTH, FAR_WIDTH).T
+        return np.broadcast_to([0.0, 180.0], widths.shape), widths
 
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
@@ -73,12 +91,13 @@ def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_
     """
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
-    chosen = different_designs(scene, names) if designs is None else designs
+    chosen = _different(scene, names) if designs is None else designs
     step = min(at_once, OWN_AT_ONCE) if own else at_once
     for first in range(0, len(chosen), step):
         part = chosen[first : first + step]
         places = places_of(inputs.sizes, part)
-        yield _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
+        group = _with_own_loads(scene, places) if own else Group(scene, part, places, scene.quick.angles)
+        yield group._replace(limits=_limits(scene, places, len(part)))
 
 
 def assembled_groups(
@@ -86,10 +105,25 @@ def assembled_groups(
 ) -> Iterator[tuple[float, Any]]:
     """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
     for group in groups(scene, (*names, "assembly")):
-        (assembly,) = group.constants("assembly")
+        assembly = group.assembly()
         for kind in kinds:
             if np.any(assembly == kind):
                 yield kind, group.some(assembly == kind)
+
+
+def _different(scene: Scene, names: tuple[str, ...]) -> Array:
+    """Return one design for all that share the values of these quantities; the assembly is not always one of them."""
+    known = {"assembly": signals_of(scene.table.closures)} if scene.table.closures else {}
+    return different_designs(scene, tuple(chain.from_iterable(known.get(name, (name,)) for name in names)))
+
+
+def _limits(scene: Scene, places: Places, count: int) -> Limits | None:
+    """Return the limits of `count` designs at these places; None where closed forms take their place."""
+    if not scene.table.closures:
+        return None
+    sizes, limits = limits_of(scene.unloaded)
+    at = np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())) if sizes else np.zeros(count, int)
+    return limits.some(at)
 
 
 @singledispatch

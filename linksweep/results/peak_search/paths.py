@@ -12,9 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks.find_peaks import grades
-from linksweep.engine.peaks.search import GRADES
-from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
 from linksweep.results.peak_search.approaches import (
     NARROW_NEAR_TOGGLE,
     REACH,
@@ -25,11 +22,14 @@ from linksweep.results.peak_search.approaches import (
 )
 from linksweep.results.peak_search.between import Array, by_row, in_period
 from linksweep.results.peak_search.groups import Group, crossing
+from linksweep.results.peak_search.limits import graded_samples
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""
 OFF_ROUND = 0.381966
 """First even sample, in steps (1 − 0.618…, the golden section): off round angles, where near-toggles have samples."""
+EVEN_STEP = 3.0
+"""Step of even samples beside those about near-toggles that are not opposite to each other [degree]."""
 ASIDE = 1e-9
 """Distance from a jump at which its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
@@ -122,24 +122,20 @@ def neighbours(x: Array, period: float) -> tuple[Array, Array]:
 
 
 def near_toggle_samples(group: Group) -> Array:
-    """Return samples (design, sample) of one turn [degree], graded about both near-toggles by their widths."""
+    """Return samples (design, sample) of one turn [degree], graded about near-toggles by their widths."""
     middle = group.number(group.scene.mechanism.near_toggle_angle)
-    table = 2.0 * np.degrees(np.arctan(grades()))
-    near, far = (table[_grades_of(widths)] for widths in group.constants(NEAR_WIDTH, FAR_WIDTH))
-    return middle[:, None] + np.concatenate([near, far + 180.0], axis=1)
+    samples = middle[:, None] + graded_samples(*group.near_toggles())
+    if group.limits is None:
+        return samples
+    even = np.broadcast_to(np.arange(OFF_ROUND, 360.0, EVEN_STEP), (len(samples), round(360.0 / EVEN_STEP)))
+    return np.concatenate([samples, even], axis=1)  # near-toggles may be few, or all on one side
 
 
 def _graded_over_period(group: Group) -> Array:
     """Return the samples (design, sample) about the near-toggles of every turn [degree], in order."""
     turn = group.scene.mechanism.period
-    one = np.sort(in_period(near_toggle_samples(group), turn), axis=1)
+    one = in_order(in_period(near_toggle_samples(group), turn))
     return np.concatenate([one + turn * k for k in range(round(group.scene.period / turn))], axis=1)
-
-
-def _grades_of(widths: Array) -> Array:
-    """Return `linksweep.engine.peaks.search.grade_of` of each width."""
-    scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
-    return np.clip(1 - scale, 0, GRADES - 1)
 
 
 def both_sides(angles: Array) -> Array:
@@ -189,7 +185,7 @@ def approach_samples(group: Group, angles: Array | None = None) -> Array:
 
 def _approaches(group: Group) -> Approaches:
     """Return the closest approaches of the whole period, beside narrow near-toggles between graded samples."""
-    narrow = np.flatnonzero((group.constants(NEAR_WIDTH, FAR_WIDTH) < NARROW_NEAR_TOGGLE).any(axis=0))
+    narrow = np.flatnonzero((group.near_toggles()[1] < NARROW_NEAR_TOGGLE).any(axis=1))
     if not len(narrow):
         return approaches_of_turns(group)
     graded = approaches(group.some(narrow), _graded_over_period(group.some(narrow)))

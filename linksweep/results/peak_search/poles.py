@@ -121,7 +121,9 @@ def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates
 def _change_points(group: Group) -> Candidates:
     """Return the near-toggles of these designs that cannot be distinguished from toggles, with two distances each."""
     middle = group.number(group.scene.mechanism.near_toggle_angle)
-    row, angle = np.tile(np.arange(len(middle)), 2), np.concatenate([middle, middle + 180.0])
+    away, _ = group.near_toggles()
+    which, row = np.nonzero(np.isfinite(away.T))
+    angle = middle[row] + away[row, which]
     (status,) = group.values(("status",), row, angle)
     toggles = np.flatnonzero(status == TOGGLE)
     twice = np.repeat(toggles, len(CLOSEST_TO_TOGGLE))

@@ -1,0 +1,256 @@
+"""Find where designs close, of machines that have no closed form of it: arcs, toggles and near-toggles.
+
+A part of a machine closes where its signals, its distances from a toggle, are positive. They are smooth functions of
+the crank angle wherever the parts before it close, so the search for peaks finds all their extremes:
+
+    least value < 0       two toggles, one on either side: between them the part does not close
+    least value x > 0     a near-toggle; signal ≈ x + y·(θ − θ0)², zero at θ0 ± i·√(x/y): its half-width is √(x/y)
+
+Parts are searched in the order in which they close, each on the arcs that those before leave, with samples that are
+dense about the ends of these arcs and about near-toggles: pins move quickly there.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.peaks.find_peaks import grades
+from linksweep.engine.peaks.search import GRADES
+from linksweep.engine.quantity import Closure
+from linksweep.engine.run import Field
+from linksweep.engine.trace.plan import plan
+from linksweep.results.compute import compute
+from linksweep.results.peak_search.between import (
+    EVERYWHERE,
+    NEVER,
+    PARTLY,
+    Array,
+    by_row,
+    different_designs,
+    in_period,
+)
+from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, extremes, parabola, zeros
+from linksweep.scene.grid import crank_grid
+from linksweep.scene.scene import Scene
+
+AT_ONCE = 512
+"""Designs searched together, so that the memory for it does not grow with a study."""
+EVEN, OFF_ROUND = 360, 0.381966
+"""Even samples of a turn or an arc; the first one, in steps: off round angles, where machines have their toggles."""
+NEAREST = 1e-11
+"""Distance of the closest sample from the end of an arc, relative to its length."""
+WIDTH_STEPS = 5
+"""Steps towards the width of a near-toggle: each measures the curvature over the width of the last."""
+SHORTEST = 1e-12
+"""Length of an arc that rounding may leave between two toggles that are one [degree]."""
+NO_TOGGLE = -1
+TURN = 360.0
+
+
+class Arcs(NamedTuple):
+    """Arcs on which designs close: row of the design, start and end [degree], and the part in a toggle at either."""
+
+    row: Array
+    start: Array
+    end: Array
+    start_part: Array
+    end_part: Array
+
+    def some(self, which: Array) -> Arcs:
+        """Return the arcs with these indices."""
+        return Arcs(*(numbers[which] for numbers in self))
+
+    @property
+    def whole(self) -> Array:
+        """Whether each arc is a turn without a toggle."""
+        return self.start_part == NO_TOGGLE
+
+
+class NearToggles(NamedTuple):
+    """Least distances from a toggle: row of the design, angle [degree], half-width [rad], part, and whether it is one
+    within noise: a change point."""
+
+    row: Array
+    angle: Array
+    width: Array
+    part: Array
+    touches: Array
+
+
+class Limits(NamedTuple):
+    """Limits of designs as tables (design, nth), NaN where others have more; angles in degrees, toggles by part.
+
+    Widths of near-toggles are tangents of half the angle, as the search grades its samples.
+    """
+
+    assembly: Array
+    arc_start: Array
+    arc_end: Array
+    near_toggle: Array
+    near_toggle_width: Array
+    toggle: Array
+
+    def some(self, rows: Array) -> Limits:
+        """Return the limits of the designs in these rows."""
+        return Limits(*(table[rows] for table in self))
+
+
+def assembly_of(scene: Scene, threads: int | None = None) -> Field:
+    """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
+    if scene.table.closures:
+        sizes, limits = limits_of(scene.unloaded)
+        return Field(tuple(sizes), limits.assembly.reshape(tuple(sizes.values())))
+    at_one = crank_grid(1, scene.period, scene.mechanism.index)
+    return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
+
+
+@lru_cache(maxsize=2)
+def limits_of(unloaded: Scene) -> tuple[dict[str, int], Limits]:
+    """Return the limits of designs, row-major over those dims that they depend on, with the dims' sizes."""
+    closures = unloaded.table.closures
+    dims = plan(unloaded.table, signals_of(closures), unloaded.inputs.forms).loops
+    sizes = {dim: n for dim, n in unloaded.inputs.sizes.items() if dim in dims}
+    return sizes, find_limits(unloaded, closures, different_designs(unloaded, signals_of(closures)))
+
+
+def signals_of(closures: tuple[Closure, ...]) -> tuple[str, ...]:
+    """Return the signals of all parts."""
+    return tuple(name for closure in closures for name in closure.signals)
+
+
+def find_limits(scene: Scene, closures: tuple[Closure, ...], designs: Array) -> Limits:
+    """Search the limits of these designs."""
+    some = [_search(scene, closures, designs[k : k + AT_ONCE], k) for k in range(0, len(designs), AT_ONCE)]
+    arcs, near = _arcs([arcs for arcs, _ in some]), _near([near for _, near in some])
+    return _tables(arcs, near, len(designs), len(closures))
+
+
+def _arcs(parts: list[Arcs]) -> Arcs:
+    return Arcs(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _near(parts: list[NearToggles]) -> NearToggles:
+    return NearToggles(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _tables(arcs: Arcs, near: NearToggles, designs: int, parts: int) -> Limits:
+    """Return arcs and near-toggles of so many designs, of machines with so many parts, as tables."""
+    arcs = arcs.some(np.lexsort((in_period(arcs.start, TURN), arcs.row)))
+    start, count = in_period(arcs.start, TURN), np.bincount(arcs.row, minlength=designs)
+    whole = np.bincount(arcs.row, arcs.whole, designs) > 0
+    rows = np.concatenate([arcs.row, arcs.row, near.row])
+    angles = in_period(np.concatenate([arcs.start, arcs.end, near.angle]), TURN)
+    part = np.concatenate([arcs.start_part, arcs.end_part, np.where(near.touches, near.part, NO_TOGGLE)])
+    known = part != NO_TOGGLE
+    toggles = by_row((rows * parts + part)[known], angles[known], designs * parts)
+    return Limits(
+        np.where(whole, EVERYWHERE, np.where(count > 0, PARTLY, NEVER)),
+        by_row(arcs.row, start, designs),
+        by_row(arcs.row, start + (arcs.end - arcs.start), designs),
+        by_row(near.row, in_period(near.angle, TURN), designs),
+        by_row(near.row, np.tan(0.5 * near.width), designs),
+        np.sort(toggles, axis=1).reshape(designs, parts, toggles.shape[1]),
+    )
+
+
+# ------------------------------------------------------------------------------------- one part after the other
+
+
+def _search(scene: Scene, closures: tuple[Closure, ...], designs: Array, first: int) -> tuple[Arcs, NearToggles]:
+    """Return the arcs and near-toggles of some designs, whose rows count from `first`."""
+    count = len(designs)
+    none, zero = np.full(count, NO_TOGGLE), np.zeros(count)
+    arcs = Arcs(np.arange(count), zero, zero + TURN, none, none)
+    near = NearToggles(*(np.empty(0, dtype=kind) for kind in (int, float, float, int, bool)))
+    for part, closure in enumerate(closures):
+        remaining, known = [arcs.some(np.empty(0, dtype=int))], [near]
+        for turns in (True, False):
+            own = arcs.some(np.flatnonzero(arcs.whole == turns))
+            if len(own.row):
+                curves = Curves(scene, closure, designs[own.row], _places(own, near, count, turns), turns)
+                pieces, near_toggles = _closing(curves, own, part)
+                remaining.append(pieces)
+                known.append(near_toggles)
+        arcs, near = _arcs(remaining), _near(known)
+    return arcs._replace(row=arcs.row + first), near._replace(row=near.row + first)
+
+
+def _closing(curves: Curves, arcs: Arcs, part: int) -> tuple[Arcs, NearToggles]:
+    """Return the pieces of arcs on which a part closes, and its near-toggles."""
+    values, noise = curves.samples()
+    turning = extremes(curves, values, noise)
+    beyond = turning.sign * turning.values[1] < -turning.noise
+    curve, angle = zeros(curves, values, noise, turning.some(beyond))
+    near = _near_toggles(curves, arcs, part, turning.some(~beyond & (turning.sign > 0.0)))
+    return _pieces(curves, arcs, curves.arc(curve), angle, part), near
+
+
+def _near_toggles(curves: Curves, arcs: Arcs, part: int, least: Extremes) -> NearToggles:
+    """Return the narrow ones of least values as near-toggles."""
+    (_, angle, _), (_, value, _) = least.x, least.values
+    depth = np.maximum(value, least.noise)
+    with np.errstate(all="ignore"):
+        width = np.sqrt(depth / parabola(least)[1])
+        for _ in range(WIDTH_STEPS):
+            step = np.degrees(np.clip(width, 1e-9, WIDE))
+            before, after = (curves.at(least.curve, angle + away)[0] - value for away in (-step, step))
+            rise = np.fmax(0.5 * (before + after), np.fmin(before, after))  # the end of an arc may be nearer
+            width = np.where(rise > 0.0, np.sqrt(depth / rise) * np.radians(step), width)
+    narrow = np.flatnonzero(width < WIDE)
+    row = arcs.row[curves.arc(least.curve[narrow])]
+    touches = np.abs(value) <= least.noise
+    return NearToggles(row, angle[narrow], width[narrow], np.full(len(row), part), touches[narrow])
+
+
+def _pieces(curves: Curves, arcs: Arcs, arc: Array, angle: Array, part: int) -> Arcs:
+    """Return the pieces of arcs, cut at the toggles of a part, on which all its signals are positive but for noise."""
+    wraps = (np.bincount(arc, minlength=len(arcs.row)) > 0) & curves.turns
+    first = np.full(len(wraps), np.inf)
+    np.minimum.at(first, arc, angle)
+    end, end_part = np.where(wraps, first + TURN, arcs.end), np.where(wraps, part, arcs.end_part)
+    starts = np.flatnonzero(~wraps)
+    owner = np.concatenate([arc, starts, np.arange(len(wraps))])
+    x = np.concatenate([angle, arcs.start[starts], end])
+    parts = np.concatenate([np.full(len(arc), part), arcs.start_part[starts], end_part])
+    order = np.lexsort((x, owner))
+    owner, x, parts = owner[order], x[order], parts[order]
+    k = np.flatnonzero((owner[1:] == owner[:-1]) & (np.diff(x) > SHORTEST))
+    values, noise = curves.on_arcs(owner[k], 0.5 * (x[k] + x[k + 1]))
+    k = k[(values >= -noise).all(axis=0)]
+    return Arcs(arcs.row[owner[k]], x[k], x[k + 1], parts[k], parts[k + 1])
+
+
+# --------------------------------------------------------------------------------------------------- samples
+
+
+def _places(arcs: Arcs, near: NearToggles, designs: int, turns: bool) -> Array:
+    """Return the places (arc, sample) [degree] of samples: even ones, and dense ones about near-toggles and ends."""
+    angle, width = (by_row(near.row, numbers, designs)[arcs.row] for numbers in (near.angle, np.tan(0.5 * near.width)))
+    graded = graded_samples(angle, width)
+    if turns:
+        even = np.broadcast_to((np.arange(EVEN) + OFF_ROUND) * (TURN / EVEN), (len(graded), EVEN))
+        x = np.sort(np.concatenate([even, TURN * _filled(in_period(graded, TURN) / TURN)], axis=1), axis=1)
+        return np.concatenate([x, x[:, :SEAM] + TURN], axis=1)
+    start, length = arcs.start[:, None], (arcs.end - arcs.start)[:, None]
+    along = in_period(graded - start, TURN) / length
+    even = 0.5 - 0.5 * np.cos(np.pi * (np.arange(EVEN) + 0.5) / EVEN)
+    ends = NEAREST * 2.0 ** np.arange(np.log2(even[0] / NEAREST))
+    shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(graded), EVEN + 2 * len(ends)))
+    return start + length * np.sort(
+        np.concatenate([shared, _filled(np.where(along < 1.0, along, np.nan))], axis=1), axis=1
+    )
+
+
+def graded_samples(angles: Array, widths: Array) -> Array:
+    """Return samples (design, sample) [degree] graded about near-toggles (design, nth) by their widths."""
+    scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
+    steps = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
+    return (angles[..., None] + steps).reshape(len(angles), -1)
+
+
+def _filled(along: Array) -> Array:
+    """Return places from 0 to 1 with each NaN replaced by an arbitrary place of its own."""
+    return np.where(np.isnan(along), (np.arange(along.shape[1]) + 0.3) / (along.shape[1] + 1.0), along)
