@@ -105,6 +105,9 @@ class PairField(ListField):
         """Return whether a value may be the first number alone."""
         return self.or_first and value is not None and not isinstance(value, str) and not _is_row(value)
 
+    def converted(self, value: Any) -> Any:
+        return self.numbers[0].converted(value) if self.may_be_first(value) else super().converted(value)
+
     @property
     def numbers(self) -> tuple[NumberField, NumberField]:
         """The kinds of the two numbers."""

@@ -66,6 +66,8 @@ class Mechanism(ByContent, ABC):
     """Names of the unknown torque or force, by the part that can be driven."""
     roles: ClassVar[tuple[str, ...]] = ()
     """Roles of the moving links, on which loads may act."""
+    sliders: ClassVar[tuple[str, ...]] = ()
+    """Roles of the links that slide on the ground; one number is a force along their guide."""
     pins: ClassVar[Pins] = {}
     """Numbers of the two links of each pin, by its letter."""
     journals: ClassVar[Journals] = {}
@@ -183,6 +185,16 @@ class Mechanism(ByContent, ABC):
         `fraction` is the part of the first order to balance, in a machine that `balances_partly`.
         """
         return {}
+
+    @property
+    def frictions(self) -> Mapping[str, Number]:
+        """Coefficients of Coulomb friction under the names that the physics takes."""
+        return {"friction": self.friction}
+
+    @property
+    def rubs(self) -> bool:
+        """True where some part slides with friction."""
+        return any(np.any(coefficient) for coefficient in self.frictions.values())
 
     @property
     def cylinder(self) -> Cylinder:

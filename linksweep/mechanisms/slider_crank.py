@@ -102,6 +102,7 @@ class SliderCrank(Mechanism):
 
     drives: ClassVar[dict[str, str]] = DRIVES
     roles: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
+    sliders: ClassVar[tuple[str, ...]] = ("slider",)
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
     bodies: ClassVar[tuple[Body, ...]] = BODIES

@@ -103,7 +103,7 @@ def _transmission(results: Results) -> Iterator[Check]:
     if "transmission_angle_min" not in worst:
         return
     least, most = (float(worst[f"transmission_angle_{end}"]) for end in ("min", "max"))
-    if results.scene.drive != "crank" or not np.isfinite(least):
+    if results.scene.drive != results.scene.mechanism.roles[0] or not np.isfinite(least):
         return
     at = (float(worst[f"transmission_angle_{end}_at"]) for end in ("min", "max"))
     ends = [joined(angle(end), " (at ", angle(where), ")") for end, where in zip((least, most), at, strict=True)]

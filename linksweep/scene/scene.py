@@ -134,7 +134,12 @@ class Scene(ByContent):
     def _normalised(self) -> dict[str, Any]:
         """Return the fields with arrays labelled, and the mechanism's defaults."""
         values = {name: _own_label(name, value) for name, value in field_values(self).items()}
-        defaults = self.mechanism.defaults if isinstance(self.mechanism, Mechanism) else {}
+        if not isinstance(self.mechanism, Mechanism):
+            return values
+        defaults, loads = self.mechanism.defaults, values["loads"]
+        if isinstance(loads, tuple):
+            actions = ((load, isinstance(load, Action)) for load in loads)
+            values["loads"] = tuple(load.for_machine(self.mechanism) if known else load for load, known in actions)
         return values | {name: default for name, default in defaults.items() if left_out(values[name])}
 
     def _problems(self) -> list[str]:

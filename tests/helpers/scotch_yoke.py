@@ -78,6 +78,7 @@ class ScotchYoke(Mechanism):
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12"}
     roles: ClassVar[tuple[str, ...]] = ("crank", "yoke")
+    sliders: ClassVar[tuple[str, ...]] = ("yoke",)
     pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = {"A": 2, "B": 2}
     bodies: ClassVar[tuple[Body, ...]] = (CRANK, YOKE)

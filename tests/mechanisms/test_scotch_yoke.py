@@ -141,3 +141,16 @@ def test_a_machine_with_a_field_of_no_stated_kind_is_not_registered():
     with pytest.raises(ValueError, match=r"^Undeclared\.stroke: must state what it holds: parameter"):
         register(Undeclared)
     assert "Undeclared" not in MECHANISMS
+
+
+def test_one_number_and_gas_press_along_the_guide_of_any_slider():
+    area, excess = 0.25 * np.pi * 0.05**2, 4e5
+    gas = ls.GasPressure(0.05, 101325.0 + excess, link="yoke")
+    forces = [ls.Load("yoke", force=-area * excess), ls.Load("yoke", force=(-area * excess, 0.0)), gas]
+    torques = [ls.sweep(ls.Scene(YOKE, 20.0, loads=[load]), 36).T12.values for load in forces]
+    np.testing.assert_allclose(torques[0], torques[1], rtol=1e-15)
+    np.testing.assert_allclose(torques[2], torques[1], rtol=1e-12, atol=1e-12)
+    with pytest.raises(ValueError, match=r"^loads\[1\].link = 'slider': must be one of yoke"):
+        ls.Scene(YOKE, 20.0, loads=[ls.GasPressure(0.05, 2e5)])
+    with pytest.raises(ValueError, match=r"^loads\[1\] is a GasPressure on a ScotchYoke, which has no cylinder: give"):
+        ls.Scene(YOKE, 20.0, loads=[ls.GasPressure(0.05, ls.OttoCycle(10.0, 6e6), link="yoke")])

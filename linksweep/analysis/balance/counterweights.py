@@ -16,8 +16,7 @@ from linksweep.base.checked_number import checked_number, unit_attribute_problem
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, field_problems, numbers, of_kind, parameter
 from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
-from linksweep.mechanisms.balance import MassDistribution, distribution
-from linksweep.mechanisms.links import Link
+from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import require
 from linksweep.scene.scene import Scene
 
@@ -97,25 +96,29 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     weights = [counterweights] if isinstance(counterweights, Counterweight) else list(counterweights)
     strange = [weight for weight in weights if not isinstance(weight, Counterweight)]
     refuse([f"counterweights = {quote(weight)}: must be a Counterweight" for weight in strange])
-    carriers = scene.mechanism.parts()
+    masses = scene.mechanism.masses()
+    carriers = {role: masses[role] for role in scene.mechanism.parts()}
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
     loaded = {weight.link for weight in weights}
     moving = [k for k, load in enumerate(scene.loads, 1) if load.on_centre_of in loaded]
     why = "would move with the counterweight; give its place from the pin"
     refuse([f'loads[{k}].origin = "cg": {why}' for k in moving])
     links = {role: _carrying(carriers[role], [w for w in weights if w.link == role]) for role in loaded}
-    return replace(scene, mechanism=replace(scene.mechanism, **links))
+    return replace(scene, mechanism=scene.mechanism.with_masses(links))
 
 
-def _carrying(link: Any, weights: list[Counterweight]) -> Link:
-    """Return a link with its weights: masses, first moments and moments of inertia about its pin add up."""
+def _carrying(link: MassDistribution, weights: list[Counterweight]) -> MassDistribution:
+    """Return the mass distribution of a link with its weights.
+
+    Masses, first moments and moments of inertia about its pin add up.
+    """
     placed = (MassDistribution(weight.at[0], weight.at[1], weight.mass, weight.inertia) for weight in weights)
-    parts = [part.moments() for part in (distribution(link), *placed)]
+    parts = [part.moments() for part in (link, *placed)]
     mass, x, y, about_pin = (xr.DataArray(sum(numbers[1:], numbers[0])) for numbers in zip(*parts, strict=True))
     distance = np.hypot(x, y) / mass.where(mass > 0.0, 1.0)
     inertia = (about_pin - mass * distance * distance).clip(min=0.0)
-    numbers = (mass, inertia, distance, np.degrees(np.arctan2(y, x)))
-    return Link(link.length, *map(_plain, numbers))
+    numbers = (distance, np.degrees(np.arctan2(y, x)), mass, inertia)
+    return MassDistribution(*map(_plain, numbers))
 
 
 def _plain(number: Any) -> Number:

@@ -103,8 +103,8 @@ def _checked(scene: Scene, of: Iterable[str]) -> list[str]:
     names = requested("of", of)
     linear = [name for name, q in scene.table.quantity.items() if q.units in LINEAR_UNITS and not q.squared]
     refuse([problem for name in names for problem in quantity_problems("of", name, linear, scene)])
-    rubs = np.any(scene.mechanism.friction)
-    refuse(["friction is not 0: forces are not linear in the masses then; make it 0"] if rubs else [])
+    problem = "friction is not 0: forces are not linear in the masses then; make it 0"
+    refuse([problem] if scene.mechanism.rubs else [])
     return names
 
 

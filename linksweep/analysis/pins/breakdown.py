@@ -23,8 +23,6 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
-FRICTIONLESS = {"friction": 0.0}
-
 
 def breakdown(
     scene: Scene, of: str | Iterable[str] | None = None, *, theta2: Any = 720, threads: int | None = None
@@ -85,8 +83,10 @@ def breakdown(
         source: quantities_with(changed, single, grid, parts, threads)
         for source, (single, changed) in _sources(sampled).items()
     }
-    if has_friction(scene):
-        whole, smooth = (quantities_with(changed, sampled, grid, parts, threads) for changed in ({}, FRICTIONLESS))
+    if scene.mechanism.rubs:
+        whole, smooth = (
+            quantities_with(changed, sampled, grid, parts, threads) for changed in ({}, frictionless(scene))
+        )
         shares["friction"] = {part: whole[part] - smooth[part] for part in parts}
     stacked = {part: joined([forces[part] for forces in shares.values()], "source", shares) for part in parts}
     described = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
@@ -109,19 +109,20 @@ def forces_of(scene: Scene) -> list[str]:
     return list(dict.fromkeys([*numbered, drive, "reduced_torque"]))
 
 
-def has_friction(scene: Scene) -> bool:
-    """Return whether some part of the machine slides with friction."""
-    return bool(np.any(scene.mechanism.friction != 0.0))
+def frictionless(scene: Scene) -> dict[str, float]:
+    """Return the parameters that silence friction."""
+    return dict.fromkeys(scene.mechanism.frictions, 0.0)
 
 
 def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
     """Return for each source a scene with its loads alone, and the parameters that silence the other sources."""
     links = sampled.mechanism.roles
-    weightless = FRICTIONLESS | {"gravity_x": 0.0, "gravity_y": 0.0}
+    smooth = frictionless(sampled)
+    weightless = smooth | {"gravity_x": 0.0, "gravity_y": 0.0}
     bare = replace(sampled, loads=())
     sources = {f"{link} inertia": (bare, weightless | _massless({*links} - {link})) for link in links}
     if any(np.any(component != 0.0) for component in sampled.gravity):
-        sources["gravity"] = (bare, FRICTIONLESS | {"omega2": 0.0, "alpha2": 0.0})
+        sources["gravity"] = (bare, smooth | {"omega2": 0.0, "alpha2": 0.0})
     for k, load in enumerate(sampled.loads, 1):
         alone = replace(sampled, loads=(load,))
         sources[f"load{k} ({load.form.place})"] = (alone, weightless | _massless(links))

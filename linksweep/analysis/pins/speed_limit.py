@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.breakdown import forces_of, has_friction
+from linksweep.analysis.pins.breakdown import forces_of
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.results.changed import quantities_with
@@ -164,7 +164,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
 def _problems(scene: Scene) -> list[str]:
     """Return why the forces of a scene are not A·omega2² + B·alpha2 + C."""
     advice = "take ls.peaks with an array of omega2 instead"
-    problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if has_friction(scene) else []
+    problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if scene.mechanism.rubs else []
     dampers = [k for k, load in enumerate(scene.loads, 1) if load.form.damps]
     return problems + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
 

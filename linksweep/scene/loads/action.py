@@ -42,6 +42,10 @@ class Action(ByContent):
         """Return the problems of the load on a machine of these links; by default those of its fields."""
         return field_problems(self, path + ".")
 
+    def for_machine(self, mechanism: Mechanism) -> Action:
+        """Return the load on this mechanism; itself where all its parameters are independent of it."""
+        return self
+
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Return why this mechanism cannot take the load, which is valid in itself."""
         return []

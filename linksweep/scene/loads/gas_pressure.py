@@ -1,4 +1,4 @@
-"""Gas pressure on the slider of a slider-crank: what an engine, a pump or a compressor has in its cylinder."""
+"""Gas pressure on a slider: what an engine, a pump or a compressor has in its cylinder."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.fields import field_problems, of_kind, parameter
+from linksweep.base.fields import field_problems, of_kind, parameter, word
 from linksweep.base.frozen import with_sound
-from linksweep.base.validate import Number, Rule, overflow_problems
+from linksweep.base.validate import Number, Rule, choice_problems, overflow_problems
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN
@@ -27,26 +27,29 @@ PRESSURE = Rule("pressure", over_angle=True)
 @register
 @dataclass(frozen=True, eq=False, repr=False)
 class GasPressure(ChangingLoad):
-    """Gas pressure in the cylinder, as a load on the slider of a `SliderCrank`.
+    """Gas pressure in a cylinder, as a load on the slider that is its piston.
 
     Parameters
     ----------
     bore : float or DataArray
         Diameter of the cylinder [m].
     pressure : float, DataArray, function, OttoCycle or DieselCycle
-        Absolute pressure in the cylinder [Pa]; a function is one of theta2 [degree].
+        Absolute pressure in the cylinder [Pa]; a function is one of theta2 [degree]. An ideal cycle is for a
+        `SliderCrank`.
     crankcase : float, DataArray or function, default 101325.0
         Absolute pressure on the other side of the piston [Pa].
     breaks : list of float, default ()
         Angles theta2 [degree] at which either pressure jumps, kinks or is narrow, as those of a `Load`.
     interpolation : str, default None
         Curve through DataArrays over theta2, as that of a `Load`.
+    link : str, default "slider"
+        Role of the slider, which slides on the ground.
 
     Notes
     -----
-    The force acts at C along the guide, (p − crankcase)·π·bore²/4. The head is where the rod reaches farthest: ahead
-    of the slider (branch "open"), so that pressure above the crankcase's pushes it back, against the guide's
-    direction; with branch "crossed" the head is behind, and pressure pushes it forward.
+    The force acts at the slider's pin along the guide, (p − crankcase)·π·bore²/4. The head is ahead of the slider, so
+    that pressure above the crankcase's pushes it back, against the guide's direction; in a `SliderCrank` it is where
+    the rod reaches farthest: with branch "crossed" the head is behind, and pressure pushes it forward.
 
     A DataArray over theta2 that spans two turns makes the scene's period 720, and so does a cycle of four strokes.
 
@@ -70,6 +73,7 @@ class GasPressure(ChangingLoad):
     crankcase: Number = parameter("pressure", ATMOSPHERE, over_angle=True)
     breaks: Sequence[float] = of_kind(BREAKS, ())
     interpolation: str | None = None
+    link: str = word('"slider"', "slider")
     in_cylinder: Number = field(default=None, init=False, repr=False)  # of a cycle, over the angles of a sweep [Pa]
 
     @property
@@ -80,7 +84,7 @@ class GasPressure(ChangingLoad):
     @property
     def form(self) -> LoadForm:
         """Form of its rows."""
-        return LoadForm("slider", force=True, torque=False, link_axes=True, full_turns=self.cycle is not None)
+        return LoadForm(self.link, force=True, torque=False, link_axes=True, full_turns=self.cycle is not None)
 
     @property
     def cycle(self) -> Cycle | None:
@@ -102,12 +106,14 @@ class GasPressure(ChangingLoad):
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Return why this mechanism cannot take the load, which is valid in itself."""
-        if missing := lack(mechanism, "cylinder"):
-            return [f"{path} is a GasPressure on {missing}, or a Load"]
+        if not mechanism.sliders or (self.cycle and lack(mechanism, "cylinder")):
+            return [f"{path} is a GasPressure on {lack(mechanism, 'cylinder')}, or a Load"]
+        if problems := choice_problems(f"{path}.link", self.link, mechanism.sliders):
+            return problems
         if mechanism.branch not in BRANCH_SIGN:
             return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
-        turns = mechanism.cylinder.turns_fully
-        if self.cycle and not hasattr(turns, "dims") and not turns:
+        turns = mechanism.cylinder.turns_fully if self.cycle else True
+        if not hasattr(turns, "dims") and not turns:
             return [
                 f"{path}.pressure is a cycle, which takes full turns of the crank: rod.length must be greater than "
                 f"crank.length + |offset|; make the rod longer"
@@ -133,5 +139,5 @@ class GasPressure(ChangingLoad):
         """Return the force along the guide, NaN where the crank of a cycle does not turn fully; it acts at C."""
         pressure = self.in_cylinder if self.cycle else self.pressure
         area = 0.25 * math.pi * (self.bore * self.bore)
-        force = machine["branch_sign"] * (self.crankcase - pressure) * area
+        force = machine.get("branch_sign", 1.0) * (self.crankcase - pressure) * area
         return {f"{name}_force_x": force, f"{name}_force_y": 0.0, f"{name}_at_x": 0.0, f"{name}_at_y": 0.0}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems, of_kind, parameter, word
-from linksweep.base.frozen import normalise, with_sound
+from linksweep.base.frozen import with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
 from linksweep.engine.quantity import Row, Total
@@ -110,12 +110,6 @@ class Load(ChangingLoad):
     over: str | None = None
     while_: str | None = None
 
-    def __post_init__(self) -> None:
-        on_slider = isinstance(self.link, str) and self.link == "slider"  # an array compares element by element
-        if on_slider and COMPONENTS.may_be_first(self.force):
-            normalise(self, force=(self.force, 0.0), frame="link")
-        super().__post_init__()
-
     @property
     def changing(self) -> tuple[Any, ...]:
         """The numbers that may change over the revolution."""
@@ -145,6 +139,12 @@ class Load(ChangingLoad):
     def on_centre_of(self) -> str:
         """The link with whose centre of gravity its place moves; "" for none."""
         return self.link if self.origin == "cg" else ""
+
+    def for_machine(self, mechanism: Mechanism) -> Load:
+        """Return the load on this mechanism: one number on a slider is a force along its guide."""
+        on_slider = isinstance(self.link, str) and self.link in mechanism.sliders  # an array compares each element
+        alone = on_slider and COMPONENTS.may_be_first(self.force)
+        return replace(self, force=(self.force, 0.0), frame="link") if alone else self
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Return why this mechanism cannot take the load, which is valid in itself."""

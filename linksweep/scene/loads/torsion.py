@@ -83,7 +83,8 @@ class TorsionSpring(_Turning):
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return the crank angle [degree] at which the twist of a spring between crank and ground passes 180."""
-        turned = {(GROUND, "crank"): 1.0, ("crank", GROUND): -1.0}.get((self.from_, self.to))
+        crank = mechanism.roles[0]
+        turned = {(GROUND, crank): 1.0, (crank, GROUND): -1.0}.get((self.from_, self.to))
         return () if turned is None else (180.0 + turned * self.free_angle,)
 
 
