@@ -95,11 +95,24 @@ def geometry(results: Results) -> Markup:
         rows.append(("swing of the rocker", angle(float(shape["swing"]), 2)))
     if "stroke" in shape:
         rows.append(("stroke of the slider", number(1e3 * float(shape["stroke"]), "mm")))
-    rows.append(("time ratio", number(float(shape["time_ratio"]))))
-    turns = [float(one) for one in _reversals(results) if np.isfinite(one)]
-    if turns:
-        rows.append(("turns round at", Markup(", ".join(angle(one, 2) for one in turns))))
+    rows += [_travel(shape, str(name).removesuffix("_travel")) for name in shape if str(name).endswith("_travel")]
+    if "time_ratio" in shape:
+        rows.append(("time ratio", number(float(shape["time_ratio"]))))
+        turns = [angle(float(one), 2) for one in _reversals(results) if np.isfinite(one)]
+        rows.append(("turns round at", Markup(", ".join(turns)) if turns else NONE))
     return table((), _there(rows), class_="numbers") if _there(rows) else Markup()
+
+
+def _travel(shape: xr.Dataset, name: str) -> tuple[str, Any]:
+    """Return the row of a position's travel: its size, the time ratio, and the crank angles of its ends."""
+    size, ratio = float(shape[f"{name}_travel"]), float(shape[f"{name}_time_ratio"])
+    ends = sorted(float(shape[f"{name}_{end}_at"]) for end in ("min", "max"))
+    _, _, title = str(shape[f"{name}_travel"].attrs["long_name"]).partition(": ")
+    of_length = shape[f"{name}_travel"].attrs["units"] == "m"
+    text = number(1e3 * size, "mm") if of_length else angle(size, 2)
+    turns = joined(angle(ends[0], 2), " and ", angle(ends[1], 2))
+    words = joined("travel ", text, ", time ratio ", number(ratio), ", turns round at ", turns)
+    return title.split(",")[0].split(" from ")[0], words if np.isfinite(size) else NONE
 
 
 def _reversals(results: Results) -> Iterable[float]:

@@ -38,6 +38,38 @@ def test_the_rocker_swings_between_its_extremes(lengths, branch):
     np.testing.assert_allclose(standing, 0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("ground_angle", [0.0, 115.0])
+def test_travel_by_the_zeros_of_the_rate_equals_the_closed_form(ground_angle):
+    """The rocker's angle passes 180 degrees in one of them."""
+    lengths = xr.DataArray([0.16, 0.18, 0.2], dims="c")
+    scene = four_bar(0.08, 0.22, lengths, 0.2, ground_angle=ground_angle)
+    closed, motion = ls.geometry(scene), ls.geometry(scene, "theta4")
+    np.testing.assert_allclose(motion.theta4_travel, closed.swing, rtol=1e-13)
+    np.testing.assert_allclose(motion.theta4_time_ratio, closed.time_ratio, rtol=1e-10)
+    ends = np.sort([motion.theta4_max_at, motion.theta4_min_at], axis=0).T
+    np.testing.assert_allclose(ends, np.sort(closed.reversal_angle.transpose("c", "limit") % 360.0), rtol=1e-10)
+    rod = slider(0.05, 0.15, offset=0.02, slide_angle=30.0)
+    assert float(ls.geometry(rod, "x_slider").x_slider_travel) == pytest.approx(
+        float(ls.geometry(rod).stroke), rel=1e-14
+    )
+
+
+def test_a_dwell_is_the_angle_for_which_a_position_is_near_its_end():
+    """x = a cos θ2 at the pin B of a crank: within 2 % of 2a of its end for 2·acos(0.96)."""
+    motion = ls.geometry(slider(0.05, 0.15), ["Bx", "theta3"], dwell=0.02)
+    for end in ("max", "min"):
+        assert float(motion[f"Bx_dwell_{end}"]) == pytest.approx(2.0 * np.degrees(np.arccos(0.96)), rel=1e-12)
+    assert float(motion.Bx_travel) == pytest.approx(0.1, rel=1e-15)
+    assert (float(motion.Bx_max_at) % 360.0, float(motion.Bx_min_at)) == pytest.approx((0.0, 180.0), abs=1e-12)
+
+
+def test_a_link_that_turns_fully_has_no_travel_and_a_name_must_be_a_position():
+    drag = four_bar(0.2, 0.22, 0.25, 0.08)
+    assert np.isnan(ls.geometry(drag, "theta4").theta4_travel)
+    assert "T12" in refusal(lambda: ls.geometry(drag, "T12"))[0]
+    assert refusal(lambda: ls.geometry(drag, dwell=0.0))[0].startswith("dwell = 0")
+
+
 def test_a_centric_crank_rocker_has_time_ratio_one():
     """a² + d² = b² + c² (Norton, chapter 3: a four-bar without quick return)."""
     a, b, d = 0.05, 0.12, 0.2

@@ -17,18 +17,22 @@ Source: R. L. Norton, Design of Machinery, chapters "Graphical Linkage Synthesis
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import xarray as xr
 
-from linksweep.base.checked_number import checked_pair
+from linksweep.analysis.design.travel import rate_of, travel
+from linksweep.base.checked_number import checked_number, checked_pair
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT
-from linksweep.base.validate import choice_problems, refuse
+from linksweep.base.validate import Rule, choice_problems, refuse
+from linksweep.engine.run import Field
+from linksweep.mechanisms.capabilities import offers
 from linksweep.physics.algebra import planar
 from linksweep.results.check import evaluated
-from linksweep.results.compute import compute, require
+from linksweep.results.compute import compute, quantity_problems, requested, require
 from linksweep.results.dataset import design_coordinates, provenance, variable, with_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
@@ -37,6 +41,9 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 ANGLE = "transmission_angle"
+TRAVEL_UNITS = ("m", "degree")
+ENDS = {"max": "largest", "min": "least"}
+DWELL = Rule("dimensionless", above=0.0)
 CURVE = {
     "P": ("m", "position of the point from A"),
     "vP": ("m s-1", "velocity of the point"),
@@ -44,13 +51,20 @@ CURVE = {
 }
 
 
-def geometry(scene: Scene, *, threads: int | None = None) -> xr.Dataset:
+def geometry(
+    scene: Scene, of: str | Iterable[str] | None = None, *, dwell: float = 0.01, threads: int | None = None
+) -> xr.Dataset:
     """Compute stroke or swing, time ratio and extreme transmission angles of a machine.
 
     Parameters
     ----------
     scene : Scene
-        Scene of a machine whose stroke or swing is known in closed form.
+        Scene of a machine of links.
+    of : str or iterable of str, default None
+        Names of positions ("theta4", "x_ram", "Ex") whose travel is computed; None for the output in closed form, or
+        of a machine without one for all links on ground pins, and all sliders.
+    dwell : float, default 0.01
+        Part of its travel within which a position counts as at rest [1].
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -64,17 +78,21 @@ def geometry(scene: Scene, *, threads: int | None = None) -> xr.Dataset:
         - `time_ratio` [1]: the slower way's crank angle over the faster one's
         - `reversal_angle` (…, limit) [degree]: crank angles at which the output reverses, stretched and folded; of an
           inverted slider-crank over the dim `reversal`
-        - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`.
+        - of each position of `of`, such as x_ram: `x_ram_travel`, its ends `x_ram_max`, `x_ram_min` and where they are,
+          `x_ram_max_at`, `x_ram_min_at` [degree], `x_ram_time_ratio` [1], and `x_ram_dwell_max`, `x_ram_dwell_min`
+          [degree], the crank angles for which it rests about its ends; NaN where it turns fully
+        - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`;
+          of a linkage one for each dyad.
 
     Raises
     ------
     ValueError
-        If the machine has no such closed form, as a car in a loop.
+        If the machine has no links, as a car in a loop, a name is no position, or dwell is out of bounds.
 
     Notes
     -----
-    Closed forms, and the exact peaks of the transmission angle; neither depends on loads or speeds. Equations and
-    source: `linksweep.analysis.design.geometry`.
+    Closed forms, zeros of rates, and the exact peaks of transmission angles; none depends on loads or speeds. Equations
+    and source: `linksweep.analysis.design.geometry`, and `linksweep.analysis.design.travel` for positions by name.
 
     Examples
     --------
@@ -83,16 +101,49 @@ def geometry(scene: Scene, *, threads: int | None = None) -> xr.Dataset:
     >>> round(float(motion.stroke), 12), round(float(motion.time_ratio), 12)
     (0.086, 1.0)
     """
-    require(scene, "bodies", "stroke_findings")
+    require(scene, "bodies")
     bare = in_memory(replace(scene, omega2=1.0, alpha2=0.0, loads=()))
-    variables, labels = evaluated(bare.mechanism.stroke_findings())
-    if ANGLE in bare.table.quantity:
-        angles = peaks(bare, of=[ANGLE], threads=threads).drop_vars(["status", f"{ANGLE}_peak"])
-        variables |= {str(name): angles[name].variable for name in angles.data_vars}
+    dwell = float(checked_number("dwell", dwell, DWELL))
+    in_closed_form = of is None and offers(bare.mechanism, "stroke_findings")
+    variables, labels = evaluated(bare.mechanism.stroke_findings() if in_closed_form else ())
+    for name in [] if in_closed_form else _positions(bare, of):
+        variables |= _travelled(bare, name, dwell)
+    for name in [name for name in bare.table.quantity if name.startswith(ANGLE)]:
+        angles = peaks(bare, of=[name], threads=threads).drop_vars(["status", f"{name}_peak"])
+        variables |= {str(key): angles[key].variable for key in angles.data_vars}
     dims = {dim for variable in variables.values() for dim in variable.dims}
     coordinates = {name: values for name, values in design_coordinates(scene).items() if {*values.dims} <= dims}
     attributes = provenance(scene, "linksweep.geometry(scene)", coordinates)
     return xr.Dataset(variables, coordinates | labels, attributes)
+
+
+def _positions(scene: Scene, of: Any) -> list[str]:
+    """Return the names of positions in a request; by default of the links on ground pins, and of the sliders."""
+    maker = scene.table.maker
+    known = [name for name, q in scene.table.quantity.items() if q.units in TRAVEL_UNITS and rate_of(name) in maker]
+    if of is None:
+        rockers = [f"theta{body.number}" for body in scene.mechanism.bodies if body.on_ground]
+        return [name for name in known if name in rockers or name.startswith("x_")]
+    names = requested("of", of)
+    refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
+    return names
+
+
+def _travelled(scene: Scene, name: str, dwell: float) -> dict[str, xr.Variable]:
+    """Return the travel of a position as variables."""
+    of, units = scene.table.quantity[name].long_name, scene.table.quantity[name].units
+    ends = travel(scene, name, dwell)
+    whole = Field(ends.max.dims, ends.max.values - ends.min.values)
+    parts = {
+        "travel": (whole, units, "travel from the least to the largest"),
+        **{word: (getattr(ends, word), units, f"{text} value") for word, text in ENDS.items()},
+        **{f"{word}_at": (getattr(ends, f"{word}_at"), "degree", f"crank angle of the {ENDS[word]}") for word in ENDS},
+        "time_ratio": (ends.time_ratio, "1", "crank angle of the slower way over that of the faster one"),
+        "dwell_max": (ends.dwell_max, "degree", f"crank angle for which it rests within {dwell:g} of its largest"),
+        "dwell_min": (ends.dwell_min, "degree", f"crank angle for which it rests within {dwell:g} of its least"),
+    }
+    order = (*scene.inputs.sizes,)
+    return {f"{name}_{word}": variable(*part[:2], f"{part[2]}: {of}", order) for word, part in parts.items()}
 
 
 def coupler_curve(

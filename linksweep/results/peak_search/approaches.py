@@ -87,7 +87,7 @@ def _narrow(group: Group, angles: Array, names: tuple[str, str], both: Array, jo
     passing[:, -1] &= joined
     row, k = np.nonzero(passing)
     ends = (angles[row, k], slopes[row, k]), (angles[row, k] + steps[row, k], rising[row, k])
-    angle = crossing(group, slope, row, *ends, STEPS)
+    angle = crossing(group.of(slope, row), *ends, STEPS)
     (radians,) = group.values((width,), row, angle)
     narrow = radians < WIDE
     return Approaches(row[narrow], angle[narrow], np.maximum(np.degrees(radians[narrow]), NARROWEST))

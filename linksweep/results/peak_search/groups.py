@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import singledispatch
 from itertools import chain
 from typing import Any, NamedTuple
@@ -58,6 +58,10 @@ class Group(NamedTuple):
     def values(self, names: tuple[str, ...], rows: Array, angles: Array, threads: int | None = None) -> Array:
         """Return values (names, pairs) at pairs of a design of the group, by its row, and an angle [degree]."""
         return quantities_at(self.scene, names, self.designs[rows], angles, threads)
+
+    def of(self, name: str, rows: Array) -> Callable[[Array], Array]:
+        """Return the function that evaluates a quantity of the designs in these rows at an angle [degree] of each."""
+        return lambda angles: self.values((name,), rows, angles)[0]
 
     def constants(self, *names: str) -> Array:
         """Return values (names, designs) of quantities that depend on no angle."""
@@ -163,8 +167,8 @@ Point = tuple[Array, Array]
 """Angles [degree], and the values of a quantity there."""
 
 
-def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, steps: int) -> Array:
-    """Return angles near which a quantity of these designs crosses 0 between two points, by the Illinois method.
+def crossing(values_at: Callable[[Array], Array], start: Point, end: Point, steps: int) -> Array:
+    """Return angles near which a quantity of some designs crosses 0 between two points, by the Illinois method.
 
     All designs take the same number of steps: one step evaluates them together.
 
@@ -173,7 +177,7 @@ def crossing(group: Group, name: str, rows: Array, start: Point, end: Point, ste
     (a, f_a), (b, f_b) = start, end
     for _ in range(steps):
         x = b - f_b * (b - a) / (f_b - f_a)
-        (f,) = group.values((name,), rows, x)
+        f = values_at(x)
         beyond = (f < 0.0) == (f_b < 0.0)
         a, f_a = np.where(beyond, a, b), np.where(beyond, 0.5 * f_a, f_b)
         b, f_b = x, f

@@ -167,7 +167,7 @@ def _changes_of_sign(group: Group, name: str) -> Array:
     row, before = np.nonzero((values < 0.0) & (following > 0.0) | (values > 0.0) & (following < 0.0))
     start = angles[row, before]
     end = start + np.mod(angles[row, (before + 1) % count] - start, group.scene.period)
-    x = crossing(group, name, row, (start, values[row, before]), (end, following[row, before]), KINK_STEPS)
+    x = crossing(group.of(name, row), (start, values[row, before]), (end, following[row, before]), KINK_STEPS)
     return by_row(row, x, designs)
 
 

@@ -1,0 +1,130 @@
+"""Travel of a position over the revolution: its ends, where its rate is zero, and the time that it takes each way.
+
+A position x(θ2) turns round where its rate is zero. The largest and the least value lie at θmax and θmin; with
+φ = θmax − θmin, between 0 and 360°,
+
+    travel = x(θmax) − x(θmin)        time ratio = the larger of φ and 360° − φ over the smaller
+
+A dwell is the angle about an end over which the position stays within a fraction of its travel. Zeros between samples
+are found by false position.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.engine.run import Field
+from linksweep.results.peak_search.groups import Group, assembled_groups, crossing, empty_over_all
+from linksweep.scene.scene import Scene
+
+SAMPLES, STEPS = 1440, 12
+TURN = 360.0
+EVERYWHERE = (0.0,)
+"""The assembly of designs that have a position at every angle."""
+RATES = {"theta": "omega", "x_": "v_", "length_": "rate_"}
+"""Beginning of the name of a position's rate, by that of the position; others are coordinates of pins."""
+Array = np.ndarray
+
+
+class Travel(NamedTuple):
+    """Ends of a position, their crank angles [degree], the time ratio, and the dwells about the ends [degree]."""
+
+    max: Any
+    max_at: Any
+    min: Any
+    min_at: Any
+    time_ratio: Any
+    dwell_max: Any
+    dwell_min: Any
+
+
+class Samples(NamedTuple):
+    """A position of designs and its rate at equal steps, and both at pairs of a design's row and an angle."""
+
+    position: Array
+    rate: Array
+    position_at: Callable[[Array, Array], Array]
+    rate_at: Callable[[Array, Array], Array]
+
+
+def rate_of(position: str) -> str:
+    """Return the name of the rate of a position: omega4 of theta4, v_ram of x_ram, vEx of Ex."""
+    start = next((start for start in RATES if position.startswith(start)), "")
+    return RATES.get(start, "v") + position.removeprefix(start)
+
+
+def travel(scene: Scene, name: str, dwell: float) -> Travel:
+    """Return the travel of a position as Fields over the design dims; NaN where it turns fully or has no revolution."""
+    names = (name, rate_of(name))
+    empty = empty_over_all(scene, (*names, "assembly"))
+    results = Travel(*(Field(empty.dims, empty.values.copy()) for _ in Travel._fields))
+    turns = scene.table.quantity[name].units == "degree"
+    for _, group in assembled_groups(scene, names, EVERYWHERE):
+        at = tuple(group.places[dim] for dim in empty.dims)
+        with np.errstate(invalid="ignore", divide="ignore"):  # a link that turns fully, or stands still
+            values_of_group = _of_group(_samples(group, names, turns), dwell)
+        for field, values in zip(results, values_of_group, strict=True):
+            field.values[at] = values if at else values[0]
+    return results
+
+
+def _samples(group: Group, names: tuple[str, ...], turns: bool) -> Samples:
+    designs, angles = len(group.designs), np.arange(SAMPLES) * (TURN / SAMPLES)
+    rows = np.repeat(np.arange(designs), SAMPLES)
+    position, rate = group.values(names, rows, np.tile(angles, designs)).reshape(2, designs, SAMPLES)
+
+    def at(name: str) -> Callable[[Array, Array], Array]:
+        return lambda rows, angles: group.of(name, rows)(np.nan_to_num(angles))
+
+    position_at, rate_at = map(at, names)
+    if not turns:
+        return Samples(position, rate, position_at, rate_at)
+    unwrapped = np.unwrap(np.column_stack([position, position[:, :1]]), period=TURN, axis=1)
+    goes_round = abs(unwrapped[:, -1] - unwrapped[:, 0]) > 0.5 * TURN
+    position = np.where(goes_round[:, None], np.nan, unwrapped[:, :-1])
+
+    def near_samples(rows: Array, angles: Array) -> Array:
+        near = position[rows, np.round(np.nan_to_num(angles) * (SAMPLES / TURN)).astype(int) % SAMPLES]
+        return near + (position_at(rows, angles) - near + 0.5 * TURN) % TURN - 0.5 * TURN
+
+    return Samples(position, rate, near_samples, rate_at)
+
+
+def _of_group(samples: Samples, dwell: float) -> Travel:
+    """Return the travel of each design of a group."""
+    (top, top_at), (bottom, bottom_at) = (_end(samples, sign) for sign in (1.0, -1.0))
+    way = (top_at - bottom_at) % TURN
+    ratio = np.maximum(way, TURN - way) / np.minimum(way, TURN - way)
+    near = dwell * (top - bottom)
+    dwells = _dwell(samples, top_at, top - near, 1.0), _dwell(samples, bottom_at, bottom + near, -1.0)
+    return Travel(top, top_at % TURN, bottom, bottom_at % TURN, ratio, *dwells)
+
+
+def _end(samples: Samples, sign: float) -> tuple[Array, Array]:
+    """Return the largest position (with sign -1 the least) and its crank angle: a zero of the rate by the largest
+    sample."""
+    rows = np.arange(len(samples.position))
+    k = np.argmax(np.where(np.isnan(samples.position), -np.inf, sign * samples.position), axis=1)
+    first = np.where((samples.rate[rows, k - 1] < 0.0) != (samples.rate[rows, k] < 0.0), k - 1, k)
+    start, end = ((j * (TURN / SAMPLES), samples.rate[rows, j % SAMPLES]) for j in (first, first + 1))
+    at = crossing(partial(samples.rate_at, rows), start, end, STEPS)
+    at = np.where(np.isfinite(at), at, k * (TURN / SAMPLES))
+    return samples.position_at(rows, at), at
+
+
+def _dwell(samples: Samples, at: Array, level: Array, sign: float) -> Array:
+    """Return the angle about an end over which the position stays beyond a level."""
+    rows = np.arange(len(at))
+    angle = np.zeros(len(at))
+    for way in (1, -1):
+        k = np.round(at * (SAMPLES / TURN)).astype(int)[:, None] + way * np.arange(SAMPLES)
+        within = sign * (samples.position[rows[:, None], k % SAMPLES] - level[:, None]) >= 0.0
+        step = np.argmin(within, axis=1)
+        ends = [k[rows, np.maximum(step + side, 0)] * (TURN / SAMPLES) for side in (-1, 0)]
+        inside, outside = ((end, samples.position_at(rows, end) - level) for end in ends)
+        angle += way * (crossing(lambda x: samples.position_at(rows, x) - level, inside, outside, STEPS) - at)
+    return angle
