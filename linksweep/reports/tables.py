@@ -88,7 +88,8 @@ def flywheels(sizes: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
 
 def geometry(results: Results) -> Markup:
     """Return the table of swing, stroke, time ratio and reversals; empty where nothing swings or slides."""
-    shape, rows = results.geometry, []
+    shape = results.geometry
+    rows: list[tuple[Any, ...]] = []
     if shape is None:
         return Markup()
     if "swing" in shape:
