@@ -8,6 +8,7 @@ import xarray as xr
 from linksweep.mechanisms.limits.finding import Checks, Finding
 from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import design_coordinates, flags, origin_attributes
+from linksweep.results.search_checks import search_checks
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.grid import crank_grid
@@ -54,6 +55,14 @@ def check(scene: Scene) -> xr.Dataset:
     [degree] and `time_ratio` [1] of a rocker that swings; with drive="cylinder" `slide_at_dead_centre` [m], its least
     and greatest size where the block stands still; with other drives `jam_angle` (side) and `friction_to_jam`.
 
+    For a Linkage, by the exact search for peaks:
+
+    - `assembly`, `arc_start`, `arc_end` as above, of any number of arcs
+    - `toggle_angle` (pin, toggle) [degree]: theta2 at which the links that find this pin lie in one line, or a rod
+      stands square to its guide; NaN where other pins or designs have more toggles
+    - `transmission_angle_min`, `transmission_angle_max` (pin) [degree]: extreme acute transmission angles on those
+      arcs; `transmission_angle_min_at`, `transmission_angle_max_at` (pin) [degree]: their theta2
+
     With another drive than the crank, `dead_centre_angle` (dead_centre) [degree], where the driving link stands still
     and cannot drive, labelled by branch if it differs between branches.
 
@@ -86,7 +95,7 @@ def check(scene: Scene) -> xr.Dataset:
     scene = in_memory(scene)
     driven = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     variables, labels = evaluated((*scene.mechanism.findings(), *driven))
-    variables |= _acceleration(scene)
+    variables |= search_checks(scene) | _acceleration(scene)
     overshoots = {path: curve.overshoot for path, curve in scene.curves.items() if curve.overshoot is not None}
     if overshoots:
         words = "how far its spline leaves the range of an array, relative to that range"
