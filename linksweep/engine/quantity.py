@@ -60,35 +60,38 @@ class Total:
 
 
 @dataclass(frozen=True)
-class Closure:
-    """The part of a machine that closes at `name` where its `signals` are positive; each may be zero below its noise.
+class Limit:
+    """Signals of one part of a machine, at or about `name`, whose zeros limit its motion or its forces.
 
-    Signals are smooth over the index wherever the parts before close.
+    `zeros` states what they are: a "toggle" ends the motion, which needs positive signals; at a "pole" quantities may
+    be unbounded, at a "jump" they may jump. Signals are smooth over the index wherever the parts before close, and may
+    be zero where they are below their `noise`.
     """
 
     name: str
     signals: tuple[str, ...]
     noise: tuple[str, ...]
+    zeros: str = "toggle"
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
     """Table of a machine: rows, the quantities that can be requested, and the sweep's own dim.
 
-    The rows `between` replace others between samples, where no grid tabulates the index. `closures` are the parts that
-    close one after the other, of a machine that has no closed form of where it closes.
+    The rows `between` replace others between samples, where no grid tabulates the index. `limits` are those of a
+    machine without closed forms: toggles of its parts in the order in which these close, then poles and jumps.
     """
 
     index: str
     rows: tuple[Row | Total, ...]
     quantities: tuple[Quantity, ...] = field(default=())
     between: tuple[Row, ...] = field(default=())
-    closures: tuple[Closure, ...] = field(default=())
+    limits: tuple[Limit, ...] = field(default=())
 
     @cached_property
     def between_samples(self) -> Table:
         """Return the table for samples at half-angle tangents."""
-        return Table(self.index, (*self.rows, *self.between), self.quantities, closures=self.closures)
+        return Table(self.index, (*self.rows, *self.between), self.quantities, limits=self.limits)
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:

@@ -19,14 +19,15 @@ from linksweep.scene.scene import Scene
 
 def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     """Return assembly, arcs, toggles and extreme transmission angles by pin; nothing where closed forms exist."""
-    pins = [closure.name for closure in scene.table.closures]
-    if not pins:
+    if not scene.table.limits:
         return {}
+    toggles = [k for k, limit in enumerate(scene.table.limits) if limit.zeros == "toggle"]
+    pins = [scene.table.limits[k].name for k in toggles]
     sizes, limits = limits_of(scene.unloaded)
     tables = {
         "arc_start": (limits.arc_start, ("arc",), "crank angle at which an assembled arc starts"),
         "arc_end": (limits.arc_end, ("arc",), "crank angle at which it ends (may pass 360)"),
-        "toggle_angle": (limits.toggle, ("pin", "toggle"), "crank angle of a toggle at this pin"),
+        "toggle_angle": (limits.zeros[:, toggles], ("pin", "toggle"), "crank angle of a toggle at this pin"),
     }
     assembly = np.reshape(limits.assembly, tuple(sizes.values())).astype(np.int8)
     meanings = flags("crank angles at which it can be assembled", ASSEMBLY)

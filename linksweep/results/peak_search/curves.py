@@ -1,7 +1,6 @@
-"""Sample the signals by which one part of a machine closes, and find their extremes and zeros.
+"""Sample the signals of a limit, and find their extremes and zeros.
 
-A part closes where its signals, its distances from a toggle, are positive. They are smooth functions of the crank angle
-wherever the parts before it close: samples bracket every extreme, and the search for peaks finds its place.
+Signals are smooth over the crank angle: samples bracket every extreme, and the search for peaks finds its place.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import numpy as np
 
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.find_peaks import refine, search_functions
-from linksweep.engine.quantity import Closure
+from linksweep.engine.quantity import Limit
 from linksweep.results.peak_search.between import Array, quantities_at
 from linksweep.scene.scene import Scene
 
@@ -27,13 +26,13 @@ ROOT_STEPS = 100
 
 
 class Curves(NamedTuple):
-    """Signals of one part along arcs, numbered signal by signal, at places x (arc, sample) [degree].
+    """Signals of a limit along arcs, numbered signal by signal, at places x (arc, sample) [degree].
 
     `designs` are the designs of the arcs; `turns` states whether the arcs are whole turns.
     """
 
     scene: Scene
-    closure: Closure
+    limit: Limit
     designs: Array
     x: Array
     turns: bool
@@ -44,7 +43,7 @@ class Curves(NamedTuple):
 
     def on_arcs(self, arc: Array, x: Array) -> tuple[Array, Array]:
         """Return values (signal, pair) of all signals at pairs of an arc and a place, and their noise."""
-        names = (*self.closure.signals, *self.closure.noise)
+        names = (*self.limit.signals, *self.limit.noise)
         values, noise = quantities_at(self.scene, names, self.designs[arc], x).reshape(2, len(names) // 2, len(x))
         return values, noise
 
@@ -103,10 +102,9 @@ def _brackets(curves: Curves, sign: float, values: Array, noise: Array) -> Extre
 
 def _matter(brackets: Extremes) -> Array:
     """Return whether each may be a near-toggle, or have a toggle on either side, by the parabola through its points."""
-    before, height, after = brackets.sign * brackets.values
     slope, curvature = parabola(brackets)
-    reach = np.where(brackets.sign > 0.0, 2.0 * curvature * WIDE**2, np.maximum(before, after) - height)
-    return (height > -brackets.noise) & (height - 0.25 * slope * slope / curvature < reach)
+    height = brackets.sign * brackets.values[1]
+    return (height > -brackets.noise) & (height - 0.25 * slope * slope / curvature < 2.0 * curvature * WIDE**2)
 
 
 def parabola(brackets: Extremes) -> tuple[Array, Array]:

@@ -79,6 +79,12 @@ class Group(NamedTuple):
         widths = self.constants(NEAR_WIDTH, FAR_WIDTH).T
         return np.broadcast_to([0.0, 180.0], widths.shape), widths
 
+    def zeros(self, kind: str) -> Array:
+        """Return the angles (design, nth) [degree] of one kind of zeros that a search has located."""
+        if self.limits is None:
+            return np.empty((len(self.designs), 0))
+        return self.limits.zeros_of(self.scene.table.limits, kind)
+
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
         if not hasattr(number, "dims"):
@@ -117,13 +123,13 @@ def assembled_groups(
 
 def _different(scene: Scene, names: tuple[str, ...]) -> Array:
     """Return one design for all that share the values of these quantities; the assembly is not always one of them."""
-    known = {"assembly": signals_of(scene.table.closures)} if scene.table.closures else {}
+    known = {"assembly": signals_of(scene.table.limits)} if scene.table.limits else {}
     return different_designs(scene, tuple(chain.from_iterable(known.get(name, (name,)) for name in names)))
 
 
 def _limits(scene: Scene, places: Places, count: int) -> Limits | None:
     """Return the limits of `count` designs at these places; None where closed forms take their place."""
-    if not scene.table.closures:
+    if not scene.table.limits:
         return None
     sizes, limits = limits_of(scene.unloaded)
     at = np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())) if sizes else np.zeros(count, int)

@@ -12,14 +12,15 @@ dense about the ends of these arcs and about near-toggles: pins move quickly the
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from linksweep.engine.peaks.find_peaks import grades
 from linksweep.engine.peaks.search import GRADES
-from linksweep.engine.quantity import Closure
+from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
@@ -70,18 +71,27 @@ class Arcs(NamedTuple):
 
 
 class NearToggles(NamedTuple):
-    """Least distances from a toggle: row of the design, angle [degree], half-width [rad], part, and whether it is one
-    within noise: a change point."""
+    """Least distances from a zero: row of the design, angle [degree] and half-width [rad]."""
 
     row: Array
     angle: Array
     width: Array
+
+
+class Zeros(NamedTuple):
+    """Zeros of signals where a design moves: row of the design, angle [degree] and part."""
+
+    row: Array
+    angle: Array
     part: Array
-    touches: Array
+
+
+Numbers = TypeVar("Numbers", Arcs, NearToggles, Zeros)
 
 
 class Limits(NamedTuple):
-    """Limits of designs as tables (design, nth), NaN where others have more; angles in degrees, toggles by part.
+    """Limits of designs as tables (design, nth), NaN where others have more; angles in degrees; zeros (design, part,
+    nth) by part.
 
     Widths of near-toggles are tangents of half the angle, as the search grades its samples.
     """
@@ -91,16 +101,21 @@ class Limits(NamedTuple):
     arc_end: Array
     near_toggle: Array
     near_toggle_width: Array
-    toggle: Array
+    zeros: Array
 
     def some(self, rows: Array) -> Limits:
         """Return the limits of the designs in these rows."""
         return Limits(*(table[rows] for table in self))
 
+    def zeros_of(self, limits: tuple[Limit, ...], kind: str) -> Array:
+        """Return the zeros (design, nth) [degree] of one kind, of these limits."""
+        parts = [k for k, limit in enumerate(limits) if limit.zeros == kind]
+        return self.zeros[:, parts].reshape(len(self.zeros), -1)
+
 
 def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
-    if scene.table.closures:
+    if scene.table.limits:
         sizes, limits = limits_of(scene.unloaded)
         return Field(tuple(sizes), limits.assembly.reshape(tuple(sizes.values())))
     at_one = crank_grid(1, scene.period, scene.mechanism.index)
@@ -110,103 +125,109 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
 @lru_cache(maxsize=2)
 def limits_of(unloaded: Scene) -> tuple[dict[str, int], Limits]:
     """Return the limits of designs, row-major over those dims that they depend on, with the dims' sizes."""
-    closures = unloaded.table.closures
-    dims = plan(unloaded.table, signals_of(closures), unloaded.inputs.forms).loops
+    limits = unloaded.table.limits
+    dims = plan(unloaded.table, signals_of(limits), unloaded.inputs.forms).loops
     sizes = {dim: n for dim, n in unloaded.inputs.sizes.items() if dim in dims}
-    return sizes, find_limits(unloaded, closures, different_designs(unloaded, signals_of(closures)))
+    return sizes, find_limits(unloaded, limits, different_designs(unloaded, signals_of(limits)))
 
 
-def signals_of(closures: tuple[Closure, ...]) -> tuple[str, ...]:
-    """Return the signals of all parts."""
-    return tuple(name for closure in closures for name in closure.signals)
+def signals_of(limits: tuple[Limit, ...]) -> tuple[str, ...]:
+    """Return the signals of all limits."""
+    return tuple(name for limit in limits for name in limit.signals)
 
 
-def find_limits(scene: Scene, closures: tuple[Closure, ...], designs: Array) -> Limits:
+def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limits:
     """Search the limits of these designs."""
-    some = [_search(scene, closures, designs[k : k + AT_ONCE], k) for k in range(0, len(designs), AT_ONCE)]
-    arcs, near = _arcs([arcs for arcs, _ in some]), _near([near for _, near in some])
-    return _tables(arcs, near, len(designs), len(closures))
+    some = [_search(scene, limits, designs[k : k + AT_ONCE], k) for k in range(0, len(designs), AT_ONCE)]
+    arcs, near, zeros = zip(*some, strict=True)
+    return _tables(_joined(Arcs, arcs), _joined(NearToggles, near), _joined(Zeros, zeros), len(designs), len(limits))
 
 
-def _arcs(parts: list[Arcs]) -> Arcs:
-    return Arcs(*map(np.concatenate, zip(*parts, strict=True)))
+def _joined(kind: Callable[..., Numbers], some: Iterable[Numbers]) -> Numbers:
+    """Return several tables of one kind as one."""
+    return kind(*map(np.concatenate, zip(*some, strict=True)))
 
 
-def _near(parts: list[NearToggles]) -> NearToggles:
-    return NearToggles(*map(np.concatenate, zip(*parts, strict=True)))
-
-
-def _tables(arcs: Arcs, near: NearToggles, designs: int, parts: int) -> Limits:
-    """Return arcs and near-toggles of so many designs, of machines with so many parts, as tables."""
+def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: int) -> Limits:
+    """Return the limits of so many designs, of machines with so many parts, as tables."""
     arcs = arcs.some(np.lexsort((in_period(arcs.start, TURN), arcs.row)))
     start, count = in_period(arcs.start, TURN), np.bincount(arcs.row, minlength=designs)
     whole = np.bincount(arcs.row, arcs.whole, designs) > 0
-    rows = np.concatenate([arcs.row, arcs.row, near.row])
-    angles = in_period(np.concatenate([arcs.start, arcs.end, near.angle]), TURN)
-    part = np.concatenate([arcs.start_part, arcs.end_part, np.where(near.touches, near.part, NO_TOGGLE)])
-    known = part != NO_TOGGLE
-    toggles = by_row((rows * parts + part)[known], angles[known], designs * parts)
+    known = np.flatnonzero(zeros.part != NO_TOGGLE)
+    angles = by_row((zeros.row * parts + zeros.part)[known], in_period(zeros.angle[known], TURN), designs * parts)
     return Limits(
         np.where(whole, EVERYWHERE, np.where(count > 0, PARTLY, NEVER)),
         by_row(arcs.row, start, designs),
         by_row(arcs.row, start + (arcs.end - arcs.start), designs),
         by_row(near.row, in_period(near.angle, TURN), designs),
         by_row(near.row, np.tan(0.5 * near.width), designs),
-        np.sort(toggles, axis=1).reshape(designs, parts, toggles.shape[1]),
+        np.sort(angles, axis=1).reshape(designs, parts, angles.shape[1]),
     )
 
 
 # ------------------------------------------------------------------------------------- one part after the other
 
 
-def _search(scene: Scene, closures: tuple[Closure, ...], designs: Array, first: int) -> tuple[Arcs, NearToggles]:
-    """Return the arcs and near-toggles of some designs, whose rows count from `first`."""
+def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int) -> tuple[Arcs, NearToggles, Zeros]:
+    """Return the arcs, near-toggles and zeros of some designs, whose rows count from `first`."""
     count = len(designs)
     none, zero = np.full(count, NO_TOGGLE), np.zeros(count)
     arcs = Arcs(np.arange(count), zero, zero + TURN, none, none)
-    near = NearToggles(*(np.empty(0, dtype=kind) for kind in (int, float, float, int, bool)))
-    for part, closure in enumerate(closures):
-        remaining, known = [arcs.some(np.empty(0, dtype=int))], [near]
+    near = NearToggles(*(np.empty(0, dtype=kind) for kind in (int, float, float)))
+    zeros = [Zeros(*(np.empty(0, dtype=kind) for kind in (int, float, int)))]
+    for part, limit in enumerate(limits):
+        pieces, known = [arcs.some(np.empty(0, dtype=int))], [near]
         for turns in (True, False):
             own = arcs.some(np.flatnonzero(arcs.whole == turns))
-            if len(own.row):
-                curves = Curves(scene, closure, designs[own.row], _places(own, near, count, turns), turns)
-                pieces, near_toggles = _closing(curves, own, part)
-                remaining.append(pieces)
-                known.append(near_toggles)
-        arcs, near = _arcs(remaining), _near(known)
-    return arcs._replace(row=arcs.row + first), near._replace(row=near.row + first)
+            if not len(own.row):
+                continue
+            curves = Curves(scene, limit, designs[own.row], _places(own, near, count, turns), turns)
+            crossed, touched, near_toggles = _zeros(curves, own, part)
+            known += [near_toggles] if limit.zeros != "jump" else []
+            pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
+            zeros += [touched] if limit.zeros == "toggle" else [touched, crossed._replace(row=own.row[crossed.row])]
+        arcs, near = _joined(Arcs, pieces), _joined(NearToggles, known)
+    zeros += [Zeros(arcs.row, arcs.start, arcs.start_part), Zeros(arcs.row, arcs.end, arcs.end_part)]
+    all_zeros = _joined(Zeros, zeros)
+    return (
+        arcs._replace(row=arcs.row + first),
+        near._replace(row=near.row + first),
+        all_zeros._replace(row=all_zeros.row + first),
+    )
 
 
-def _closing(curves: Curves, arcs: Arcs, part: int) -> tuple[Arcs, NearToggles]:
-    """Return the pieces of arcs on which a part closes, and its near-toggles."""
+def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearToggles]:
+    """Return the zeros of curves, with the arc in place of the design, then those that they touch, and near-toggles."""
     values, noise = curves.samples()
     turning = extremes(curves, values, noise)
-    beyond = turning.sign * turning.values[1] < -turning.noise
-    curve, angle = zeros(curves, values, noise, turning.some(beyond))
-    near = _near_toggles(curves, arcs, part, turning.some(~beyond & (turning.sign > 0.0)))
-    return _pieces(curves, arcs, curves.arc(curve), angle, part), near
+    height = turning.sign * turning.values[1]
+    curve, angle = zeros(curves, values, noise, turning.some(height < -turning.noise))
+    closes = (turning.sign > 0.0) | (curves.limit.zeros != "toggle")
+    near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise)))
+    least = turning.some(closes & (np.abs(height) <= turning.noise))
+    row = arcs.row[curves.arc(least.curve)]
+    touched = Zeros(row, least.x[1], np.full(len(row), part))
+    return Zeros(curves.arc(curve), angle, np.full(len(curve), part)), touched, near
 
 
-def _near_toggles(curves: Curves, arcs: Arcs, part: int, least: Extremes) -> NearToggles:
-    """Return the narrow ones of least values as near-toggles."""
-    (_, angle, _), (_, value, _) = least.x, least.values
+def _near_toggles(curves: Curves, arcs: Arcs, least: Extremes) -> NearToggles:
+    """Return the narrow ones of least distances from zero as near-toggles."""
+    angle, value = least.x[1], least.sign * least.values[1]
     depth = np.maximum(value, least.noise)
     with np.errstate(all="ignore"):
         width = np.sqrt(depth / parabola(least)[1])
         for _ in range(WIDTH_STEPS):
             step = np.degrees(np.clip(width, 1e-9, WIDE))
-            before, after = (curves.at(least.curve, angle + away)[0] - value for away in (-step, step))
+            before, after = (least.sign * curves.at(least.curve, angle + away)[0] - value for away in (-step, step))
             rise = np.fmax(0.5 * (before + after), np.fmin(before, after))  # the end of an arc may be nearer
             width = np.where(rise > 0.0, np.sqrt(depth / rise) * np.radians(step), width)
     narrow = np.flatnonzero(width < WIDE)
-    row = arcs.row[curves.arc(least.curve[narrow])]
-    touches = np.abs(value) <= least.noise
-    return NearToggles(row, angle[narrow], width[narrow], np.full(len(row), part), touches[narrow])
+    return NearToggles(arcs.row[curves.arc(least.curve[narrow])], angle[narrow], width[narrow])
 
 
-def _pieces(curves: Curves, arcs: Arcs, arc: Array, angle: Array, part: int) -> Arcs:
+def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
     """Return the pieces of arcs, cut at the toggles of a part, on which all its signals are positive but for noise."""
+    arc, angle, _ = toggles
     wraps = (np.bincount(arc, minlength=len(arcs.row)) > 0) & curves.turns
     first = np.full(len(wraps), np.inf)
     np.minimum.at(first, arc, angle)

@@ -30,6 +30,8 @@ OFF_ROUND = 0.381966
 """First even sample, in steps (1 − 0.618…, the golden section): off round angles, where near-toggles have samples."""
 EVEN_STEP = 3.0
 """Step of even samples beside those about near-toggles that are not opposite to each other [degree]."""
+MERGED = 1e-3
+"""Distance between samples, relative to that of the next ones, below which they become one."""
 ASIDE = 1e-9
 """Distance from a jump at which its one-sided limits are taken [degree]."""
 BESIDE = np.array([ASIDE, 1e-3, 0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0])
@@ -128,7 +130,19 @@ def near_toggle_samples(group: Group) -> Array:
     if group.limits is None:
         return samples
     even = np.broadcast_to(np.arange(OFF_ROUND, 360.0, EVEN_STEP), (len(samples), round(360.0 / EVEN_STEP)))
-    return np.concatenate([samples, even], axis=1)  # near-toggles may be few, or all on one side
+    return _merged(np.sort(np.concatenate([samples, even], axis=1), axis=1))  # near-toggles may be few, or on one side
+
+
+def _merged(x: Array) -> Array:
+    """Return places (path, place) in order, those made equal that lie far closer to each other than to the next ones.
+
+    Near-toggles of several parts may be one but for rounding; between samples so close a signal shows no slope.
+    """
+    gap = np.diff(x, axis=1, prepend=x[:, :1], append=x[:, -1:])
+    with np.errstate(invalid="ignore"):
+        close = gap[:, 1:-1] < MERGED * np.maximum(gap[:, :-2], gap[:, 2:])
+    first = np.where(np.pad(close, ((0, 0), (1, 0))), 0, np.arange(x.shape[1]))
+    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
 
 
 def _graded_over_period(group: Group) -> Array:
@@ -154,7 +168,8 @@ def jump_angles(group: Group) -> Array:
     turn, designs = group.scene.mechanism.period, len(group.designs)
     rounds = range(round(group.scene.period / turn))
     angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in rounds]
-    return np.stack(angles, axis=1) if angles else np.empty((designs, 0))
+    located = [group.zeros(kind) + turn * k for kind in ("jump", "pole") for k in rounds]
+    return np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
 
 
 def _changes_of_sign(group: Group, name: str) -> Array:

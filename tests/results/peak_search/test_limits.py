@@ -8,15 +8,16 @@ import xarray as xr
 
 import linksweep as ls
 from benchmarks.accuracy import missed
-from linksweep.engine.quantity import Closure
+from linksweep.engine.quantity import Limit, Row
+from linksweep.physics.algebra import planar
 from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peak_search.limits import find_limits
 
-RRR = (Closure("C", ("low", "high"), ("low_noise", "high_noise")),)
+RRR = (Limit("C", ("low", "high"), ("low_noise", "high_noise")),)
 CLOSURES = {
     "FourBar": RRR,
     "SliderCrank": RRR,
-    "InvertedSliderCrank": (Closure("rocker", ("slide_squared",), ("noise",)),),
+    "InvertedSliderCrank": (Limit("rocker", ("slide_squared",), ("noise",)),),
 }
 
 
@@ -121,7 +122,7 @@ def test_machines_that_touch_a_toggle_turn_fully():
     limits = limits_by_search(scene)
     np.testing.assert_array_equal(limits.assembly, 0.0)
     expected = np.broadcast_to([0.0, 180.0], (3, 2))
-    away = np.mod(limits.toggle[:, 0, :] + 90.0, 360.0) - 90.0
+    away = np.mod(limits.zeros[:, 0, :] + 90.0, 360.0) - 90.0
     np.testing.assert_allclose(np.sort(away, axis=1), expected, atol=1e-5)
 
 
@@ -129,16 +130,45 @@ def test_machines_that_touch_a_toggle_turn_fully():
 def without_closed_forms(monkeypatch):
     """Let machines state the signals of their closure, as those do that have no closed forms."""
 
-    def replaced(kind):
+    def replaced(kind, rows=(), limits=()):
         own, tables = kind.table, {}
 
         def table(self, drive, loads):
             plain = own(self, drive, loads)
-            return tables.setdefault(plain, replace(plain, closures=CLOSURES[kind.__name__]))
+            both = (*plain.rows, *rows), (*CLOSURES[kind.__name__], *limits)
+            return tables.setdefault(plain, replace(plain, rows=both[0], limits=both[1]))
 
         monkeypatch.setattr(kind, "table", table)
 
     return replaced
+
+
+def grip(low, high, rod_across, friction):
+    """Positive where friction does not wedge the slider, |μ·across| < |along|."""
+    return low * high - (friction * rod_across) * (friction * rod_across)
+
+
+GRIP = Row(grip, ("grip",)), Row(planar.product, ("grip_noise",), ("noise", "rod_length"))
+SLIDES = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")
+
+
+@pytest.mark.parametrize("jams", [0.0, 0.3])
+def test_peaks_with_friction_are_those_by_closed_forms(without_closed_forms, monkeypatch, jams):
+    """Where the slider turns round, and where friction wedges it, is then known by search alone."""
+
+    def scene():
+        plain = missed.FAMILIES["slider-crank with friction"].scene(np.random.default_rng(5), 60)
+        rough = plain.mechanism.friction + xr.DataArray(np.where(np.arange(60) < 20, jams, 0.0), dims="design")
+        return replace(plain, mechanism=replace(plain.mechanism, friction=rough))
+
+    expected = ls.peaks(scene())
+    assert (expected.status == 3).any() == (jams > 0.0)
+    without_closed_forms(ls.SliderCrank, GRIP, SLIDES)
+    monkeypatch.setattr(ls.SliderCrank, "jumps", lambda self: ())
+    monkeypatch.setattr(ls.SliderCrank, "driven_findings", lambda self, motion: ())
+    peaks = ls.peaks(scene())
+    for variable in ("F12_peak", "F32_peak", "F43_peak", "T12_max", "T12_min", "status"):
+        np.testing.assert_allclose(peaks[variable], expected[variable], rtol=2e-11, err_msg=variable)
 
 
 @pytest.mark.parametrize("name", ["four-bar", "four-bar of any lengths", "slider-crank", "inverted slider-crank"])
