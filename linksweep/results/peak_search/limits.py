@@ -66,7 +66,7 @@ class Arcs(NamedTuple):
 
     @property
     def whole(self) -> Array:
-        """Whether each arc is a turn without a toggle."""
+        """True for each arc that is a turn without a toggle."""
         return self.start_part == NO_TOGGLE
 
 

@@ -93,7 +93,7 @@ def test_arcs_of_machines_that_nearly_turn_fully(machines, margin, atol):
 @pytest.mark.parametrize("machines", MACHINES)
 @pytest.mark.parametrize("decades", [(-4.0, -1.5), (-9.0, -4.0)])
 def test_near_toggles_of_machines_that_barely_turn_fully(machines, decades):
-    """Where the closed form has signal = x cos²(ψ/2) + y sin²(ψ/2), it is 2x at tan(ψ/2) = √(x/(y − 2x))."""
+    """The closed form is x cos²(ψ/2) + y sin²(ψ/2), which is 2x at tan(ψ/2) = √(x/(y − 2x))."""
     random = np.random.default_rng(3)
     scene = machines(random, 300, 10.0 ** random.uniform(*decades, 300))
     limits, middle = limits_by_search(scene), np.asarray(scene.mechanism.near_toggle_angle)
@@ -154,7 +154,7 @@ SLIDES = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slid
 
 @pytest.mark.parametrize("jams", [0.0, 0.3])
 def test_peaks_with_friction_are_those_by_closed_forms(without_closed_forms, monkeypatch, jams):
-    """Where the slider turns round, and where friction wedges it, is then known by search alone."""
+    """The angles at which the slider turns round, and friction wedges it, are then known by search alone."""
 
     def scene():
         plain = missed.FAMILIES["slider-crank with friction"].scene(np.random.default_rng(5), 60)
