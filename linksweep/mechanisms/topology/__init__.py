@@ -1,0 +1,91 @@
+"""Topology of a linkage: its links, slides and cylinders as a text names them, and the order in which they close.
+
+A cylinder of given length is a massless link. What no dyad finds closes only together, and is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import lru_cache
+
+from linksweep.mechanisms.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
+from linksweep.mechanisms.topology.problems import (
+    closure_problems,
+    crank_problems,
+    gear_problems,
+    guide_problems,
+    mobility_problems,
+    part_problems,
+    pin_problems,
+)
+from linksweep.mechanisms.topology.text import RATIO, Part, read
+from linksweep.mechanisms.topology.topology import GROUND, Topology
+
+__all__ = ["GROUND", "PRP", "RPP", "RPR", "RRP", "RRR", "Gear", "Side", "Step", "Topology", "topology"]
+
+Names = tuple[tuple[str, str], ...]
+
+
+@lru_cache(maxsize=1024)
+def topology(
+    links: str,
+    ground: tuple[str, ...],
+    hosts: Names = (),
+    ratios: Names = (),
+    given: frozenset[str] = frozenset(),
+    reserved: frozenset[str] = frozenset(),
+) -> tuple[Topology | None, tuple[str, ...]]:
+    """Return the topology of a linkage, or None, and its problems.
+
+    Parameters
+    ----------
+    links : text, such as "crank A-B, coupler B-C, rocker D-C, ram F on slide, c1 P~B"
+    ground : pins on the ground; the first is the crank's pivot
+    hosts : name of each declared guide, and the link that carries it or "ground"
+    ratios : name of each declared gear pair's wheel, and its ratio as text, "" where `links` states it
+    given : cylinders of given length
+    reserved : names that no link may have
+
+    Returns
+    -------
+    topology : None where a part of the text has no form, or two parts have one name
+    problems : all at once, each a sentence that states what to change; () for a machine that closes dyad by dyad
+    """
+    parts, unread = read(links)
+    problems = [*unread, *part_problems(parts, reserved)]
+    if unread or len({part.role for part in parts}) < len(parts):
+        return None, tuple(problems)
+    machine = _joined(parts, ground, dict(hosts), dict(ratios), given).closed()
+    problems += [
+        *pin_problems(parts, machine),
+        *guide_problems(parts, machine, dict(hosts)),
+        *gear_problems(parts, machine, dict(ratios)),
+    ]
+    from_crank = crank_problems(parts[0], ground) or [*mobility_problems(machine), *closure_problems(machine)]
+    return machine, (*problems, *from_crank)
+
+
+def _joined(
+    parts: list[Part], ground: tuple[str, ...], hosts: dict[str, str], ratios: dict[str, str], given: frozenset[str]
+) -> Topology:
+    links = {part.role: tuple(dict.fromkeys(part.pins)) for part in parts if part.pins and not part.guide}
+    past = {part.role: part.past for part in parts if part.past and part.pins}
+    cylinders = {part.role: (part.ends[0], part.ends[1]) for part in parts if part.ends}
+    lines = {*past, *(part.guide for part in parts if part.guide in links)}
+    return Topology(
+        names=tuple(part.role for part in parts),
+        ground=ground,
+        links=links,
+        sliders={part.role: (part.pins[0], part.guide) for part in parts if part.guide and part.pins},
+        past=past,
+        yokes={part.role: (part.guide, part.past) for part in parts if part.guide and not part.pins},
+        cylinders=cylinders,
+        given=given & {*cylinders},
+        gears={part.role: _ratio(part.ratio or ratios.get(part.role, "")) for part in parts if part.mate},
+        hosts={**{name: name for name in lines}, **hosts},
+    )
+
+
+def _ratio(text: str) -> Fraction:
+    return Fraction(text) if re.fullmatch(RATIO, text) else Fraction(0)
