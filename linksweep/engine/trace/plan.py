@@ -101,16 +101,20 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     return Plan(table.index, outputs, functions)
 
 
-def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_by: dict[str, range]) -> Node:
-    if name not in values:
-        row: Row | Total = table.maker[name]
-        arguments = [
-            _trace(source, table, graph, values, made_by) if isinstance(source, str) else graph.node(source)
-            for source in row.wiring
-        ]
+def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_by: dict[str, range]) -> None:
+    """Trace the row that makes a name, after the rows that make its inputs: a chain of links may be a long way."""
+    waiting = [name]
+    while waiting:
+        if waiting[-1] in values:
+            waiting.pop()
+            continue
+        row: Row | Total = table.maker[waiting[-1]]
+        missing = [source for source in row.wiring if isinstance(source, str) and source not in values]
+        if missing:
+            waiting.extend(reversed(missing))
+            continue
         before = len(graph.nodes)
-        made = row.function(*arguments)
+        made = row.function(*(values[x] if isinstance(x, str) else graph.node(x) for x in row.wiring))
         made = made if isinstance(made, tuple) else (made,)
         values.update(zip(row.outputs, map(graph.node, made), strict=True))
         made_by[f"{row.function.__name__} → {', '.join(row.outputs)}"] = range(before, len(graph.nodes))
-    return values[name]
