@@ -22,8 +22,8 @@ from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
 from linksweep.base.version import installed_version
 from linksweep.files.netcdf import load_scene, save
-from linksweep.mechanisms import FourBar, InvertedSliderCrank, LoopTrack, SliderCrank
-from linksweep.mechanisms.links import Bar, Disk, Link
+from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
+from linksweep.mechanisms.links import Bar, Cylinder, Disk, Gears, Guide, Link, Slider
 from linksweep.plot import accessor as _accessor  # noqa: F401  (registers Dataset.linksweep)
 from linksweep.reports.page import report
 from linksweep.results.check import check
@@ -49,11 +49,15 @@ __all__ = [
     "Bar",
     "Bearing",
     "Counterweight",
+    "Cylinder",
     "DieselCycle",
     "Disk",
     "FourBar",
+    "Gears",
+    "Guide",
     "InvertedSliderCrank",
     "Link",
+    "Linkage",
     "LoopTrack",
     "Motor",
     "MultiCylinder",
@@ -62,6 +66,7 @@ __all__ = [
     "OvershootWarning",
     "QuantityTable",
     "Scene",
+    "Slider",
     "SliderCrank",
     "Tolerance",
     "bearings",

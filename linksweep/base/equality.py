@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from linksweep.base.fields import converted_fields, declared, has_fields
@@ -23,9 +24,17 @@ class ByContent:
         return hash(content(self))
 
     def __repr__(self) -> str:
-        texts = {name: (repr(getattr(self, name)), repr(default)) for name, default in self._defaults().items()}
-        own = (f"{name}={text}" for name, (text, default) in texts.items() if text != default)
-        return f"{type(self).__name__}({', '.join(own)})"
+        return f"{type(self).__name__}({', '.join(self._own_words())})"
+
+    def _own_words(self) -> Iterator[str]:
+        """Yield "name=value" for each field that differs from its default, and for each thing that it names inline."""
+        defaults = self._defaults()
+        for name, kind, _ in declared(self):
+            value = getattr(self, name)
+            if kind.inline and isinstance(value, Mapping):
+                yield from (f"{own}={item!r}" for own, item in value.items())
+            elif repr(value) != repr(defaults[name]):
+                yield f"{name}={value!r}"
 
     def _defaults(self) -> dict[str, Any]:
         """Return the default of each field."""
@@ -35,6 +44,8 @@ class ByContent:
 def content(value: Any) -> Any:
     """Return the content that decides equality, as nested tuples, without names, attributes or other coordinates of
     arrays."""
+    if isinstance(value, Mapping):
+        return frozenset((name, content(item)) for name, item in value.items())
     if has_fields(value):
         return type(value).__name__, tuple(content(getattr(value, name)) for name, *_ in declared(value))
     if is_array(value):

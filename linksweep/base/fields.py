@@ -18,9 +18,16 @@ from linksweep.base.validate import Rule, choice_problems, is_array, is_quantity
 
 @dataclass(frozen=True, kw_only=True)
 class FieldKind:
-    """A field that may hold anything, such as a word: its owner checks it. `example` is how a scene file writes it."""
+    """A field that may hold anything, such as a word: its owner checks it.
+
+    Parameters
+    ----------
+    example : how a scene file writes it
+    inline : whether the paths of what it holds leave this field's name out
+    """
 
     example: str = '"..."'
+    inline: bool = False
 
     def converted(self, value: Any) -> Any:
         """Return the value with its numbers as float64 in the units of their kinds; anything else as it is."""
@@ -140,13 +147,11 @@ class PartField(FieldKind):
     classes : the classes
     base : their common base, of which a value must be
     default : the class of a table without a `type`, if any
-    inline : whether the paths of the object's own fields leave this field's name out
     """
 
     classes: Collection[type]
     base: Any
     default: type | None = None
-    inline: bool = False
 
     @property
     def by_name(self) -> dict[str, type]:
@@ -161,6 +166,14 @@ class PartField(FieldKind):
 
     def problems(self, path: str, value: Any) -> list[str]:
         return [] if isinstance(value, self.base) else [f"{path} = {quote(value)}: must be a {self.words}"]
+
+
+@dataclass(frozen=True)
+class CheckedPartField(PartField):
+    """A field that holds an object of one of several dataclasses, whose own fields it checks."""
+
+    def problems(self, path: str, value: Any) -> list[str]:
+        return super().problems(path, value) or field_problems(value, below(path, self))
 
 
 @dataclass(frozen=True)
@@ -250,8 +263,8 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 
 def left_out(value: Any) -> bool:
-    """Return whether a value is that of a field left out: None, or an empty text or list."""
-    return value is None or (isinstance(value, str | tuple | list) and not value)
+    """Return whether a value is that of a field left out: None, or an empty text, list or mapping."""
+    return value is None or (isinstance(value, str | tuple | list | Mapping) and not value)
 
 
 def has_fields(value: Any) -> bool:
@@ -270,7 +283,7 @@ def numbers(owner: Any, prefix: str = "") -> Iterator[tuple[str, Any, str]]:
 
 def below(path: str, kind: FieldKind) -> str:
     """Return the prefix of the paths of an object's fields, from path and kind of the field that holds it."""
-    return "" if isinstance(kind, PartField) and kind.inline else path + "."
+    return "" if kind.inline else path + "."
 
 
 def numbers_in(path: str, value: Any, kind: FieldKind) -> Iterator[tuple[str, Any, str]]:

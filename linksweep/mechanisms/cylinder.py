@@ -11,7 +11,7 @@ from linksweep.base.validate import Number
 
 
 @dataclass(frozen=True, eq=False)
-class Cylinder:
+class PistonCylinder:
     """A cylinder whose piston a crank moves by a rod.
 
     Parameters

@@ -13,6 +13,7 @@ from linksweep.base.validate import Number, is_lazy
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
+from linksweep.mechanisms.dyads import rrr
 from linksweep.mechanisms.limits import four_bar_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, link_parameters
@@ -20,6 +21,7 @@ from linksweep.mechanisms.mechanism import Mechanism, register
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import (
+    BRANCH,
     BRANCH_SIGN,
     between_rows,
     frame_parameters,
@@ -49,10 +51,6 @@ BODIES = (
 )
 
 
-CLOSURE: dict[str, str | float] = {
-    **dict.fromkeys(("low", "high", "versine", "vercosine"), 1.0),
-    **dict.fromkeys(("least_low", "least_high"), "sums_unit"),
-}
 CLOSED = (
     *("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3"),
     *("along3", "along4", "across", "inverse_2ff", "half_inverse_root"),
@@ -98,7 +96,7 @@ class FourBar(Mechanism):
     coupler: AnyLink = of_kind(LINK)
     rocker: AnyLink = of_kind(LINK)
     ground: Number = parameter("length", above=0.0)
-    branch: str = "open"
+    branch: str = of_kind(BRANCH, "open")
     ground_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = {"crank": "T12", "coupler": "T13", "rocker": "T14"}
@@ -129,7 +127,7 @@ class FourBar(Mechanism):
         dict of str to float or DataArray
             Lengths [m] by role.
         """
-        return {role: link.length for role, link in self.parts().items()} | {"ground": self.ground}
+        return {role: link.length for role, link in self.parts.items()} | {"ground": self.ground}
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: its longest link is longer than the others together."""
@@ -150,7 +148,7 @@ class FourBar(Mechanism):
     def parameters(self) -> dict[str, Any]:
         numbers: dict[str, Any] = {"ground_length": self.ground, "branch_sign": self.branch_sign}
         numbers |= frame_parameters("ground", self.ground_angle)
-        for role, link in self.parts().items():
+        for role, link in self.parts.items():
             numbers |= link_parameters(role, link)
         return numbers
 
@@ -240,7 +238,7 @@ def _table(drive: str, loads: tuple[Form, ...], turned: bool, goes_through: bool
         *_forces(drive),
         *power_rows(FourBar.drives[drive], DRIVEN[drive], BODIES, loads),
     ]
-    rows += machine_rows(BODIES, PINS, loads, **CLOSURE) + _transmission()
+    rows += machine_rows(BODIES, PINS, loads, **rrr.CERTAIN_ON_CRANK) + _transmission()
     rows += [*bodies.arm_rows(2, "R12", "R32"), *bodies.arm_rows(3, "R23", "R43"), *bodies.arm_rows(4, "R14", "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 

@@ -19,7 +19,7 @@ from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, frame_parameters, in_range, turned
+from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, STATUS_OF_SLIDER, frame_parameters, in_range, turned
 from linksweep.mechanisms.rows.inverted_slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
@@ -112,7 +112,7 @@ class InvertedSliderCrank(Mechanism):
     block_mass: Number = parameter("mass", at_least=0.0)
     block_inertia: Number = parameter("inertia", 0.0, at_least=0.0)
     offset: Number = parameter("length", 0.0)
-    branch: str = "open"
+    branch: str = of_kind(BRANCH, "open")
     ground_angle: Number = parameter("angle", 0.0)
     block_cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     block_cg_angle: Number = parameter("angle", 0.0)

@@ -1,4 +1,4 @@
-"""Links: of any shape, a rectangular bar, or a disk. Each has length, mass, inertia and a centre of gravity.
+"""Parts of machines: links of any shape, rectangular bars, disks; and of linkages sliders, cylinders, guides, gears.
 
 Source of mass and moment of inertia of bar and disk: document 2 (ME 470), m(L² + w²)/12 and m r²/2.
 """
@@ -6,15 +6,18 @@ Source of mass and moment of inertia of bar and disk: document 2 (ME 470), m(L²
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
-from linksweep.base.fields import PartField, below, declared, field_problems, parameter
-from linksweep.base.validate import Number, overflow_problems
+from linksweep.base.fields import CheckedPartField, PairField, declared, of_kind, parameter, word
+from linksweep.base.frozen import normalise
+from linksweep.base.validate import Number, Rule, as_float, overflow_problems
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -165,25 +168,182 @@ class Disk(ByContent):
         return 0.5 * self.mass * self.radius * self.radius
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Slider(ByContent):
+    """A part of a linkage that slides on a straight guide.
+
+    Parameters
+    ----------
+    mass : float or DataArray
+        Mass [kg].
+    inertia : float or DataArray, default 0.0
+        Moment of inertia about the centre of gravity [kg m²]; it counts where the guide turns.
+    cg_distance : float or DataArray, default 0.0
+        Distance of the centre of gravity from the slider's pin [m].
+    cg_angle : float or DataArray, default 0.0
+        Angle of the centre of gravity from the guide's direction, counter-clockwise [degree].
+    slot_angle : float or DataArray, default 90.0
+        Direction of the slot of a "yoke on slide past B" from the guide's direction [degree].
+
+    Notes
+    -----
+    Its axes lie along and across its guide. Its pin is that in "ram F on slide"; a yoke has its centre, from which its
+    centre of gravity is measured, where the slot crosses the guide.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Slider(mass=3.0)
+    Slider(mass=3.0)
+    """
+
+    mass: Number = parameter("mass", at_least=0.0)
+    inertia: Number = parameter("inertia", 0.0, at_least=0.0)
+    cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
+    cg_angle: Number = parameter("angle", 0.0)
+    slot_angle: Number = parameter("angle", 90.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Cylinder(ByContent):
+    """A telescopic cylinder between two pins of a linkage, without mass.
+
+    Parameters
+    ----------
+    length : float, DataArray or function of theta2, default None
+        Distance of its two pins [m], which may change with theta2; None for a cylinder that follows the linkage.
+
+    Notes
+    -----
+    A length that is stated removes a freedom, as a hydraulic cylinder that is held or moved. A cylinder that follows
+    carries no force unless it is the drive.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Cylinder(length=0.9)
+    Cylinder(length=0.9)
+    """
+
+    length: Number = parameter("length", None, above=0.0, over_angle=True)
+
+    @property
+    def over_angle(self) -> tuple[Number, Number, Number]:
+        """Length [m] and its first two derivatives to the crank's angle [m/rad, m/rad²]."""
+        return self.length, 0.0, 0.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SampledCylinder(Cylinder):
+    """A cylinder whose length has been evaluated at the angles of a grid, with its first two derivatives to theta2."""
+
+    slope: Number = 0.0
+    curvature: Number = 0.0
+
+    @property
+    def over_angle(self) -> tuple[Number, Number, Number]:
+        return self.length, self.slope, self.curvature
+
+
+GUIDE_POINT = PairField(Rule("length"), Rule("length"), "(x, y) in m")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Guide(ByContent):
+    """A straight guide of a linkage, on the ground or on a link.
+
+    Parameters
+    ----------
+    through : pair of float or DataArray, default (0.0, 0.0)
+        Point of the guide's line [m]: on the ground in the axes of the ground pins, on a link in the link's own axes,
+        from its first pin and along its line of pins.
+    angle : float or DataArray, default 0.0
+        Direction of the guide [degree], from x or from the link's line of pins, counter-clockwise.
+    friction : float or DataArray, default 0.0
+        Coefficient of Coulomb friction between guide and slider [1].
+    of : str, default "ground"
+        Link that carries the guide, by its name.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Guide(through=(0.0, 0.02), angle=20.0, friction=0.1)
+    Guide(through=(0.0, 0.02), angle=20.0, friction=0.1)
+    """
+
+    through: Sequence[Number] = of_kind(GUIDE_POINT, (0.0, 0.0))
+    angle: Number = parameter("angle", 0.0)
+    friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
+    of: str = word('"ground"', "ground")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Gears(ByContent):
+    """A pair or train of gears by which the crank of a linkage turns a second crank.
+
+    Parameters
+    ----------
+    ratio : float or str, default ""
+        Turns of the wheel per turn of the crank [1], negative for the opposite sense: a whole number, or a fraction
+        such as "-3/2". Left out where the text of the linkage states it.
+    phase : float or DataArray, default 0.0
+        Angle of the wheel where that of the crank is 0 [degree].
+    pressure_angle : float or DataArray, default None
+        Pressure angle of the teeth [degree]; None for gears that pass on a torque alone, without a force at the teeth.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> ls.Gears(ratio=-1.5, phase=90.0)
+    Gears(ratio='-3/2', phase=90.0)
+    """
+
+    ratio: Any = word('"-3/2"', "")
+    phase: Number = parameter("angle", 0.0)
+    pressure_angle: Number = parameter("angle", None, at_least=0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        normalise(self, ratio=fraction_text(self.ratio))
+
+
+def fraction_text(ratio: Any) -> str:
+    """Return a number as the text of a fraction of small whole numbers; anything else, and other numbers, as text."""
+    number = as_float(ratio)
+    if number is None or not math.isfinite(number):
+        return str(ratio)
+    near = Fraction(number).limit_denominator(99)
+    return str(near) if float(near) == number else str(ratio)
+
+
 AnyLink = Link | Bar | Disk
+AnyPart = AnyLink | Slider | Cylinder
 
 
-class LinkField(PartField):
-    """A field that holds a link, which it checks with its numbers."""
+class LinkField(CheckedPartField):
+    """A field that holds a link, which it checks with its numbers and their moment of inertia."""
 
     def problems(self, path: str, value: Any) -> list[str]:
-        if problems := super().problems(path, value) or field_problems(value, below(path, self)):
+        if problems := super().problems(path, value):
             return problems
         with np.errstate(over="ignore"):
-            return overflow_problems(path, value.inertia, "moment of inertia")
+            return overflow_problems(path, getattr(value, "inertia", 0.0), "moment of inertia")
 
 
 LINK = LinkField((Link, Bar, Disk), AnyLink, default=Link)
+PART = LinkField((Link, Bar, Disk, Slider, Cylinder), AnyPart, default=Link)
+GUIDE = CheckedPartField((Guide,), Guide, default=Guide)
+GEARS = CheckedPartField((Gears,), Gears, default=Gears)
 
 
 def links_of(mechanism: Any) -> dict[str, AnyLink]:
     """Return the links that are fields of a mechanism, by role."""
     return {role: getattr(mechanism, role) for role, kind, _ in declared(mechanism) if kind is LINK}
+
+
+def with_distribution(part: Any, numbers: Mapping[str, Number]) -> Any:
+    """Return a link, or a slider, with another mass distribution: the numbers of a `MassDistribution` by name."""
+    return Link(part.length, **numbers) if isinstance(part, AnyLink) else replace(part, **numbers)
 
 
 def link_parameters(role: str, link: AnyLink) -> dict[str, Number]:

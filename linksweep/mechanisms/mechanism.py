@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
-from linksweep.base.validate import Number, choice_problems, refuse
+from linksweep.base.validate import Number, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
 from linksweep.mechanisms.balance import MassDistribution, distribution
-from linksweep.mechanisms.cylinder import Cylinder
+from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.links import AnyLink, Link, links_of
+from linksweep.mechanisms.links import links_of, with_distribution
 from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
 from linksweep.mechanisms.rows.load_forms import Form
@@ -101,7 +102,7 @@ class Mechanism(ByContent, ABC):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        refuse(field_problems(self) + choice_problems("branch", self.branch, (*BRANCH_SIGN, "both")))
+        refuse(field_problems(self))
         refuse(self.closure_problems())
 
     @abstractmethod
@@ -145,6 +146,13 @@ class Mechanism(ByContent, ABC):
         alpha2 = values["alpha2"]
         return {"omega2": values["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
 
+    def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
+        """Return the machine with its lengths that change over the revolution evaluated at the angles of a grid.
+
+        `sample` takes path and length, and returns the values there and the first two derivatives [m/rad, m/rad²].
+        """
+        return self
+
     def remarks(self, parameters: Mapping[str, Any]) -> dict[str, str]:
         """Return remarks on parameters of the motion, by name, for a report. `parameters` are a scene's."""
         return {}
@@ -153,13 +161,14 @@ class Mechanism(ByContent, ABC):
         """Return functions that derive further numbers of the physics from the design and its motion."""
         return ()
 
-    def parts(self) -> dict[str, AnyLink]:
-        """Return the links that are parameters of the machine, by role."""
+    @cached_property
+    def parts(self) -> Mapping[str, Any]:
+        """Links that are parameters of the machine, and other parts with a mass or a length, by role."""
         return links_of(self)
 
     def masses(self) -> dict[str, MassDistribution]:
         """Return the mass distribution of each moving link by role: a part's own, or parameters such as block_mass."""
-        parts, names = self.parts(), MassDistribution._fields
+        parts, names = self.parts, MassDistribution._fields
         return {
             role: distribution(parts[role])
             if role in parts
@@ -169,12 +178,12 @@ class Mechanism(ByContent, ABC):
 
     def with_masses(self, masses: Mapping[str, MassDistribution]) -> Self:
         """Return a copy whose links have other mass distributions, by role; a number that has no parameter stays 0."""
-        parts, own = self.parts(), {item.name for item in fields(self)}
+        parts, own = self.parts, {item.name for item in fields(self)}
         changed: dict[str, Any] = {}
         for role, placed in masses.items():
             numbers = placed._asdict()
             if role in parts:
-                changed[role] = Link(parts[role].length, **numbers)
+                changed[role] = with_distribution(parts[role], numbers)
             else:
                 changed |= {f"{role}_{name}": n for name, n in numbers.items() if f"{role}_{name}" in own}
         return replace(self, **changed)
@@ -197,7 +206,7 @@ class Mechanism(ByContent, ABC):
         return any(np.any(coefficient) for coefficient in self.frictions.values())
 
     @property
-    def cylinder(self) -> Cylinder:
+    def cylinder(self) -> PistonCylinder:
         """The cylinder in which gas presses on the link "slider". For one branch only."""
         raise NotImplementedError
 

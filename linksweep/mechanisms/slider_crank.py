@@ -14,14 +14,14 @@ from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment, on_crank
-from linksweep.mechanisms.cylinder import Cylinder
+from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Guide, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
 from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
+from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.rows.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
@@ -95,7 +95,7 @@ class SliderCrank(Mechanism):
     slider_mass: Number = parameter("mass", at_least=0.0)
     offset: Number = parameter("length", 0.0)
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
-    branch: str = "open"
+    branch: str = of_kind(BRANCH, "open")
     slide_angle: Number = parameter("angle", 0.0)
     slider_cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     slider_cg_angle: Number = parameter("angle", 0.0)
@@ -223,7 +223,7 @@ class SliderCrank(Mechanism):
             Angles [degree], for each branch stretched (C farthest from A), then folded; NaN in designs without any.
         """
         signs = [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values()
-        cylinders = (Cylinder(*self._lengths, self.slide_angle, sign) for sign in signs)
+        cylinders = (PistonCylinder(*self._lengths, self.slide_angle, sign) for sign in signs)
         return tuple(angle for cylinder in cylinders for angle in cylinder.dead_centres())
 
     @property
@@ -232,9 +232,9 @@ class SliderCrank(Mechanism):
         return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
-    def cylinder(self) -> Cylinder:
+    def cylinder(self) -> PistonCylinder:
         """The cylinder in which the slider is the piston, its head where the rod reaches farthest."""
-        return Cylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
+        return PistonCylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
 
     def stroke_findings(self) -> Checks:
         """Return the closed forms of the slider's travel, time ratio and reversals."""

@@ -14,6 +14,12 @@ import math
 from linksweep.physics.algebra.arithmetic import Number, where
 
 
+def direction_of_sliding(friction: Number, velocity: Number, omega2: Number, noise: Number) -> Number:
+    """Return μ·sign(v), or 0 where the part stands still: slower than `noise` per radian of the crank."""
+    standing = abs(omega2) * noise
+    return where(velocity > standing, friction, where(velocity < -standing, -friction, 0.0))
+
+
 def opposing(force: Number, direction: Number) -> Number:
     """Return μ·sign(v)·sign(N) from any force that has the sign of N; the friction force is −N times this."""
     return where(force < 0.0, -direction, direction)

@@ -14,6 +14,7 @@ from linksweep.engine.run import Grid, evaluate
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.acceleration import acceleration, acceleration_problems
+from linksweep.scene.curves.derivatives import with_derivatives
 from linksweep.scene.curves.over_angle import at_angles
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 OMEGA2 = Rule("angular_velocity", over_angle=True)
 ALPHA2 = Rule("angular_acceleration", over_angle=True)
+LENGTH = Rule("length", above=0.0, over_angle=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +67,14 @@ class Revolution:
         """Return the parameter at a path, evaluated at the angles if it changes with them."""
         return at_angles(path, value, rule, self.grid, self.scene.curves.get(path))
 
+    def sample_length(self, path: str, length: Any) -> tuple[Number, Number, Number]:
+        """Return a length that changes with theta2 at the angles, and its derivatives [m/rad, m/rad²]."""
+        curve = self.scene.curves.get(path)
+        return with_derivatives(path, length, LENGTH, self.grid, self.mechanism.period, curve)
+
     def kinematics(self, *names: str) -> list[xr.DataArray]:
         """Return quantities over the angles, of those that angles and lengths alone decide."""
-        unloaded = self.scene.unloaded
+        unloaded = self.scene.unloaded.at(self.grid)
         request = plan(unloaded.table, names, unloaded.inputs.forms)
         results = evaluate(request, unloaded.inputs.fields, self.grid, unloaded.inputs.sizes)
         fields = [results[name] for name in names]

@@ -306,7 +306,8 @@ class Scene(ByContent):
         """
         revolution = Revolution(self, grid)
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
-        return with_sound(self, omega2=revolution.omega2, alpha2=revolution.alpha2, loads=loads)
+        mechanism = self.mechanism.at_angles(revolution.sample_length)
+        return with_sound(self, mechanism=mechanism, omega2=revolution.omega2, alpha2=revolution.alpha2, loads=loads)
 
     def jumps(self) -> tuple[Number, ...]:
         """List the crank angles at which forces jump.

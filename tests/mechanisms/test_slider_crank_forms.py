@@ -186,7 +186,7 @@ def test_no_friction_no_friction_operations():
     assert rough.operations("theta2").total() <= smooth.operations("theta2").total() + 24
     for name in ("friction_force", "friction_power"):
         assert planned(engine(friction=0.0), name).operations("theta2").total() == 0
-    friction = [function for function in rough.functions if "friction_direction" in function]
+    friction = [function for function in rough.functions if "direction_of_sliding" in function]
     assert friction and not set(friction) & set(smooth.functions)
 
 

@@ -137,8 +137,8 @@ def test_all_problems_of_a_mechanism_are_reported_together():
         "rocker.length = 0 m: must be greater than 0",
         "rocker.density = True: must be a number in kg/m^3, not a truth value",
         'ground = [0.2] is a bare array: name its dimensions, as in xarray.DataArray(values, dims="design")',
-        "ground_angle = inf degree: must be finite",
         "branch = 'opn': must be one of open, crossed, both; did you mean \"open\"?",
+        "ground_angle = inf degree: must be finite",
     ]
 
 

@@ -123,7 +123,7 @@ def best_counterweights(
     if designs := design_sizes(scene):
         refuse([f"scene has designs over {', '.join(designs)}: give one, as ls.scene_at(scene, ...)"])
     sizes = _weights(scene, minimize)
-    carriers = scene.mechanism.parts()
+    carriers = scene.mechanism.parts
     grounded = [body.role for body in scene.mechanism.bodies if body.on_ground and body.role in carriers]
     radii = by_link("radius", radius, list(radius) if isinstance(radius, Mapping) else grounded)
     refuse([p for link in radii for p in name_problems("radius", link, carriers)])

@@ -211,7 +211,7 @@ def coupler_curve(
 
 def _floating(scene: Scene) -> str:
     """Return the first link, among the parts of the machine, that no ground pin holds; else the last of all links."""
-    parts = [body for body in scene.mechanism.bodies if body.role in scene.mechanism.parts()]
+    parts = [body for body in scene.mechanism.bodies if body.role in scene.mechanism.parts]
     return next((body.role for body in parts if not body.on_ground), scene.mechanism.bodies[-1].role)
 
 

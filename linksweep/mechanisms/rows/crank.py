@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.degrees import cos_sin_low_words
+from linksweep.base.fields import ChoiceField
 from linksweep.base.validate import Number
 from linksweep.engine.quantity import Row
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 
 BRANCH_SIGN = {"open": 1.0, "crossed": -1.0}
+BRANCH = ChoiceField((*BRANCH_SIGN, "both"))
+"""A field that holds an assembly; "both" adds a dim."""
 STATUS_OF_CRANK = ("ok", "cannot_assemble", "toggle", "dead_centre")
 """Status by number of every machine with a crank."""
 STATUS_OF_SLIDER = (*STATUS_OF_CRANK, "jammed", "no_cycle", "jammed_two_solutions")

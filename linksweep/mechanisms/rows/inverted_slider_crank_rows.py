@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.dyads import rpr
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
@@ -58,7 +59,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *power_rows(DRIVES[drive].unknown.name, DRIVES[drive].rate, BODIES, loads, "friction_power"),
         Row(planar.product, ("friction_power",), ("friction_force", "slide_velocity")),
     ]
-    rows += machine_rows(BODIES, PINS, loads, slide_cosine=1.0, psi_versine=1.0) + _transmission()
+    rows += machine_rows(BODIES, PINS, loads, **rpr.CERTAIN_ON_CRANK) + _transmission()
     rows += [*bodies.arm_rows(2, "R12", "R32"), *_arms()]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("ground_cos", "ground_sin"))
 

@@ -16,11 +16,10 @@ EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "br
 def row(joints: Mapping[str, tuple[int, int]], closure: Mapping[str, str | float]) -> Row:
     """Return the row that bounds the error of the joints' forces.
 
-    `closure` names the numbers that a machine makes in double-double, besides its crank's angle from a near-toggle,
-    with the unit of a cosine in each.
+    `closure` names the numbers that a machine makes in double-double, with the unit of a cosine in each.
     """
     forces = [f"{force_name(i, j)}{axis}" for i, j in joints.values() for axis in "xy"]
-    certain = {"psi_cos": 1.0, "psi_cos_lo": 1.0, "psi_sin": 1.0, **closure}
+    certain = dict(closure)
     n = len(certain)
 
     def error_bound(*nodes: Node) -> Node:

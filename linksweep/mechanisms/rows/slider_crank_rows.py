@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.dyads import rrp
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import between_rows, near_toggle_rows, straight_rows
 from linksweep.mechanisms.rows.load_forms import Form
@@ -47,7 +48,7 @@ def table(drive: str, loads: tuple[Form, ...], turned: bool) -> Table:
         *power_rows(DRIVES[drive], DRIVEN[drive], BODIES, loads, "friction_power"),
         Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
     ]
-    rows += machine_rows(BODIES, PINS, loads, low="crank_length", high="crank_length") + _transmission()
+    rows += machine_rows(BODIES, PINS, loads, **rrp.CERTAIN_ON_CRANK) + _transmission()
     rows += [*bodies.arm_rows(2, "R12", "R32"), *bodies.arm_rows(3, "R23", "R43"), *bodies.arm_rows(4, "R34")]
     return Table("theta2", tuple(rows), tuple(_quantities(drive, loads)), between_rows("upright_cos", "upright_sin"))
 
@@ -105,7 +106,7 @@ def _forces(drive: str) -> list[Row | Total]:
         Row(slider_crank.moment_on_rod, ("moment_r3",)),
         Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
         Row(crank_driven.moment_on_crank, ("moment_r2",)),
-        Row(slider_crank.friction_direction, ("direction",)),
+        Row(coulomb.direction_of_sliding, ("direction",), ("friction", "v_slider", "omega2", "noise")),
         Row(
             slider_crank.guide_force,
             ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),

@@ -70,6 +70,11 @@ def dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
     return ordered_sum(high, low + ((x_lo + y_lo) + mixed))
 
 
+def square_of(x: Pair, y: Pair) -> Pair:
+    """Return x² + y² as a double-double."""
+    return dot(x, y, x, y)
+
+
 def cross(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Number:
     """Return px·qy − py·qx as one number, to full precision even where it cancels."""
     (x, x_lo), (y, y_lo) = two_product(px[0], qy[0]), two_product(py[0], qx[0])

@@ -55,6 +55,11 @@ def to_ground_axes(x: Number, y: Number, length: Number, rx: Number, ry: Number)
     return along * rx - across * ry, along * ry + across * rx
 
 
+def moment_about(moment: Number, x: Number, y: Number, Fx: Number, Fy: Number) -> Number:
+    """Return a moment about the point (x, y), from the moment about the origin and the force."""
+    return moment - cross(x, y, Fx, Fy)
+
+
 def point_velocity(pin_vx: Number, pin_vy: Number, omega: Number, x: Number, y: Number) -> tuple[Number, Number]:
     """Return the velocity of a link's point at (x, y) from its pin: v_pin + ω × r."""
     return pin_vx - omega * y, pin_vy + omega * x

@@ -10,7 +10,7 @@ import math
 
 from linksweep.physics.algebra.arctangent import arctangent
 from linksweep.physics.algebra.arithmetic import Number, where
-from linksweep.physics.algebra.double_double import cross, dot
+from linksweep.physics.algebra.double_double import add, cross, divide, dot, two_product
 
 ANGLE_NOISE = 8.0 * 2.0**-52
 """[rad] Bound on the rounding error of an angle within the first turn."""
@@ -44,6 +44,15 @@ def angle_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, 
     cos = 1.0 - versine
     cos_lo, far = (1.0 - cos) - versine, far_half > 0.0
     return where(far, -cos, cos), where(far, -cos_lo, cos_lo), where(far, -sin, sin)
+
+
+def crank_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, Number, Number, Number]:
+    """Return cos θ2 and sin θ2 as double-doubles, each with its low word; `far_half` as in `angle_from_tangent`."""
+    square, far = two_product(half_tangent, half_tangent), far_half > 0.0
+    whole = add((1.0, 0.0), square)
+    cos = divide(add((1.0, 0.0), (-square[0], -square[1])), whole)
+    sin = divide((2.0 * half_tangent, 0.0), whole)
+    return tuple(where(far, -word, word) for word in (*cos, *sin))
 
 
 def angle_from_x(cos: Number, sin: Number, psi0_cos: Number, psi0_sin: Number) -> tuple[Number, Number]:

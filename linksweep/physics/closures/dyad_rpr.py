@@ -7,8 +7,11 @@ With u the direction of the line and n = u⊥ its left normal, the line passes D
 The mechanism supplies s² in a form that does not cancel. Block and line turn together, ω3 = ω4.
 """
 
-from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.arithmetic import NOISE, Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.double_double import difference, divide, multiply, square_of, two_product
+from linksweep.physics.algebra.double_double import dot as dot_pairs
 from linksweep.physics.algebra.planar import cross, dot
+from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
 
 
 def rpr_close(
@@ -19,6 +22,43 @@ def rpr_close(
     slide, inverse = branch_sign * root, 1.0 / (slide_squared + offset * offset)
     along, across = slide * inverse, offset * inverse
     return slide, branch_sign / root, along * DBx + across * DBy, along * DBy - across * DBx
+
+
+def rpr_between_pins(
+    DBx: Number, DBy: Number, DBx_lo: Number, DBy_lo: Number, offset: Number, offset_lo: Number
+) -> Number:
+    """Return s² of the module's equation, for pins B and D that are double-doubles."""
+    line_offset = offset, offset_lo
+    return difference(square_of((DBx, DBx_lo), (DBy, DBy_lo)), multiply(line_offset, line_offset))
+
+
+def rpr_noise(DBx: Number, DBy: Number, offset: Number) -> Number:
+    """Return the noise floor of s² between any two pins."""
+    size = DBx * DBx + DBy * DBy + offset * offset
+    return size * (CHANGE_POINT_NOISE + range_noise(size))
+
+
+def standing_noise(DBx: Number, DBy: Number, offset: Number) -> Number:
+    """Return the velocity per radian of the crank below which the block stands still: rounding of lengths."""
+    return 0.25 * NOISE * (abs(DBx) + abs(DBy) + abs(offset))
+
+
+def rpr_direction(
+    DBx: Number,
+    DBy: Number,
+    DBx_lo: Number,
+    DBy_lo: Number,
+    offset: Number,
+    offset_lo: Number,
+    slide: Number,
+    slide_squared: Number,
+) -> tuple[Number, Number, Number, Number]:
+    """Return u of the module's equations, and its low words."""
+    w, square = ((DBx, DBx_lo), (DBy, DBy_lo)), square_of((DBx, DBx_lo), (DBy, DBy_lo))
+    slide_lo = 0.5 * (difference((slide_squared, 0.0), two_product(slide, slide)) / slide)
+    s, e = (slide, slide_lo), (offset, offset_lo)
+    x, y = divide(dot_pairs(s, e, *w), square), divide(dot_pairs(s, (-e[0], -e[1]), w[1], w[0]), square)
+    return x[0], y[0], x[1], y[1]
 
 
 def rpr_status(slide_squared: Number, noise: Number) -> Number:

@@ -6,7 +6,10 @@ supplies the factors low = b − h and high = b + h in a form that does not canc
 """
 
 from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.double_double import add
+from linksweep.physics.algebra.double_double import dot as dot_pairs
 from linksweep.physics.algebra.planar import dot
+from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
 
 
 def rrp_close(
@@ -21,6 +24,45 @@ def rrp_close(
         along,
         branch_sign / root,
     )
+
+
+def rrp_between(
+    Bx: Number,
+    By: Number,
+    Bx_lo: Number,
+    By_lo: Number,
+    guide_cos: Number,
+    guide_sin: Number,
+    guide_cos_lo: Number,
+    guide_sin_lo: Number,
+    offset: Number,
+    offset_lo: Number,
+    rod_length: Number,
+    rod_length_lo: Number,
+) -> tuple[Number, Number, Number, Number]:
+    """Return B's component along the guide and the rod's across it, and the factors low and high.
+
+    B and the guide's direction are double-doubles from the origin of the guide's axes, from which the guide lies at the
+    offset.
+    """
+    B, guide, rod = (
+        ((Bx, Bx_lo), (By, By_lo)),
+        ((guide_cos, guide_cos_lo), (guide_sin, guide_sin_lo)),
+        (
+            rod_length,
+            rod_length_lo,
+        ),
+    )
+    B_across = dot_pairs(guide[0], guide[1], B[1], (-B[0][0], -B[0][1]))
+    across = add((offset, offset_lo), (-B_across[0], -B_across[1]))
+    low, high = add(rod, (-across[0], -across[1])), add(rod, across)
+    return dot(Bx, By, guide_cos, guide_sin), across[0], low[0], high[0]
+
+
+def rrp_noise(rod_length: Number, offset: Number) -> Number:
+    """Return the noise floor of low and high between any pin and guide."""
+    size = rod_length + abs(offset)
+    return size * (CHANGE_POINT_NOISE + range_noise(size * size))
 
 
 def rrp_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:

@@ -10,7 +10,9 @@ formulas lose all digits near a toggle. The rest follows without another subtrac
 """
 
 from linksweep.physics.algebra.arithmetic import Number, atan2, degrees, sqrt, where
+from linksweep.physics.algebra.double_double import add, difference, multiply, square_of
 from linksweep.physics.algebra.planar import cross, dot
+from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
 from linksweep.physics.crank_driven import moments_or_work
 
 
@@ -40,6 +42,59 @@ def rrr_close(
     r4x, r4y = along4 * BDx - side_x, along4 * BDy + side_y
     inverse_r4_cross_r3 = -4.0 / closure_unit * half_inverse_root
     return r3x, r3y, r4x, r4y, inverse_r4_cross_r3, along3, along4, across, inverse_2ff, half_inverse_root
+
+
+def rrr_between_pins(
+    BDx: Number,
+    BDy: Number,
+    BDx_lo: Number,
+    BDy_lo: Number,
+    coupler_length: Number,
+    coupler_length_lo: Number,
+    rocker_length: Number,
+    rocker_length_lo: Number,
+) -> tuple[Number, Number]:
+    """Return low and high of the module's equations, for pins B and D that are double-doubles."""
+    b, c = (coupler_length, coupler_length_lo), (rocker_length, rocker_length_lo)
+    square, difference_bc, sum_bc = square_of((BDx, BDx_lo), (BDy, BDy_lo)), add(b, (-c[0], -c[1])), add(b, c)
+    low = difference(square, multiply(difference_bc, difference_bc))
+    return low, difference(multiply(sum_bc, sum_bc), square)
+
+
+def rrr_reach(coupler_length: Number, rocker_length: Number) -> tuple[Number, Number]:
+    """Return (b+c)², and the noise floor of low and high between any two pins."""
+    square = (coupler_length + rocker_length) * (coupler_length + rocker_length)
+    return square, square * (CHANGE_POINT_NOISE + range_noise(square))
+
+
+def rrr_ratios_between_pins(
+    wx: Number,
+    wy: Number,
+    r3x: Number,
+    r3y: Number,
+    r4x: Number,
+    r4y: Number,
+    inverse_r4_cross_r3: Number,
+) -> tuple[Number, Number]:
+    """Return k3 and k4 of  k3⊥r3 − k4⊥r4 = w,  with w the velocity of D less that of B, per rate of the crank."""
+    return -(dot(wx, wy, r4x, r4y) * inverse_r4_cross_r3), -(dot(wx, wy, r3x, r3y) * inverse_r4_cross_r3)
+
+
+def rrr_slopes_between_pins(
+    wx: Number,
+    wy: Number,
+    ratio3: Number,
+    ratio4: Number,
+    r3x: Number,
+    r3y: Number,
+    r4x: Number,
+    r4y: Number,
+    inverse_r4_cross_r3: Number,
+) -> tuple[Number, Number]:
+    """Return the derivatives of k3 and k4 to the crank's angle; w is the derivative of the velocity of D less B's."""
+    square3, square4 = ratio3 * ratio3, ratio4 * ratio4
+    across = wx + square3 * r3x - square4 * r4x, wy + square3 * r3y - square4 * r4y
+    return rrr_ratios_between_pins(*across, r3x, r3y, r4x, r4y, inverse_r4_cross_r3)
 
 
 def rrr_status(low: Number, high: Number, low_noise: Number, high_noise: Number) -> Number:

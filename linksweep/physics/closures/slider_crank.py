@@ -97,12 +97,6 @@ def slider_position(crank_along: Number, rod_along: Number) -> Number:
     return crank_along + rod_along
 
 
-def friction_direction(friction: Number, v_slider: Number, omega2: Number, noise: Number) -> Number:
-    """Return μ·sign(v), or 0 where the slider stands still within the error of the lengths."""
-    standing = abs(omega2) * noise
-    return where(v_slider > standing, friction, where(v_slider < -standing, -friction, 0.0))
-
-
 def guide_force(
     inverse_lever_along: Number,
     lever_across: Number,

@@ -70,11 +70,11 @@ def _of_function(path: str, omega: Any, rule: Rule, grid: Grid, period: float) -
     rise, width, most = energy[0] - energy[1], np.radians(sides[0] - sides[1]), energy.max(axis=(0, 2))
     slopes = rise / width
     jumps = (abs(rise[:, -1]) > JUMP * most) & (abs(slopes[:, -1]) > 1.5 * abs(slopes[:, -2]))
-    limit = np.where(jumps, np.copysign(np.inf, rise[:, -1]), _limit(slopes, ROUNDING * most[:, None] / width))
-    return xr.DataArray(limit, {"theta2": grid.angles}, "theta2")
+    limits = np.where(jumps, np.copysign(np.inf, rise[:, -1]), limit(slopes, ROUNDING * most[:, None] / width))
+    return xr.DataArray(limits, {"theta2": grid.angles}, "theta2")
 
 
-def _limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
+def limit(column: np.ndarray, rounding: np.ndarray) -> np.ndarray:
     """Return the limit (angle) of values (angle, step) at steps that halve, each with so much rounding.
 
     An entry of the tableau errs by no more than it differs from its neighbours, rounding aside, if it also agrees with

@@ -57,9 +57,9 @@ class PeriodicCurve:
         values[held >= 0] = self.values[held[held >= 0]]
         return values
 
-    def slope(self, angles: Array) -> Array:
-        """Return the slopes (angle, …) there, per degree."""
-        return self._curve(self._folded(angles), 1)
+    def slope(self, angles: Array, order: int = 1) -> Array:
+        """Return the slopes (angle, …) there, per degree; of a higher order the derivatives, per degree^order."""
+        return self._curve(self._folded(angles), order)
 
     @cached_property
     def overshoot(self) -> float:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import MISSING
 from functools import singledispatch
 from typing import Any
 
 from linksweep.base.fields import FieldKind, ListField, NumberField, PairField, PartField, PartsField, declared
 from linksweep.base.frozen import unvalidated
+from linksweep.base.records import NamedField
 from linksweep.base.units import KINDS, as_toml, quantity
 from linksweep.base.validate import choice_problems
 from linksweep.scene.file.axis import design_axis
@@ -86,6 +88,14 @@ def _parts(kind: PartsField, raw: Any, where: Where, log: Log) -> Any:
     return _list(kind, raw, where, log)
 
 
+@read.register
+def _named(kind: NamedField, raw: Any, where: Where, log: Log) -> Any:
+    """Read a table of named things."""
+    if not isinstance(raw, dict):
+        return log.problem(where, f" = {as_toml(raw)}: must be a table; {advice(kind, where)}")
+    return {name: read(kind.each, item, (*where, name), log) for name, item in raw.items()}
+
+
 @singledispatch
 def advice(kind: FieldKind, where: Where) -> str:
     """Return how to write the value of a key that is missing."""
@@ -104,16 +114,30 @@ def _part_advice(kind: PartField, where: Where) -> str:
 
 
 def kinds_of(cls: type) -> dict[str, FieldKind]:
-    """Return the kind of each key of the table of a class."""
-    return {name: kind for name, kind, _ in declared(cls)}
+    """Return the kind of each key of the table of a class; things that it names inline have keys of their own."""
+    return {name: kind for name, kind, _ in declared(cls) if name not in _inline_fields(cls)}
+
+
+def _inline_fields(cls: type) -> dict[str, NamedField]:
+    """Return the fields of a class whose things stand in its own table."""
+    return {name: kind for name, kind, _ in declared(cls) if isinstance(kind, NamedField) and kind.inline}
+
+
+def _inline_keys(kinds: dict[str, FieldKind], raw: dict[str, Any]) -> list[str]:
+    """Return the names that things of a table may have: the words of its texts, such as "rod B-C"."""
+    words = [word for text in raw.values() if isinstance(text, str) for word in re.findall(r"\w+", text)]
+    return [word for word in dict.fromkeys(words) if word not in kinds]
 
 
 def build(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
     """Read the fields of a table and construct its class."""
-    kinds = kinds_of(cls)
-    for key in [key for key in raw if key not in kinds]:
-        log.unknown(key, kinds, cls.__name__, where)
+    kinds, inline = kinds_of(cls), _inline_fields(cls)
+    names = _inline_keys(kinds, raw) if inline else []
+    for key in [key for key in raw if key not in (*kinds, *names)]:
+        log.unknown(key, (*kinds, *names), cls.__name__, where)
     words = {key: read(kind, raw[key], (*where, key), log) for key, kind in kinds.items() if key in raw}
+    for field, kind in inline.items():
+        words[field] = read(kind, {name: raw[name] for name in names if name in raw}, where, log)
     for key in [key for key in _required(cls, words) if key not in raw]:
         words[key] = log.missing((*where, key), advice(kinds[key], (*where, key)))
     try:

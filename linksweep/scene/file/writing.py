@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from linksweep.base.fields import ANYTHING, FieldKind, PartField, declared, has_fields, left_out
+from linksweep.base.records import NamedField, Record
 from linksweep.base.validate import refuse
 from linksweep.scene.curves.over_position import is_function
 from linksweep.scene.curves.tabulated import tabulated
@@ -76,17 +77,28 @@ class _Writer(NamedTuple):
         return value if isinstance(value, str) else float(value)
 
     def _table(self, part: Any, kind: FieldKind, where: Where) -> dict[str, Any]:
-        """Return the words of a part; its `type` but for the scene itself and the default class of a list."""
-        fields = ((name, each, getattr(part, name)) for name, each, _ in declared(part))
-        words = {name: self.written(word, each, (*where, name)) for name, each, word in fields if not left_out(word)}
-        default = kind.default if isinstance(kind, PartField) and isinstance(where[-1], int) else Scene
-        return words if type(part) is default else {"type": type(part).__name__, **words}
+        """Return the words of a part, those of things that it names inline among them; its `type` unless implied."""
+        words: dict[str, Any] = {}
+        for name, each, _ in declared(part):
+            value = getattr(part, name)
+            if isinstance(each, NamedField) and each.inline:
+                words |= self._table(value, each, where)
+            elif not left_out(value):
+                words[name] = self.written(value, each, (*where, name))
+        return words if _implied(part, kind, where) else {"type": type(part).__name__, **words}
 
     def _samples(self, function: Any, path: str) -> dict[str, Any]:
         """Return the samples of a function of theta2; a note where there are none, or for a function of a position."""
         of_angle = path in self.scene.functions
         samples = tabulated(function, self.scene.mechanism.period) if of_angle else None
         return {"function": UNSTEADY if of_angle else FOLLOWING} if samples is None else _array_written(samples)
+
+
+def _implied(part: Any, kind: FieldKind, where: Where) -> bool:
+    """Return whether a table needs no `type`: the scene, named things, the default of a list, a single class."""
+    if not isinstance(kind, PartField):
+        return isinstance(part, Scene | Record)
+    return len(kind.classes) == 1 or (isinstance(where[-1], int) and type(part) is kind.default)
 
 
 def _array_written(array: xr.DataArray) -> dict[str, Any]:

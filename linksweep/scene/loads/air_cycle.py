@@ -25,7 +25,7 @@ from linksweep.base.fields import field_problems, numbers, parameter
 from linksweep.base.validate import Number, as_float, is_lazy, quote, refuse
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
-from linksweep.mechanisms.cylinder import Cylinder
+from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.scene.dimensions import dims_of
 from linksweep.scene.parameters import along, bare
 
@@ -213,7 +213,7 @@ class DieselCycle(Cycle):
 CYCLES = (OttoCycle, DieselCycle)
 
 
-def pressure_over(cycle: Cycle, cylinder: Cylinder, angles: np.ndarray, turning: Number) -> xr.Variable:
+def pressure_over(cycle: Cycle, cylinder: PistonCylinder, angles: np.ndarray, turning: Number) -> xr.Variable:
     """Return the pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
 
     NaN for designs whose crank does not turn fully. The module's equations.

@@ -1,0 +1,182 @@
+"""The table of a machine made of a crank and dyads, and its square system of equations."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+from linksweep.engine.quantity import Quantity, Row, Table, Total
+from linksweep.mechanisms.between_links import force_name, name_between
+from linksweep.mechanisms.chain.forces import Forces
+from linksweep.mechanisms.chain.motion import Motion
+from linksweep.mechanisms.dyads.rrr import Rows
+from linksweep.mechanisms.rows import bodies
+from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
+from linksweep.mechanisms.topology import GROUND, Topology
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import chain as chains
+from linksweep.physics.closures import crank_angle
+
+BETWEEN = (
+    Row(crank_angle.crank_from_tangent, ("cos2", "cos2_lo", "sin2", "sin2_lo")),
+    Row(crank_angle.one_turn, ("radians2",)),
+)
+"""Rows of the crank's angle between samples."""
+
+
+class Shape(NamedTuple):
+    """All that decides the rows of a machine's motion: see `Motion`."""
+
+    topology: Topology
+    turned: frozenset[str]
+    goes_through: frozenset[str]
+    declared: frozenset[str]
+
+
+class Chain:
+    """Motion and forces of all machines of a shape."""
+
+    def __init__(self, shape: Shape):
+        self.topology = shape.topology
+        self.motion = Motion(*shape)
+        self.forces = Forces(self.motion)
+        self.bodies = tuple(self.motion.bodies[role] for role in self.topology.roles)
+        self.joints = {**self.topology.pins, **self.topology.slides}
+        self.names = {self.topology.number(role): role for role in (GROUND, *self.topology.roles)}
+
+    @cached_property
+    def drives(self) -> dict[str, str]:
+        """Unknown torque of each link that turns about a ground pin."""
+        on_ground = [role for role in self.topology.links if {*self.topology.links[role]} & {*self.topology.ground}]
+        return {role: name_between("T", 1, self.topology.number(role)) for role in on_ground}
+
+    @property
+    def unknowns(self) -> tuple[str, ...]:
+        """Forces at the pins, then normal force and moment of each slide."""
+        of_pins = [part for i, j in self.topology.pins.values() for part in xy(force_name(i, j))]
+        return (*of_pins, *(part for slide in self.topology.slides for part in self.slide_unknowns(slide)))
+
+    @property
+    def slide_forces(self) -> tuple[str, ...]:
+        """Friction in each slide, and the components of its whole force."""
+        names = [force_name(*pair) for pair in self.topology.slides.values()]
+        return tuple(f"{name}{part}" for name in names for part in "txy")
+
+    @property
+    def kinematics(self) -> tuple[str, ...]:
+        """Angle, rates and accelerations of all links but the crank, then of all that slides."""
+        turning = [self.topology.number(role) for role in self.topology.links if role != self.topology.crank]
+        of_links = [f"{word}{k}" for word in ("theta", "omega", "alpha") for k in turning]
+        return (*of_links, *(f"{word}_{role}" for word in "xva" for role in self.sliding))
+
+    @property
+    def sliding(self) -> tuple[str, ...]:
+        """Links that slide on a guide, or along a pin."""
+        return (*self.topology.sliders, *self.topology.yokes, *self.topology.past)
+
+    def slide_unknowns(self, slide: str) -> tuple[str, ...]:
+        """Return normal force and moment of a slide; a block without mass passes on no moment."""
+        i, j = self.topology.slides[slide]
+        moment = (name_between("T", i, j),) if " past " not in slide else ()
+        return (f"{force_name(i, j)}n", *moment)
+
+    @lru_cache(maxsize=16)  # noqa: B019
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        """Return the table of all quantities for a drive and loads of these forms."""
+        unknown, number = self.drives[drive], self.topology.number(drive)
+        rows = [
+            *self.motion.rows,
+            *self.forces.rows,
+            Total("work", (*self.motion.work, *self.forces.work)),
+            *self._status(),
+            Row(planar.opposite, (unknown,), ("work",)),
+            *power_rows(unknown, f"omega{number}", self.bodies, loads, *self.forces.losses),
+            *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
+            *self._arms(),
+            Row(planar.identity, ("assembly",), (0.0,)),
+            Row(planar.identity, ("near_toggle_near",), (1.0,)),
+            Row(planar.identity, ("near_toggle_far",), (1.0,)),
+        ]
+        return Table("theta2", tuple(rows), tuple(self._quantities(drive, loads)), BETWEEN)
+
+    def _status(self) -> Rows:
+        """Return rows of the status that fails first, and of the step where it does."""
+        rows: Rows = []
+        status: Source = 0.0
+        at: Source = 0.0
+        for k, step_status in reversed([*enumerate(self.forces.statuses, 1)]):
+            last = k == 1
+            out = ("status", "status_at") if last else (f"status_from_{k}", f"status_at_from_{k}")
+            rows.append(Row(chains.first_failure, out, (step_status, float(k), status, at)))
+            status, at = out
+        return rows
+
+    def _arms(self) -> Rows:
+        """Return rows of the vectors from each link's centre of gravity to its pins."""
+        return [
+            Row(planar.difference, xy(name_between("R", other, k)), (*self.motion.arm(role, pin), *xy(f"rG{k}")))
+            for role, pin, k, other in self._ends()
+        ]
+
+    def _ends(self) -> list[tuple[str, str, int, int]]:
+        """Return role, pin and number of each moving link at each pin, and the number of the other link there."""
+        ends = []
+        for joint, pair in self.topology.pins.items():
+            for k in {*pair} - {1}:
+                ends.append((self.names[k], joint.partition(":")[0], k, sum(pair) - k))
+        return ends
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        """Return the three rows of each moving link: sums of forces, and of moments about its centre of gravity."""
+        rows = {}
+        for body in self.bodies:
+            pins = {
+                force_name(*pair): (1.0 if pair[1] == body.number else -1.0, name_between("R", sum(pair) - k, k))
+                for pair in self.topology.pins.values()
+                for k in pair
+                if k == body.number
+            }
+            torque = self.drives[drive] if body.role == drive else None
+            rows[body.number] = newton_euler_equations(body.number, pins, torque)
+        return tuple(row for of_link in rows.values() for row in of_link)
+
+    def _quantities(self, drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
+        return [
+            *self._motion_quantities(),
+            *(quantity for slide in self.topology.slides for quantity in self._slide_quantities(slide)),
+            *bodies.drive_quantities(bodies.drive_torque(self.drives[drive], drive)),
+            *machine_quantities(self.bodies, self.joints, self.names, loads),
+        ]
+
+    def _slide_quantities(self, slide: str) -> list[Quantity]:
+        i, j = self.topology.slides[slide]
+        force, place = force_name(i, j), f"of link {i} ({self.names[i]}) on link {j} ({self.names[j]}) at {slide}"
+        moment = Quantity(name_between("T", i, j), "N m", f"moment {place}, about the slider's pin, counter-clockwise")
+        return [
+            Quantity(f"{force}n", "N", f"force {place}, component across the guide, positive to its left"),
+            Quantity(f"{force}t", "N", f"friction {place}, component along the guide"),
+            *([moment] if moment.name in self.slide_unknowns(slide) else []),
+        ]
+
+    def _motion_quantities(self) -> list[Quantity]:
+        topology, quantities = self.topology, []
+        for role, (first, second, *_) in topology.links.items():
+            if role != topology.crank:
+                words = f"angle of the {role} {first}→{second} from x, counter-clockwise, in (-180, 180]"
+                quantities.append(Quantity(f"theta{topology.number(role)}", "degree", words))
+        for step in topology.steps:
+            words = f"acute transmission angle at {step.name}: 0 at a toggle"
+            quantities.append(Quantity(f"transmission_angle_{step.name}", "degree", words))
+        for role in self.sliding:
+            quantities += [
+                Quantity(f"x_{role}", "m", f"position of {role} along its guide"),
+                Quantity(f"v_{role}", "m s-1", f"velocity of {role} along its guide"),
+                Quantity(f"a_{role}", "m s-2", f"acceleration of {role} along its guide"),
+            ]
+        moving = [pin for pin, role in topology.support.items() if role != GROUND]
+        return quantities + bodies.position_quantities(*moving)
+
+
+chain = lru_cache(maxsize=64)(Chain)

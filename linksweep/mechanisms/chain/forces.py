@@ -1,0 +1,179 @@
+"""Forces of a machine made of a crank and dyads, from the last dyad back to the crank.
+
+The forces of a dyad follow from all that acts on its two links, the dyads beyond included: what these exert on their
+hosts is hung on them. No system of equations larger than a dyad's is solved. In the names of rows, `push_rod_B` is the
+force of the rod on pin B, and `hold_ram` the force of the guide, or of a pin, on the ram.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+
+from linksweep.engine.quantity import Row, Total
+from linksweep.mechanisms.between_links import name_between
+from linksweep.mechanisms.chain.motion import Motion
+from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.dyads.rrr import Rows
+from linksweep.mechanisms.rows.bodies import Source, xy
+from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side
+from linksweep.physics.algebra import planar
+
+
+class Forces:
+    """Rows of the forces at all pins and slides of a machine whose motion is known."""
+
+    def __init__(self, motion: Motion):
+        self.motion, self.topology = motion, motion.topology
+        self.rows: Rows = []
+        self.statuses: list[str] = []
+        self.losses: list[str] = []
+        self.work: list[str] = []
+        self.hung: dict[str, list[tuple[str, str]]] = defaultdict(list)
+        self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
+        for step in reversed(self.topology.steps):
+            getattr(self, f"_force_{type(step).__name__}")(step)
+        self._crank()
+        for pin, members in self.topology.members.items():
+            self._pin(pin, *members)
+        self.statuses.reverse()
+
+    def row(self, function: Callable, outputs: tuple[str, ...], *inputs: Source) -> None:
+        self.rows.append(Row(function, outputs, inputs))
+
+    # ------------------------------------------------------------------------------------------------ dyads
+
+    def _force_RRR(self, step: RRR) -> None:
+        coupler, rocker = self.motion.sides[step.name]
+        self._act_about(coupler)
+        self._act_about(rocker)
+        self._solve(step.name, rrr.forces(), "closure")
+        self._meet(coupler.role, rocker.role, step.pin)
+        self._push(coupler)
+        self._release(rocker)
+
+    def _force_RRP(self, step: RRP) -> None:
+        self._act_about(step.link)
+        self._act(step.slider)
+        self._solve(step.name, rrp.forces(), "jam_status")
+        self._rub(step.name, "ratio_slider")
+        self._meet(step.link.role, step.slider, step.pin)
+        self._push(step.link)
+        self._slide(
+            step.slider, step.guide, f"hold_{step.slider}", step.name, ("normal_force", "friction_force", "T14")
+        )
+
+    def _force_RPR(self, step: RPR) -> None:
+        slider, host = step.block or step.link.role, step.block or self.topology.members[step.pin][0]
+        self._act_about(step.link)
+        if step.block:
+            self._act(step.block)
+        self._solve(step.name, rpr.forces(), "jam_status")
+        self._rub(step.name, "ratio_slide")
+        self._push(Side(slider, step.pin))
+        self._release(step.link)
+        parts = ("F43n", "friction_force", "T43" if step.block else "")
+        self._between(step.link.role, host, f"line_force_{slider}", step.name, parts)
+
+    def _crank(self) -> None:
+        role = self.topology.crank
+        self._act(role)
+        pivot = self.topology.ground[0]
+        for axis in "xy":
+            self.row(planar.identity, (f"push_{role}_{pivot}{axis}",), f"E2{axis}")
+        self._push(Side(role, pivot))
+
+    # ------------------------------------------------------------------------------------------------ actions
+
+    def _solve(self, name: str, rows: Rows, status: str) -> None:
+        """Add the rows of a dyad's forces, and its status."""
+        names = self.motion.names[name]
+        self.rows += names.placed(rows)
+        self.statuses.append(str(names[status]))
+
+    def _rub(self, name: str, ratio: str) -> None:
+        """Add the work of a slide's friction, and the power that it loses."""
+        names = self.motion.names[name]
+        self.row(planar.product, (f"friction_work_{name}",), names[ratio], names["friction_force"])
+        self.work.append(f"friction_work_{name}")
+        self.losses.append(str(names["friction_power"]))
+
+    def _act(self, role: str) -> None:
+        """Add up all that acts on a link: force E, and moment L about its first pin."""
+        k = self.motion.number(role)
+        for axis in "xy":
+            self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *(f"{force}{axis}" for force, _ in self.hung[role]))))
+        self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.hung[role]))))
+
+    def _act_about(self, side: Side) -> None:
+        """Add up all that acts on a link, also its moment about a known pin."""
+        self._act(side.role)
+        k, arm = self.motion.number(side.role), self.motion.arm(side.role, side.pin)
+        self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"E{k}"))
+
+    def _push(self, side: Side) -> None:
+        """Hang a link's force on a pin, push_rod_B, on the link that supports the pin."""
+        push, host = f"push_{side.role}_{side.pin}", self.topology.support[side.pin]
+        self.pushes[side.pin][side.role] = push
+        self._hang(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
+
+    def _release(self, side: Side) -> None:
+        """Make the force on a pin of the force of the pin, and hang it."""
+        self._opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
+        self._push(side)
+
+    def _opposite(self, stem: str, of: str) -> None:
+        for axis in "xy":
+            self.row(planar.opposite, (f"{stem}{axis}",), f"{of}{axis}")
+
+    def _hang(self, host: str, force: str, arm: tuple[Source, Source], *moments: str) -> None:
+        """Let a force act on a link at an arm from its first pin, and further moments."""
+        if host == GROUND:
+            return
+        self.row(planar.cross, (f"moment_{force}",), *arm, *xy(force))
+        self.rows.append(Total(f"moments_{force}", (f"moment_{force}", *moments)))
+        self.hung[host].append((force, f"moments_{force}"))
+
+    def _meet(self, one: str, other: str, pin: str) -> None:
+        """Name the force at the pin of a dyad, push_other_pin, also as that of the other link."""
+        if self.topology.support[pin] == other:
+            self._opposite(f"push_{one}_{pin}", f"push_{other}_{pin}")
+            self.pushes[pin][one] = f"push_{one}_{pin}"
+        else:
+            self.pushes[pin][other] = f"push_{other}_{pin}"
+
+    def _slide(self, slider: str, guide: str, hold: str, name: str, parts: tuple[str, str, str]) -> None:
+        """Hang the force of a slider on its guide, with the moment about its pin."""
+        host, names, react = self.topology.hosts[guide], self.motion.names[name], f"push_{slider}_{guide}"
+        if host != GROUND:
+            self._opposite(react, hold)
+            self.row(planar.opposite, (f"react_{slider}",), str(names[parts[2]]))
+            self._hang(host, react, (names["OCx"], names["OCy"]), f"react_{slider}")
+        self._between(host, slider, hold, name, parts)
+
+    # ------------------------------------------------------------------------------------------------ joints
+
+    def _pin(self, pin: str, carrier: str, *others: str) -> None:
+        """Add rows of the forces between the first link that shares a pin, which carries it, and each other."""
+        support, pushes = self.topology.support[pin], self.pushes[pin]
+        for role in others:
+            name = name_between("F", *self.topology.pair(carrier, role))
+            for axis in "xy":
+                if role == support:
+                    terms = tuple(f"{push}{axis}" for push in pushes.values())
+                    self.rows.append(Total(f"-{name}{axis}", terms))
+                    self.row(planar.opposite, (f"{name}{axis}",), f"-{name}{axis}")
+                else:
+                    turn = planar.opposite if carrier == GROUND else planar.identity
+                    self.row(turn, (f"{name}{axis}",), f"{pushes[role]}{axis}")
+
+    def _between(self, one: str, other: str, force: str, name: str, parts: tuple[str, str, str]) -> None:
+        """Add rows of the force of one link on another in a slide: of the ground, or else of the later link."""
+        i, j = self.topology.pair(one, other)
+        same = planar.identity if i == self.motion.number(one) else planar.opposite
+        names, stem = self.motion.names[name], name_between("F", i, j)
+        inner = (f"{force}x", f"{force}y", *(str(names[part]) for part in parts if part))
+        outer = (f"{stem}x", f"{stem}y", f"{stem}n", f"{stem}t", name_between("T", i, j))
+        for out, into in zip(outer, inner, strict=False):
+            if out != into:
+                self.row(same, (out,), into)

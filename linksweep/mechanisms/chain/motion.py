@@ -1,0 +1,425 @@
+"""Rows of a machine made of a crank and dyads: motion from the crank on, forces from the last dyad back to the crank.
+
+A dyad closes between pins and guides that have their places, and places the other pins of its links. Its forces follow
+from all that acts on its two links, the dyads beyond included: what these exert on their hosts is hung on them. No
+system of equations larger than a dyad's is solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from linksweep.engine.quantity import Row
+from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.dyads.names import Names, of_link, of_pin
+from linksweep.mechanisms.dyads.rrr import Rows, full
+from linksweep.mechanisms.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
+from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step, Topology
+from linksweep.physics import crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import pins
+
+ORIGIN = (0.0, 0.0, 0.0, 0.0)
+Vector = tuple[Source, ...]
+
+
+class Frame(NamedTuple):
+    """How a link is placed: a pin in place, and a vector of it in ground axes and in its own, with low words."""
+
+    pin: str
+    vector: Vector
+    own: Vector
+
+
+class Arm(NamedTuple):
+    """A link of a dyad from its known pin to the pin that is found: stem of the vector, and its length."""
+
+    stem: str
+    length: str
+    length_lo: Source
+
+
+class Motion:
+    """Rows of all steps of a topology.
+
+    Parameters
+    ----------
+    topology : links and steps
+    turned : names of steps on crank and ground whose frame may lie at an angle to x
+    goes_through : names of such steps that may be a parallelogram or a kite
+    declared : names of the guides that are declared; another is its link's line of pins
+    plain : whether the rows keep the names of the dyad's own machine; for a topology of one step
+    """
+
+    def __init__(
+        self,
+        topology: Topology,
+        turned: frozenset[str],
+        goes_through: frozenset[str],
+        declared: frozenset[str],
+        plain: bool = False,
+    ):
+        self.topology, self.turned, self.goes_through = topology, turned, goes_through
+        self.declared, self.plain = declared, plain
+        self.rows: Rows = []
+        self.bodies: dict[str, Body] = {}
+        self.frames: dict[str, Frame] = {}
+        self.names: dict[str, Names] = {}
+        self.certain: dict[str, Source] = {}
+        self.work: list[str] = []
+        self.sides: dict[str, tuple[Side, Side]] = {}
+        self._crank()
+        for step in topology.steps:
+            getattr(self, f"_place_{type(step).__name__}")(step)
+
+    # ------------------------------------------------------------------------------------------------ names
+
+    def number(self, role: str) -> int:
+        return self.topology.number(role)
+
+    def row(self, function: Callable, outputs: tuple[str, ...], *inputs: Source) -> None:
+        self.rows.append(Row(function, outputs, inputs))
+
+    def is_origin(self, pin: str) -> bool:
+        return pin == self.topology.ground[0]
+
+    def fixed(self, pin: str) -> bool:
+        return self.topology.support[pin] == GROUND
+
+    def pin(self, letter: str, pin: str) -> dict[str, Source]:
+        return of_pin(letter, pin, self.fixed(pin), self.is_origin(pin))
+
+    def place(self, pin: str) -> Vector:
+        """Return the names of a pin's position."""
+        return ORIGIN if self.is_origin(pin) else full(pin)
+
+    def motion(self, pin: str, stem: str, ending: str = "") -> tuple[Source, Source]:
+        """Return the names of a vector of a pin's motion, such as u or v; zeros for a fixed pin."""
+        return (0.0, 0.0) if self.fixed(pin) else (f"{stem}{pin}x{ending}", f"{stem}{pin}y{ending}")
+
+    def ratio(self, role: str) -> Source:
+        return {GROUND: 0.0, self.topology.crank: 1.0}.get(role) or self.bodies[role].ratio
+
+    def own(self, role: str, pin: str) -> Vector:
+        """Return a pin's position in its link's own axes, with low words."""
+        first, second, *_ = self.topology.links[role]
+        if pin == first:
+            return ORIGIN
+        return (f"{role}_length", 0.0, 0.0, 0.0) if pin == second else full_of_point(pin)
+
+    def arm(self, role: str, pin: str) -> tuple[Source, Source]:
+        """Return the vector from a link's first pin to another; a slider has one pin only."""
+        first, second, *_ = self.topology.links.get(role, (pin, ""))
+        if pin == first:
+            return (0.0, 0.0)
+        return xy(f"r{self.number(role)}" if pin == second else f"r{self.number(role)}_{pin}")
+
+    # ------------------------------------------------------------------------------------------------ motion
+
+    def _crank(self) -> None:
+        role = self.topology.crank
+        pivot, pin = self.topology.links[role][:2]
+        self.rows += Names("", {"crank_length": f"{role}_length"}, of_pin("B", pin)).placed(crank_pin_rows())
+        words = (f"{role}_length", "cos2", "cos2_lo", "sin2", "sin2_lo")
+        self.row(pins.crank_pin_low_words, (f"{pin}x_lo", f"{pin}y_lo"), *words)
+        self.bodies[role] = Body(CRANK.number, role, steady=True, ratio=1.0)
+        self.frames[role] = Frame(pivot, ("cos2", "sin2", "cos2_lo", "sin2_lo"), (1.0, 0.0, 0.0, 0.0))
+        self._carry(role, {pivot, pin})
+        self.work.append("N2")
+
+    def _link(self, role: str, frame: Frame, placed: set[str]) -> None:
+        """Add rows of a link that a dyad has placed: its rotation, its other pins, its work; and its body."""
+        k, first = self.number(role), self.topology.links[role][0]
+        self.frames[role] = frame
+        self.row(planar.product, (f"omega{k}",), "omega2", f"ratio{k}")
+        self.row(crank_driven.angular_acceleration, (f"alpha{k}",), "omega2", "alpha2", f"ratio{k}", f"slope{k}")
+        self.row(planar.direction, (f"theta{k}",), *xy(f"r{k}"))
+        self._body(role, first, f"ratio{k}", f"slope{k}")
+        self._carry(role, placed)
+
+    def _body(self, role: str, pin: str, ratio: Source, slope: Source) -> None:
+        """Add a body whose first pin is this, and the rows of its work."""
+        k = self.number(role)
+        u, u_slope = self.motion(pin, "u"), self.motion(pin, "u", "_slope")
+        v, a = self.motion(pin, "v"), self.motion(pin, "a")
+        self.bodies[role] = Body(
+            k, role, v, a, False, (self.place(pin)[0], self.place(pin)[1]), ratio, slope, u, u_slope
+        )
+        if not self.fixed(pin):
+            self.row(planar.dot, (f"pin_work{k}",), f"Q{k}x", f"Q{k}y", *u)
+            self.work.append(f"pin_work{k}")
+        if ratio != 0.0:
+            self.row(planar.product, (f"turn_work{k}",), ratio, f"N{k}")
+            self.work.append(f"turn_work{k}")
+
+    def _carry(self, role: str, placed: set[str]) -> None:
+        """Add rows of all pins of a placed link: their vectors from its first pin, and the places of its other pins."""
+        k, frame = self.number(role), self.frames[role]
+        first, second, *third = self.topology.links[role]
+        for pin in third:
+            own, length = self.own(role, pin), f"{role}_length"
+            self.row(planar.to_ground_axes, xy(f"r{k}_{pin}"), *own[:2], length, *xy(f"r{k}"))
+        for pin in (first, second, *third):
+            if pin not in placed and self.topology.support[pin] == role:
+                self._carried(role, pin, frame)
+
+    def _carried(self, role: str, pin: str, frame: Frame) -> None:
+        """Add rows of a pin that its link carries."""
+        k, start = self.number(role), frame.pin
+        arm, turned, quotient = f"r{k}_{start}_{pin}", f"turned{k}_{pin}", f"quotient{k}_{pin}"
+        self.row(planar.difference, xy(arm), *self.arm(role, pin), *self.arm(role, start))
+        self.row(planar.vector_sum, xy(pin), *self.place(start)[:2], *xy(arm))
+        u, u_slope = self.motion(start, "u"), self.motion(start, "u", "_slope")
+        ratio, slope = self.bodies[role].ratio, self.bodies[role].slope
+        self.row(planar.point_velocity, xy(f"u{pin}"), *u, ratio, *xy(arm))
+        self.row(planar.point_acceleration, (f"u{pin}x_slope", f"u{pin}y_slope"), *u_slope, ratio, slope, *xy(arm))
+        self._rates(pin)
+        self.row(pins.between, full(f"own{k}_{pin}"), *self.own(role, pin), *self.own(role, start))
+        self.row(pins.quotient, full(quotient), *full(f"own{k}_{pin}"), *frame.own)
+        self.row(pins.turned_with_low_words, full(turned), *full(quotient), *frame.vector)
+        low_words = (f"{pin}x_lo", f"{pin}y_lo")
+        self.row(pins.sum_low_words, low_words, *xy(pin), *self.place(start), *full(turned))
+        self.certain |= dict.fromkeys(low_words, f"{role}_length")
+
+    def _rates(self, pin: str) -> None:
+        """Add rows of a pin's velocity and acceleration."""
+        for axis in "xy":
+            u = f"u{pin}{axis}"
+            self.row(planar.product, (f"v{pin}{axis}",), "omega2", u)
+            self.row(crank_driven.angular_acceleration, (f"a{pin}{axis}",), "omega2", "alpha2", u, f"{u}_slope")
+
+    def _arm(self, side: Side, pin: str) -> Arm:
+        """Return a dyad's link from its known pin to the pin that is found, and add rows that make its axes of it."""
+        role, k = side.role, self.number(side.role)
+        first, second, *_ = self.topology.links[role]
+        if (side.pin, pin) == (first, second):
+            return Arm(f"r{k}", f"{role}_length", 0.0)
+        if (pin, side.pin) == (first, second):
+            for axis in "xy":
+                self.row(planar.opposite, (f"r{k}{axis}",), f"s{k}{axis}")
+            return Arm(f"s{k}", f"{role}_length", 0.0)
+        own = full(f"own_arm{k}")
+        self.row(pins.between, own, *self.own(role, pin), *self.own(role, side.pin))
+        self.row(pins.distance, (f"{role}_arm", f"{role}_arm_lo"), *own)
+        self.row(pins.quotient, full(f"line{k}"), *self.own(role, second), *own)
+        self.row(pins.turned, xy(f"r{k}"), *xy(f"line{k}"), *xy(f"s{k}"))
+        self.certain |= {f"{role}_arm": f"{role}_length"} | dict.fromkeys(xy(f"line{k}"), 1.0)
+        return Arm(f"s{k}", f"{role}_arm", f"{role}_arm_lo")
+
+    def _frame(self, side: Side, pin: str) -> Frame:
+        """Return how a dyad places its link: from the known pin to the pin that is found."""
+        k = self.number(side.role)
+        self.row(pins.between, full(f"placed{k}"), *self.place(pin), *self.place(side.pin))
+        own = full(f"own_frame{k}")
+        self.row(pins.between, own, *self.own(side.role, pin), *self.own(side.role, side.pin))
+        return Frame(side.pin, full(f"placed{k}"), own)
+
+    def _close(self, step: Step, rows: Rows, certain: Mapping[str, Source], *listed: Mapping[str, Source]) -> None:
+        """Add the rows of a dyad under their names in this machine."""
+        crank = {"crank_length": f"{self.topology.crank}_length"}
+        branch = {} if self.plain else {"branch_sign": f"branch_{step.name}"}
+        self.names[step.name] = names = Names("" if self.plain else f"_{step.name}", crank, branch, *listed)
+        self.rows += names.placed(rows)
+        self.certain |= {str(names[name]): names.of(unit) for name, unit in certain.items()}
+
+    def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
+        """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
+        k = self.number(side.role)
+        lengths = {f"{word}_length": arm.length, f"{word}_length_lo": arm.length_lo}
+        vector = {f"r{digit}{axis}": f"{arm.stem}{axis}" for axis in "xy"}
+        return of_link(digit, k) | lengths | vector | self._load(digit, k, f"L{k}_{side.pin}")
+
+    def _load(self, digit: int, number: int, moment: str) -> dict[str, Source]:
+        return {f"Q{digit}x": f"E{number}x", f"Q{digit}y": f"E{number}y", f"N{digit}": moment}
+
+    def on_crank_and_ground(self, step: Step) -> bool:
+        """Return whether a dyad joins the crank's pin to the ground by links that are lines of pins.
+
+        Such a dyad closes by the crank's angle, which leaves it more digits near a toggle.
+        """
+        links, crank_pin = self.topology.links, self.topology.links[self.topology.crank][1]
+        if isinstance(step, RRR):
+            known = {step.first.pin, step.second.pin}
+            lines = all(
+                side.role in links and {side.pin, step.pin} == {*links[side.role][:2]}
+                for side in (step.first, step.second)
+            )
+            return lines and crank_pin in known and all(pin == crank_pin or self._off_origin(pin) for pin in known)
+        if isinstance(step, RRP):
+            line = step.link.role in links and {step.link.pin, step.pin} == {*links[step.link.role][:2]}
+            return line and step.link.pin == crank_pin and self.topology.hosts[step.guide] == GROUND
+        if isinstance(step, RPR):
+            own_line = step.guide == step.link.role and step.link.pin == links[step.guide][0]
+            return own_line and step.pin == crank_pin and self._off_origin(step.link.pin)
+        return False
+
+    def _off_origin(self, pin: str) -> bool:
+        return self.fixed(pin) and not self.is_origin(pin)
+
+    def _place_RRR(self, step: RRR) -> None:
+        first, second, X = step.first, step.second, step.pin
+        special = self.on_crank_and_ground(step)
+        swapped = special and self.fixed(first.pin)
+        coupler, rocker = (second, first) if swapped else (first, second)
+        self.sides[step.name] = coupler, rocker
+        arms = [self._arm(side, X) for side in (coupler, rocker)]
+        self._rates(X)
+        for side in (coupler, rocker):
+            self._link(side.role, self._frame(side, X), {side.pin, X})
+        rows = rrr.on_crank_and_ground(step.name in self.turned, step.name in self.goes_through)
+        self._close(
+            step,
+            rows if special else rrr.between_pins(),
+            rrr.FOUND | (rrr.CERTAIN_ON_CRANK if special else rrr.CERTAIN),
+            self._swapped(step) if swapped else {},
+            {} if self.plain else frame_of("ground", rocker.pin),
+            self.pin("B", coupler.pin) | self.pin("D", rocker.pin) | of_pin("C", X),
+            self._side(3, "coupler", coupler, arms[0]) | self._side(4, "rocker", rocker, arms[1]),
+            of_force("F43", f"push_{rocker.role}_{X}"),
+            of_force("F32", f"push_{coupler.role}_{coupler.pin}"),
+            of_force("F14", f"hold_{rocker.role}"),
+        )
+
+    def _swapped(self, step: Step) -> dict[str, Source]:
+        """Return the name of the branch's sign seen from the crank where the link on the ground is named first."""
+        self.row(planar.opposite, (f"branch_{step.name}_from_crank",), f"branch_{step.name}")
+        return {"branch_sign": f"branch_{step.name}_from_crank"}
+
+    def _place_RRP(self, step: RRP) -> None:
+        rod, X, slider, k = step.link, step.pin, step.slider, self.number(step.slider)
+        special, host = self.on_crank_and_ground(step), self.topology.hosts[step.guide]
+        arm, guide = self._arm(rod, X), self._guide(step.guide)
+        self._rates(X)
+        self._link(rod.role, self._frame(rod, X), {rod.pin, X})
+        ratio, slope = self._turning(host)
+        self._slider(slider, X, guide, ratio, slope)
+        self._close(
+            step,
+            rrp.on_crank_and_ground(step.name in self.turned) if special else rrp.between_pin_and_guide(),
+            rrp.FOUND | (rrp.CERTAIN_ON_CRANK if special else rrp.CERTAIN),
+            guide | {"guide_ratio": ratio, "guide_slope": slope} | self._origin(host),
+            self.pin("B", rod.pin) | of_pin("C", X),
+            self._side(3, "rod", rod, arm) | of_link(4, k) | self._load(4, k, f"L{k}"),
+            {f"{form}slider": f"{form}{slider}" for form in ("x_", "v_", "a_", "ratio_", "slope_")},
+            of_force("F43", f"push_{slider}_{X}"),
+            of_force("F32", f"push_{rod.role}_{rod.pin}"),
+            of_force("F14", f"hold_{slider}"),
+        )
+
+    def _slider(self, role: str, pin: str, guide: dict[str, Source], ratio: Source, slope: Source) -> None:
+        """Add rows of a link that turns with a guide: its axes and rotation; and its body."""
+        k = self.number(role)
+        for axis, part in zip("xy", ("guide_cos", "guide_sin"), strict=True):
+            self.row(planar.identity, (f"r{k}{axis}",), guide[part])
+        self.row(planar.product, (f"omega{k}",), "omega2", ratio)
+        self.row(crank_driven.angular_acceleration, (f"alpha{k}",), "omega2", "alpha2", ratio, slope)
+        self._body(role, pin, ratio, slope)
+
+    def _turning(self, role: str) -> tuple[Source, Source]:
+        """Return the names of a link's rotation per rate of the crank, and of its derivative."""
+        if role == GROUND:
+            return 0.0, 0.0
+        body = self.bodies[role]
+        return body.ratio, body.slope
+
+    def _origin(self, host: str) -> dict[str, Source]:
+        """Return the names of the origin of a guide's axes: the first pin of its link, or the crank's pivot."""
+        pin = self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
+        return self.pin("O", pin)
+
+    def _guide(self, guide: str) -> dict[str, Source]:
+        """Return the names of a guide's direction, offset and friction, and add rows that turn it with its link."""
+        host, own = self.topology.hosts[guide], direction_of(guide)
+        words = ("guide_cos", "guide_sin", "guide_cos_lo", "guide_sin_lo")
+        numbers: dict[str, Source] = {name: f"{guide}_{name}" for name in ("offset", "offset_lo", "friction")}
+        if host == GROUND:
+            return {} if self.plain else numbers | dict(zip(words, own, strict=True))
+        frame, turned = self.frames[host], full(f"direction_{guide}_")
+        self.row(pins.quotient, full(f"quotient_{guide}_"), *own, *frame.own)
+        self.row(pins.turned_with_low_words, turned, *full(f"quotient_{guide}_"), *frame.vector)
+        self.certain |= dict.fromkeys(turned, 1.0)
+        return numbers | dict(zip(words, turned, strict=True))
+
+    def _place_RPR(self, step: RPR) -> None:
+        link, block, k = step.link, step.block, self.number(step.link.role)
+        special, slider = self.on_crank_and_ground(step), step.block or step.link.role
+        line, exact, pushed = xy(f"line{k}"), full(f"exact_line{k}"), f"push_{slider}_{step.pin}"
+        numbers = {} if self.plain else self._offset(step) | {"friction": f"{step.guide}_friction"}
+        self._link(link.role, Frame(link.pin, exact, direction_of(step.guide)), {link.pin})
+        self._line_of_pins(step, line)
+        turning = (f"ratio{k}", f"slope{k}")
+        if block:
+            self._slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, *turning)
+        self._close(
+            step,
+            rpr.on_crank_and_ground(step.name in self.turned) if special else rpr.between_pins(),
+            rpr.FOUND | (rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN),
+            {} if self.plain else frame_of("ground", link.pin),
+            numbers | self.pin("B", step.pin) | self.pin("D", link.pin) | of_link(4, k),
+            self._load(4, k, f"L{k}_{link.pin}"),
+            self._load(3, self.number(block), f"L{self.number(block)}") if block else NOTHING,
+            dict(zip(full("line_"), exact, strict=True)),
+            {"r3x": line[0], "r3y": line[1]},
+            {} if self.plain else sliding_of(slider),
+            of_force("F43", f"line_force_{slider}"),
+            of_force("F32", pushed),
+            of_force("F14", f"hold_{link.role}"),
+        )
+
+    def _line_of_pins(self, step: RPR, line: Vector) -> None:
+        """Add rows of a link's axes from the direction of its guide."""
+        role, k = step.link.role, self.number(step.link.role)
+        if step.guide == role and role not in self.declared:
+            self.row(planar.along, xy(f"r{k}"), f"{role}_length", *line)
+            return
+        second = self.topology.links[role][1]
+        self.row(pins.quotient, full(f"quotient{k}_{second}"), *self.own(role, second), *direction_of(step.guide))
+        self.row(pins.turned, xy(f"r{k}"), *xy(f"quotient{k}_{second}"), *line)
+        self.certain |= dict.fromkeys(xy(f"quotient{k}_{second}"), f"{role}_length")
+
+    def _offset(self, step: RPR) -> dict[str, Source]:
+        """Return the names of the guide's offset from the known pin of its link."""
+        offset = (f"{step.guide}_offset", f"{step.guide}_offset_lo")
+        own = self.own(step.link.role, step.link.pin)
+        if own != ORIGIN:
+            from_pin = (f"offset_{step.name}", f"offset_{step.name}_lo")
+            self.row(pins.offset_from, from_pin, *offset, *direction_of(step.guide), *own)
+            offset = from_pin
+        return dict(zip(("offset", "offset_lo"), offset, strict=True))
+
+
+NOTHING: dict[str, Source] = {"Q3x": 0.0, "Q3y": 0.0, "N3": 0.0}
+"""Loads on a block without mass."""
+
+
+def frame_of(frame: str, pin: str) -> Mapping[str, Source]:
+    """Return the names of the distance and direction of a ground pin from the crank's pivot."""
+    parts = ("cos", "sin", "cos_lo", "sin_lo")
+    return {f"{frame}_length": f"{pin}_distance"} | {f"{frame}_{part}": f"{pin}_{part}" for part in parts}
+
+
+def direction_of(guide: str) -> Vector:
+    """Return the names of a guide's direction in the axes of its link."""
+    return f"{guide}_cos", f"{guide}_sin", f"{guide}_cos_lo", f"{guide}_sin_lo"
+
+
+def sliding_of(role: str) -> Mapping[str, Source]:
+    """Return the names of a block's position on its line, and of its motion."""
+    return {
+        "slide": f"x_{role}",
+        "slide_velocity": f"v_{role}",
+        "slide_acceleration": f"a_{role}",
+        "ratio_slide": f"ratio_{role}",
+        "slope_slide": f"slope_{role}",
+    }
+
+
+def of_force(force: str, stem: str) -> Mapping[str, Source]:
+    """Return the names of a force's components."""
+    return {f"{force}{axis}": f"{stem}{axis}" for axis in "xy"}
+
+
+def full_of_point(pin: str) -> Vector:
+    """Return the names of a third pin's position in the axes of its link."""
+    return f"{pin}_along", f"{pin}_across", f"{pin}_along_lo", f"{pin}_across_lo"

@@ -1,0 +1,266 @@
+"""The linkage: any planar machine of pins, slides and cylinders, its topology a text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+from linksweep.base.equality import ByContent
+from linksweep.base.fields import POLAR_POINT, PairField, declared, field_problems, of_kind, word
+from linksweep.base.frozen import normalise, with_sound
+from linksweep.base.records import NamedField, Record, named, record
+from linksweep.base.validate import Number, Rule, did_you_mean, is_array, name_problems, quote, refuse
+from linksweep.mechanisms.chain.chain import Shape
+from linksweep.mechanisms.linkage_numbers import (
+    ORIGIN,
+    branch_sign,
+    cylinder_numbers,
+    ground_pin,
+    guide_numbers,
+    point_on_link,
+    slider_numbers,
+    slot_numbers,
+)
+from linksweep.mechanisms.links import (
+    GEARS,
+    GUIDE,
+    PART,
+    AnyLink,
+    AnyPart,
+    Cylinder,
+    Gears,
+    Guide,
+    SampledCylinder,
+    Slider,
+    link_parameters,
+)
+from linksweep.mechanisms.machine import Machine
+from linksweep.mechanisms.mechanism import register
+from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, frame_parameters
+from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Topology, topology
+
+GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
+NONE = record(GROUND_PIN, {})
+RESERVED = frozenset(("parts", "mechanism", "speed", "thrust", "profile"))
+"""Words of a scene that no link may have for a name, besides those that the topology refuses."""
+CLASSES = {AnyLink: "a Link, Bar or Disk", Slider: "a Slider", Cylinder: "a Cylinder"}
+"""Classes of parts, and their names in words."""
+WITH_BRANCHES = (RRR, RRP, RPR)
+"""Dyads that have two assemblies."""
+
+
+@register
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Linkage(Machine):
+    """A linkage: any planar machine of pins, slides and cylinders whose dyads close one after the other.
+
+    Parameters
+    ----------
+    links : str
+        Links by their pins, the crank first, such as "crank A-B, rod B-C, rocker D-C-E"; "ram F on slide", a slider on
+        a guide; "arm D-E past B", a link whose line slides through a block at a pin; "yoke on slide past B", a slider
+        with a slot for a pin; "c1 P~B", a cylinder; "wheel D-E : -2 crank", a second crank turned by gears.
+    ground : dict of str to pair of float or DataArray
+        Coordinates (x, y) of each pin on the ground [m]; the first is the crank's pivot.
+    points : dict of str to pair of float or DataArray, default {}
+        Third and further pins of links: distance from the link's first pin [m], angle from its line of pins [degree].
+    guides : dict of str to Guide, default {}
+        Guides by name. One named like the link that carries it takes the place of that link's line of pins.
+    branch : dict of str to str, default {}
+        Assembly of each pin, or link past a pin, that a dyad finds: "open", "crossed", or "both" (adds the dimension
+        `branch_F` for a pin F); those left out are open.
+    gears : dict of str to Gears, default {}
+        Gears of each wheel by its name.
+    **parts : Link, Bar, Disk, Slider or Cylinder
+        Part of each name in `links`. A cylinder that follows the others may be left out.
+
+    Raises
+    ------
+    ValueError
+        One line for each parameter out of bounds, for each name that does not fit the others, and for links that close
+        only together, or not at all.
+
+    Notes
+    -----
+    A pin that two links find is open to the left of the line between their known pins, that of the first link first; a
+    pin on a guide is open ahead of the known pin along the guide; a link past a pin is open where the pin lies ahead of
+    its first pin.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> steel = dict(width=0.02, thickness=0.02, density=7750)
+    >>> pump = ls.Linkage("crank A-B, rod B-C, ram C on slide", ground={"A": (0, 0)},
+    ...                   guides={"slide": ls.Guide(through=(0, 0.02), angle=20.0, friction=0.1)},
+    ...                   crank=ls.Bar(0.08, **steel), rod=ls.Bar(0.22, **steel), ram=ls.Slider(mass=3.0))
+    >>> pump.ram.mass, pump.guides["slide"].angle
+    (3.0, 20.0)
+    """
+
+    links: str = word('"crank A-B, rod B-C, rocker D-C"')
+    ground: Mapping[str, Any] = named(GROUND_PIN, "pins (x, y)", "{A = [0, 0], D = [0.2, 0]}")
+    points: Mapping[str, Any] = named(POLAR_POINT, "pins (distance, angle)", "{E = [0.12, -35.0]}", {})
+    guides: Mapping[str, Any] = named(GUIDE, "guides", "{slide = {angle = 20.0}}", {})
+    branch: Mapping[str, Any] = named(BRANCH, "words", '{F = "crossed"}', {})  # type: ignore[assignment]
+    gears: Mapping[str, Any] = named(GEARS, "gears", "{wheel = {phase = 90.0}}", {})
+    parts: Mapping[str, Any] = of_kind(NamedField(PART, "parts", inline=True), NONE)
+
+    def __init__(
+        self,
+        links: str,
+        *,
+        ground: Mapping[str, Any],
+        points: Mapping[str, Any] = NONE,
+        guides: Mapping[str, Any] = NONE,
+        branch: Mapping[str, Any] = NONE,
+        gears: Mapping[str, Any] = NONE,
+        **parts: Any,
+    ) -> None:
+        named_parts = {**parts.pop("parts", {}), **parts}  # a copy passes on the field of its original
+        normalise(self, links=links, ground=ground, points=points, guides=guides, branch=branch, gears=gears)
+        normalise(self, parts=named_parts)
+        self.__post_init__()
+
+    def __post_init__(self) -> None:
+        ByContent.__post_init__(self)
+        refuse(self._problems())
+
+    def __getattr__(self, name: str) -> Any:
+        parts = self.__dict__.get("parts", {})
+        if name in parts:
+            return parts[name]
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{did_you_mean(name, parts)}")
+
+    @cached_property
+    def topology(self) -> Topology:
+        """Who is joined to whom, and the order in which the dyads close."""
+        joined, problems = self._topology_and_problems
+        if joined is None or problems:
+            raise ValueError("\n".join(problems))
+        return joined
+
+    @property
+    def _topology_and_problems(self) -> tuple[Topology | None, tuple[str, ...]]:
+        hosts = ((name, str(guide.of)) for name, guide in self.guides.items() if isinstance(guide, Guide))
+        ratios = ((name, gears.ratio) for name, gears in self.gears.items() if isinstance(gears, Gears))
+        given = {role for role, part in self.parts.items() if isinstance(part, Cylinder) and part.length is not None}
+        ground = tuple(self.ground) if isinstance(self.ground, Mapping) else ()  # a scene file may not have been read
+        return topology(self.links, ground, tuple(hosts), tuple(ratios), frozenset(given), RESERVED)
+
+    def _problems(self) -> list[str]:
+        """Return the problems of all parameters, and those of names that do not fit each other."""
+        problems = field_problems(self)
+        if not isinstance(self.links, str):
+            return [f'links = {quote(self.links)}: must be a text, as "crank A-B, rod B-C, rocker D-C"', *problems]
+        if not all(isinstance(getattr(self, kind.name), Record) for kind in declared(self)[1:]):
+            return problems
+        joined, of_text = self._topology_and_problems
+        problems += of_text
+        if joined is None:
+            return problems
+        problems += [*part_problems(joined, self.parts), *point_problems(joined, self.points)]
+        problems += [*ground_problems(self.ground), *pressure_angle_problems(self.gears)]
+        return problems if of_text else [*problems, *branch_problems(joined, self.branch)]
+
+    @cached_property
+    def shape(self) -> Shape:
+        return Shape(
+            self.topology, frozenset(step.name for step in self.topology.steps), frozenset(), frozenset(self.guides)
+        )
+
+    def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
+        given = {role: self.parts[role].length for role in self.topology.given}
+        changing = {role: length for role, length in given.items() if "theta2" in getattr(length, "dims", ())}
+        changing |= {role: length for role, length in given.items() if callable(length)}
+        sampled = {role: SampledCylinder(*sample(f"{role}.length", length)) for role, length in changing.items()}
+        return with_sound(self, parts=record(PART, {**self.parts, **sampled})) if sampled else self
+
+    def coordinates(self) -> dict[str, list[str]]:
+        return {f"branch_{name}": list(BRANCH_SIGN) for name, branch in self.branch.items() if branch == "both"}
+
+    def parameters(self) -> dict[str, Any]:
+        return self._numbers_of_parts() | self._numbers_of_places()
+
+    def _numbers_of_parts(self) -> dict[str, Any]:
+        """Return the numbers of links, sliders, wheels and cylinders."""
+        joined, parts, numbers = self.topology, self.parts, dict[str, Any]()
+        for role in joined.links:
+            numbers |= link_parameters(role, parts[role])
+        for role in (*joined.sliders, *joined.yokes):
+            numbers |= slider_numbers(role, parts[role])
+        for role in joined.yokes:
+            numbers |= slot_numbers(role, parts[role])
+        for role in joined.gears:
+            numbers |= frame_parameters(f"{role}_phase", self.gears.get(role, Gears()).phase)
+        for role in joined.given:
+            numbers |= cylinder_numbers(role, parts[role])
+        return numbers
+
+    def _numbers_of_places(self) -> dict[str, Any]:
+        """Return the numbers of pins and guides, and the signs of the branches."""
+        (_, pivot), *others = self.ground.items()
+        numbers: dict[str, Any] = {}
+        for pin, point in others:
+            numbers |= ground_pin(pin, point, pivot)
+        for pin in self.topology.points:
+            numbers |= point_on_link(pin, *self.points[pin])
+        for name, host in self.topology.hosts.items():
+            numbers |= guide_numbers(name, self.guides.get(name, Guide()), pivot if host == GROUND else ORIGIN)
+        for step in self.topology.steps:
+            if isinstance(step, WITH_BRANCHES):
+                numbers |= branch_sign(step.name, self.branch.get(step.name, "open"))
+        return numbers
+
+
+def part_problems(joined: Topology, parts: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the problems of parts that are missing, of the wrong class, or that no text names."""
+    expected: dict[str, Any] = dict.fromkeys(joined.links, AnyLink) | dict.fromkeys(joined.cylinders, Cylinder)
+    expected |= dict.fromkeys((*joined.sliders, *joined.yokes), Slider)
+    for role, kind in expected.items():
+        if role not in parts and kind is not Cylinder:
+            yield f"{role}: missing; give {role} = {CLASSES[kind]}"
+        elif isinstance(part := parts.get(role), AnyPart) and not isinstance(part, kind):
+            yield f"{role} = {quote(part)}: must be {CLASSES[kind]}, as it stands in links"
+    for role in parts:
+        yield from name_problems(role, role, expected)
+
+
+def point_problems(joined: Topology, points: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the problems of third pins of links without a point, and of points of other pins."""
+    for pin, role in joined.points.items():
+        if pin not in points:
+            yield f"points.{pin}: missing; give (distance, angle) of this pin in the axes of {role}"
+    for pin in points:
+        if pin not in joined.points:
+            others = did_you_mean(pin, joined.points) or "; leave it out, or name it third in a link, as rod B-C-E"
+            yield f"points.{pin}: is no third pin of a link{others}"
+
+
+def ground_problems(ground: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the problem of each ground pin that is where another one is, in a single design."""
+    places: dict[Any, str] = {}
+    for pin, place in ground.items():
+        single = isinstance(place, tuple) and not any(map(is_array, place))
+        if single and (other := places.setdefault(place, pin)) != pin:
+            yield f"ground.{pin} = {quote(place)}: is where pin {other} is; give it a place of its own"
+
+
+def pressure_angle_problems(gears: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the problem of each pressure angle of 90 degrees or more."""
+    for name, pair in gears.items():
+        angle = getattr(pair, "pressure_angle", None)
+        if isinstance(angle, float) and angle >= 90.0:
+            yield f"gears.{name}.pressure_angle = {angle:.15g} degree: must be less than 90"
+
+
+def branch_problems(joined: Topology, branch: Mapping[str, str]) -> Iterator[str]:
+    """Yield the problem of each branch that is of no pin, or link past a pin, with two assemblies."""
+    known = [step.name for step in joined.steps if isinstance(step, WITH_BRANCHES)]
+    for name in branch:
+        yield from (
+            name_problems(f"branch.{name}", name, known)
+            if known
+            else [f"branch.{name}: no pin of this linkage has two assemblies; leave it out"]
+        )

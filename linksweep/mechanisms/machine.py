@@ -1,0 +1,79 @@
+"""The base of machines made of a crank and dyads: all that follows from their topology."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+from linksweep.engine.quantity import Table
+from linksweep.mechanisms.between_links import force_name
+from linksweep.mechanisms.chain.chain import Chain, Shape, chain
+from linksweep.mechanisms.mechanism import Mechanism
+from linksweep.mechanisms.rows.bodies import Body, Equation
+from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER
+from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.mechanisms.rows.pins import Journals, Pins
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Machine(Mechanism):
+    """A machine made of a crank and dyads."""
+
+    status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
+
+    @property
+    @abstractmethod
+    def shape(self) -> Shape:
+        """All that decides the rows of the machine's motion."""
+
+    @cached_property
+    def chain(self) -> Chain:
+        """Motion and forces of all machines of this shape."""
+        return chain(self.shape)
+
+    @property
+    def roles(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.shape.topology.roles
+
+    @property
+    def pins(self) -> Pins:  # type: ignore[override]
+        return self.shape.topology.pins
+
+    @property
+    def journals(self) -> Journals:  # type: ignore[override]
+        return self.shape.topology.journals
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:  # type: ignore[override]
+        return self.chain.bodies
+
+    @property
+    def drives(self) -> dict[str, str]:  # type: ignore[override]
+        return self.chain.drives
+
+    @property
+    def defaults(self) -> dict[str, str]:  # type: ignore[override]
+        return {"drive": self.shape.topology.crank}
+
+    def choices(self) -> dict[str, dict[str, str]]:
+        return {"drive": self.drives}
+
+    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        return self.chain.table(drive, loads)
+
+    def kinematics(self) -> tuple[str, ...]:
+        return self.chain.kinematics
+
+    def unknowns(self, drive: str) -> tuple[str, ...]:
+        return (*self.chain.unknowns, self.drives[drive])
+
+    def dynamics(self, drive: str) -> tuple[str, ...]:
+        return (*self.unknowns(drive), *self.chain.slide_forces)
+
+    def equations(self, drive: str) -> tuple[Equation, ...]:
+        return self.chain.equations(drive)
+
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return (*(force_name(*pair) for pair in self.chain.joints.values()), self.drives[drive])

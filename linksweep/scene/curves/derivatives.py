@@ -1,0 +1,46 @@
+"""Derivatives to theta2 of a length that changes over the revolution, such as that of a cylinder.
+
+Of an array they are those of its spline. Of a function they are limits of central differences; see `acceleration`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import Number, Rule
+from linksweep.engine.run import Grid
+from linksweep.scene.curves.acceleration import ROUNDING, STEPS, limit
+from linksweep.scene.curves.over_angle import ArrayCurve, at_angles, called, over_grid, period_of_function
+
+
+def with_derivatives(
+    path: str, value: Any, rule: Rule, grid: Grid, turn: float, curve: ArrayCurve | None = None
+) -> tuple[Number, Number, Number]:
+    """Return a function or an array of theta2 at the grid's angles, and its first two derivatives [1/rad, 1/rad²].
+
+    Raises
+    ------
+    ValueError
+        For an array that does not go all the way round, and as `over_angle.at_angles`.
+    """
+    if not hasattr(value, "dims"):
+        return _of_function(path, value, rule, grid, period_of_function(value, turn))
+    array = value if "theta2" in value.coords else value.assign_coords(theta2=grid.angles)
+    curve = curve or ArrayCurve(path, array, turn)
+    slopes = (np.degrees(1.0) ** order * curve.unwarned.slope(grid.angles, order) for order in (1, 2))
+    slope, curvature = (over_grid(values, array, grid).transpose(*array.dims) for values in slopes)
+    return at_angles(path, value, rule, grid, curve), slope, curvature
+
+
+def _of_function(path: str, function: Any, rule: Rule, grid: Grid, period: float) -> tuple[Number, Number, Number]:
+    middle = called(path, function, rule, grid.angles)
+    at = np.mod(np.stack([grid.angles[:, None] + STEPS, grid.angles[:, None] - STEPS]), period)
+    after, before = called(path, function, rule, at.ravel()).values.reshape(at.shape)
+    own, width, noise = middle.values[:, None], np.radians(STEPS), ROUNDING * np.max(abs(middle.values))
+    slope = limit((after - before) / (2.0 * width), np.broadcast_to(noise / width, before.shape))
+    curvature = limit((after - own + before - own) / width**2, np.broadcast_to(4.0 * noise / width**2, before.shape))
+    slopes, curvatures = (xr.DataArray(values, {"theta2": grid.angles}, "theta2") for values in (slope, curvature))
+    return middle, slopes, curvatures
