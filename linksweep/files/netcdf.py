@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -19,6 +18,7 @@ from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.file.reading import parse_scene, read_scene
 from linksweep.scene.file.text_file import kind_of
 from linksweep.scene.file.writing import require_writable
+from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 from linksweep.scene.storable import label_problem, name_problem
 
@@ -174,7 +174,6 @@ def scene_of(ds: xr.Dataset, name: str = "Dataset", whole: bool = True) -> Scene
         )
     arrays = {str(path): ds[path].reset_coords(drop=True) for path in ds.variables}
     scene = parse_scene(text, name, arrays, whole)
-    machine: Any = scene.mechanism
-    if getattr(machine, "branch", "") == "both" and "branch" in ds.coords and not ds["branch"].dims:
-        return replace(scene, mechanism=replace(machine, branch=str(ds["branch"].item())))
-    return scene
+    branches = scene.mechanism.both_branches.items()
+    selected = {dim: path for dim, path in branches if dim in ds.coords and not ds[dim].dims}
+    return replaced(scene, {path: str(ds[dim].item()) for dim, path in selected.items()})

@@ -38,7 +38,7 @@ from linksweep.mechanisms.links import (
 )
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, frame_parameters
+from linksweep.mechanisms.rows.crank import BRANCH, frame_parameters
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Topology, topology
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
@@ -126,9 +126,11 @@ class Linkage(Machine):
     def __post_init__(self) -> None:
         ByContent.__post_init__(self)
         refuse(self._problems())
+        in_order = {name: self.parts[name] for name in self.topology.names if name in self.parts}
+        normalise(self, parts=record(PART, in_order))
 
     def __getattr__(self, name: str) -> Any:
-        parts = self.__dict__.get("parts", {})
+        parts = vars(self).get("parts", {})
         if name in parts:
             return parts[name]
         raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{did_you_mean(name, parts)}")
@@ -145,9 +147,10 @@ class Linkage(Machine):
     def _topology_and_problems(self) -> tuple[Topology | None, tuple[str, ...]]:
         hosts = ((name, str(guide.of)) for name, guide in self.guides.items() if isinstance(guide, Guide))
         ratios = ((name, gears.ratio) for name, gears in self.gears.items() if isinstance(gears, Gears))
-        given = {role for role, part in self.parts.items() if isinstance(part, Cylinder) and part.length is not None}
+        cylinders = {role: part for role, part in self.parts.items() if isinstance(part, Cylinder)}
+        held = frozenset(role for role, cylinder in cylinders.items() if cylinder.length is not None)
         ground = tuple(self.ground) if isinstance(self.ground, Mapping) else ()  # a scene file may not have been read
-        return topology(self.links, ground, tuple(hosts), tuple(ratios), frozenset(given), RESERVED)
+        return topology(self.links, ground, tuple(hosts), tuple(ratios), held, RESERVED)
 
     def _problems(self) -> list[str]:
         """Return the problems of all parameters, and those of names that do not fit each other."""
@@ -171,14 +174,17 @@ class Linkage(Machine):
         )
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
-        given = {role: self.parts[role].length for role in self.topology.given}
-        changing = {role: length for role, length in given.items() if "theta2" in getattr(length, "dims", ())}
-        changing |= {role: length for role, length in given.items() if callable(length)}
-        sampled = {role: SampledCylinder(*sample(f"{role}.length", length)) for role, length in changing.items()}
+        lengths = {role: self.parts[role].length for role in self.topology.given}
+        sampled = {
+            role: SampledCylinder(*sample(f"{role}.length", length))
+            for role, length in lengths.items()
+            if callable(length) or "theta2" in getattr(length, "dims", ())
+        }
         return with_sound(self, parts=record(PART, {**self.parts, **sampled})) if sampled else self
 
-    def coordinates(self) -> dict[str, list[str]]:
-        return {f"branch_{name}": list(BRANCH_SIGN) for name, branch in self.branch.items() if branch == "both"}
+    @property
+    def both_branches(self) -> dict[str, str]:
+        return {f"branch_{name}": f"branch.{name}" for name, branch in self.branch.items() if branch == "both"}
 
     def parameters(self) -> dict[str, Any]:
         return self._numbers_of_parts() | self._numbers_of_places()

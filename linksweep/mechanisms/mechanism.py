@@ -223,9 +223,14 @@ class Mechanism(ByContent, ABC):
         """1 for open, -1 for crossed; for both, the two over the dim `branch`."""
         return BRANCH_SIGN.get(self.branch, Field(("branch",), np.array(list(BRANCH_SIGN.values()))))
 
+    @property
+    def both_branches(self) -> dict[str, str]:
+        """Path of each branch that is "both", by the dim that it adds to results."""
+        return {"branch": "branch"} if self.branch == "both" else {}
+
     def coordinates(self) -> dict[str, list[str]]:
         """Return the labels of each dim that the machine itself adds to results."""
-        return {"branch": list(BRANCH_SIGN)} if self.branch == "both" else {}
+        return {dim: list(BRANCH_SIGN) for dim in self.both_branches}
 
     @property
     def strokes(self) -> dict[str, Stroke]:

@@ -126,7 +126,8 @@ class Scene(ByContent):
         refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
         # omega2 is a result by that name, too; the speed of a loop's results is another than the parameter
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
-        refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, results))
+        taken = {*results, *self.mechanism.both_branches}
+        refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, taken))
 
     def _defaults(self) -> dict[str, Any]:
         return super()._defaults() | dict(self.mechanism.defaults)

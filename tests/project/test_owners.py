@@ -41,6 +41,6 @@ def test_each_machine_offers_its_capabilities(kind):
 
 def test_lack_names_machine_capability_and_alternatives():
     loop, press = (ls.example(name).mechanism for name in ("loop", "press"))
-    others = "FourBar, InvertedSliderCrank, SliderCrank"
+    others = "FourBar, InvertedSliderCrank, Linkage, SliderCrank"
     assert lack(loop, "pins") == f"a LoopTrack, which has no pins: give another machine ({others})"
     assert lack(press, "pins") == ""

@@ -139,7 +139,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     (name,) = requested("of", of)[:1] or [""]
     refuse(_problems(scene))
     several = 'mechanism.branch = "both": must be one of open, crossed; ask for each'
-    refuse([several] if "branch" in scene.mechanism.coordinates() else [])
+    refuse([several] if scene.mechanism.both_branches else [])
     refuse(quantity_problems("of", name, forces_of(scene), scene))
     below = checked_number("below", below, LIMITS[scene.table.quantity[name].units])
     parts = scene.table.quantity[name].components

@@ -21,8 +21,8 @@ def chosen(scene: Scene, where: Mapping[str, Any]) -> Scene:
     labels = design_labels(scene)
     at = places(where, labels)
     values = {path: _number(array.isel(at, missing_dims="ignore")) for path, array in scene.arrays.items()}
-    if "branch" in at:
-        values["branch"] = str(labels["branch"][at["branch"]])
+    branches = scene.mechanism.both_branches.items()
+    values |= {path: str(labels[dim][at[dim]]) for dim, path in branches if dim in at}
     return replaced(scene, values)
 
 
