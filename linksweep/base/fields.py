@@ -263,8 +263,9 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 
 def left_out(value: Any) -> bool:
-    """Return whether a value is that of a field left out: None, or an empty text, list or mapping."""
-    return value is None or (isinstance(value, str | tuple | list | Mapping) and not value)
+    """Return whether a value is that of a field left out: None, or an empty text, list or record."""
+    record = isinstance(value, Mapping) and has_fields(value)
+    return value is None or ((record or isinstance(value, str | tuple | list)) and not value)
 
 
 def has_fields(value: Any) -> bool:

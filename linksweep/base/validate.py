@@ -146,7 +146,7 @@ def quote(value: Any) -> str:
 
 
 def _over_angle_only() -> str:
-    return "only omega2, alpha2 and loads may change over the revolution"
+    return "only omega2, alpha2, loads and lengths of cylinders may change over the revolution"
 
 
 def _array_problems(path: str, value: Any, rule: Rule) -> list[str]:

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from mpmath import MPContext
+from refusals import refusal
 
 import linksweep as ls
 from linksweep.base.fields import numbers
 from linksweep.scene.parameters import bare, replaced
-from tests.helpers.refusals import refusal
 
 STEEL = {"width": 0.02, "thickness": 0.02, "density": 7750}
 TEXT = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F"

@@ -81,7 +81,7 @@ NUMBERS = [
 ]
 every_number = pytest.mark.parametrize("number", NUMBERS, ids=str)
 POLAR = ("coupler.cg_distance", "rocker.cg_distance", "loads[2].at[1]")
-OVER_ANGLE = "only omega2, alpha2 and loads may change over the revolution"
+OVER_ANGLE = "only omega2, alpha2, loads and lengths of cylinders may change over the revolution"
 
 
 def test_the_table_lists_every_number_of_every_constructor():
