@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -31,7 +31,7 @@ class Frame(NamedTuple):
         return self.along.split(",")[0]
 
 
-class Guide(NamedTuple):
+class Rail(NamedTuple):
     """A straight line on the ground that a block slides on: a point of it [m], its direction, and whether its distance
     from A is an offset to be drawn: the point is then the foot of A."""
 
@@ -50,16 +50,20 @@ class Block(NamedTuple):
     number: int | None
     pin: str
     sides: Frame
-    guide: Callable[[Any], Guide] | None = None
+    guide: Callable[[Any], Rail] | None = None
     on: tuple[int, str] | None = None
 
 
 class Carrier(NamedTuple):
-    """The link whose point draws a curve: its name, its number, and the pin from which `point` is measured."""
+    """The link whose point draws a curve: its name, its number, and the pin from which the point is measured.
+
+    `end` is the pin that draws the curve where no point is stated; "" for the centre of gravity.
+    """
 
     role: str
     number: int
     pin: str
+    end: str = ""
 
 
 COUPLER = Carrier("coupler", 3, "B")
@@ -85,9 +89,9 @@ class Drawing:
     `joints` are the pairs of links (i, j) whose force Fij is plotted, by the joint's name: a pin, or a word where links
     touch otherwise. `journals` are the links that carry the pins' journals. `acts_at` is the pin where the arrow of a
     force starts that acts at no pin. `bars` are the pins of each link. `fixed` returns the pins on the ground [m],
-    `wheels` the radius of each gear's pitch circle about its pin [m]. `moving` are the pins with positions among the
-    quantities. `telescopes` are the ends of cylinders. `ideal` are parameters to set aside where only positions are
-    computed.
+    `wheels` the pins at the centres of pitch circles, and their radii [m]. `moving` are the pins with positions among
+    the quantities, `centres` places on a line of the ground, by the quantity that is the distance along it.
+    `telescopes` are the ends of cylinders. `ideal` are parameters to set aside where only positions are computed.
     """
 
     joints: Mapping[str, tuple[int, int]]
@@ -99,7 +103,8 @@ class Drawing:
     carrier: Carrier = COUPLER
     blocks: tuple[Block, ...] = ()
     telescopes: tuple[tuple[str, str], ...] = ()
-    wheels: Callable[[Any], Mapping[str, float]] = lambda mechanism: {}
+    wheels: Callable[[Any], Sequence[tuple[str, float]]] = lambda mechanism: ()
+    centres: Mapping[str, tuple[str, Callable[[Any], Rail]]] = field(default_factory=dict)
     acts_at: Mapping[str, str] = field(default_factory=dict)
     ideal: Mapping[str, Any] = field(default_factory=dict)
 

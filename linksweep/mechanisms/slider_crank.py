@@ -15,7 +15,7 @@ from linksweep.base.validate import Number
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.cylinder import PistonCylinder
-from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Guide, direction
+from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
@@ -34,10 +34,10 @@ SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0, "omega4": 0.0, "alpha4": 
 GUIDE = Frame("guide", "slide_angle")
 
 
-def _guide(mechanism: Any) -> Guide:
+def _guide(mechanism: Any) -> Rail:
     """Return the guide of a slider-crank as plots draw it."""
     along = direction(mechanism.slide_angle)
-    return Guide(float(mechanism.offset) * np.array([-along[1], along[0]]), along, offset=True)
+    return Rail(float(mechanism.offset) * np.array([-along[1], along[0]]), along, offset=True)
 
 
 @register

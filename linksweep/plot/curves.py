@@ -14,7 +14,18 @@ import xarray as xr
 
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, VERMILION
+from linksweep.plot.kit.colors import (
+    BLACK,
+    BLUE,
+    FORCE_COLORS,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SHADE,
+    VERMILION,
+    force_color,
+)
 from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.plot.kit.with_peaks import with_peaks
@@ -25,6 +36,8 @@ if TYPE_CHECKING:
 SOLID, DASHED, DOTTED = "-", (0.0, (5.0, 2.0)), (0.0, (1.5, 1.5))
 STYLES = ((BLUE, SOLID), (VERMILION, DASHED), (GREEN, SOLID), (PURPLE, DASHED), (ORANGE, DOTTED), (BLACK, DOTTED))
 ROOM = 1.0 / 30.0  # of the angle axis: what an upright word takes
+ONE_LINE, COLUMNS = 4, 3  # curves whose legend stands in one line; columns of a longer one
+ROW = 0.1  # of the largest force: room for a further line of the legend
 LETTERS = 50  # of a legend in one line, at the usual spacing
 HEADROOM = 1.3  # of the largest value, for the legend and the labels of peaks
 
@@ -88,7 +101,7 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     top = signals.scale([curve.values for curve in curves], peaks)
     ax = axes_or_new(ax)
     _draw(ax, curves)
-    ax.set_ylim(0.0, HEADROOM * top or 1.0)
+    ax.set_ylim(0.0, headroom(len(curves)) * top or 1.0)
     units = signals.unit(by_name[names[0]], "N")
     title = f"{kind_of(drawing_of_results(ds), names)} force"
     title += f" {signals.symbol(names[0])}" if len(names) == 1 else ""
@@ -161,9 +174,16 @@ def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     return chosen
 
 
+def headroom(count: int) -> float:
+    """Return the upper end of the axis relative to the largest force, with room for a legend of this many curves."""
+    return HEADROOM + (0.0 if count <= ONE_LINE else ROW * ((count - 1) // COLUMNS))
+
+
 def kind_of(drawing: Drawing, names: Iterable[str]) -> str:
     """Return the kind of forces in words: "pin", "guide", "pin and guide"."""
-    return " and ".join(dict.fromkeys("pin" if drawing.at_pin(name) else drawing.joint_of[name] for name in names))
+    kinds = dict.fromkeys("pin" if drawing.at_pin(name) else drawing.joint_of[name] for name in names)
+    slides = [kind for kind in kinds if kind != "pin"]
+    return " and ".join(dict.fromkeys("slide" if kind in slides and len(slides) > 1 else kind for kind in kinds))
 
 
 def _curves(ds: xr.Dataset, by_name: dict[str, xr.DataArray]) -> list[Curve]:
@@ -173,6 +193,7 @@ def _curves(ds: xr.Dataset, by_name: dict[str, xr.DataArray]) -> list[Curve]:
     for name, signal in by_name.items():
         for design, values in signals.designs(signal).items():
             color, dashes = STYLES[len(curves) % len(STYLES)]
+            color = force_color(name) if len(by_name) > len(FORCE_COLORS) else color
             text = design or f"{signals.symbol(name)} ({joints.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
             symbol_at_peak = signals.symbol(name) if len(by_name) > 1 else ""
@@ -239,7 +260,7 @@ def _legend(ax: Axes, curves: Sequence[Curve], gap: signals.Gap | None, runaway:
     compact = {"fontsize": "small", "handlelength": 2.2, "columnspacing": 1.2, "handletextpad": 0.5, "frameon": False}
     texts = [curve.text for curve in curves]
     if not runaway:
-        columns = len(curves) if max(map(len, texts)) < 22 else 2
+        columns = (len(curves) if len(curves) <= ONE_LINE else COLUMNS) if max(map(len, texts)) < 22 else 2
         tight = {"handlelength": 1.8, "columnspacing": 0.8} if len("".join(texts)) > LETTERS else {}
         ax.legend(loc="upper center", ncols=columns, borderaxespad=0.2, **compact | tight)
     elif gap is not None and gap.width > np.ptp(ax.get_xlim()) / 4.0:

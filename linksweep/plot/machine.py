@@ -11,7 +11,7 @@ import xarray as xr
 from linksweep.base.conversion import to_float64
 from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
-from linksweep.mechanisms.drawing import Block, Drawing, Guide
+from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
@@ -152,14 +152,14 @@ def draw_ground(ax: Axes, scene: Scene, drawing: Drawing, shape: Shape) -> None:
         if block.guide is not None:
             _guide(ax, block.guide(scene.mechanism), slide, half_side(drawing, shape))
     machine_parts.supports(ax, standing)
-    for pin, radius in drawing.wheels(scene.mechanism).items():
+    for pin, radius in drawing.wheels(scene.mechanism):
         machine_parts.circle(ax, shape.pins[pin], radius, "pitch circle")
     first, second = (shape.pins[pin] for pin in drawing.bars[2][:2])
     machine_parts.circle(ax, first, float(np.hypot(*(second - first))), "crank circle")
     ax.plot(*shape.curve, color=SKY, linewidth=1.4, zorder=2.0, label="_coupler curve")
 
 
-def _guide(ax: Axes, guide: Guide, slide: Slide, half: float) -> None:
+def _guide(ax: Axes, guide: Rail, slide: Slide, half: float) -> None:
     """Draw the guide's centre line, and its sides along the block's travel."""
     low, high = slide.travel(guide.point)
     ends = low - 2.0 * half, high + 2.0 * half

@@ -58,7 +58,7 @@ def _where(results: Results, name: str) -> str:
     if not at_pin:
         return name_in_words.split(" on the ")[0].split(" about ")[0]
     here, there = (part.partition("(")[2].partition(")")[0] for part in pair.split(" on link "))
-    return f"{'pin ' if is_pin(pin) else ''}{pin}: {here} on {there}"
+    return f"{'pin ' if is_pin(pin) else ''}{pin.partition(':')[0]}: {here} on {there}"
 
 
 def drive(results: Results) -> Markup:

@@ -19,7 +19,7 @@ import numpy as np
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
 from linksweep.engine.quantity import Quantity, Row, Table
-from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Guide
+from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail
 from linksweep.mechanisms.limits.finding import Finding, turning_round
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import MECHANISMS, Mechanism, register
@@ -90,7 +90,7 @@ class ScotchYoke(Mechanism):
         bars={2: ("A", "B"), 4: ("C", "B")},
         moving=("B", "C"),
         carrier=Carrier("crank", 2, "A"),
-        blocks=(Block(4, "C", GUIDE, lambda mechanism: Guide(np.zeros(2), np.array([1.0, 0.0]))),),
+        blocks=(Block(4, "C", GUIDE, lambda mechanism: Rail(np.zeros(2), np.array([1.0, 0.0]))),),
         acts_at={"guide": "C"},
     )
 

@@ -16,7 +16,7 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLACK, BLUE, FORCE_COLORS, GREY, force_color
+from linksweep.plot.kit.colors import BLACK, BLUE, GREY, force_color
 from linksweep.plot.kit.shape import CURVE, Shape, positions, shape_of
 from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
@@ -202,7 +202,7 @@ def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, di
     places = np.linspace(0.0, 1.0, len(words) + 1, endpoint=False)
     texts = {}
     for place, (name, word) in zip(places, {"": angle, **words}.items(), strict=True):
-        style["color"] = FORCE_COLORS.get(name, BLACK)
+        style["color"] = force_color(name) if name.startswith("F") else BLACK
         title = ax.annotate(word, (place, 1.0), (0.0, 5.0), xycoords="axes fraction", **style)
         texts[name] = ax.annotate("", (1.0, 1.0), (4.0, 5.0), xycoords=(title, "axes fraction"), **style)
 
@@ -217,7 +217,7 @@ def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, di
 def follower(ax: Axes, names: list[str]) -> Callable[[float, dict[str, float]], list[Artist]]:
     """Draw an upright line, and a dot on each curve; return the function that moves them."""
     cursor = ax.axvline(0.0, color=GREY, linewidth=1.0, zorder=1.9)  # below curves, so that labels stay where they are
-    colors = [FORCE_COLORS.get(name, BLUE) for name in names]
+    colors = [force_color(name) if name.startswith("F") else BLUE for name in names]
     dots = ax.scatter(np.zeros(len(names)), np.zeros(len(names)), c=colors, s=24.0, zorder=2.8, edgecolors="white")
 
     def follow(angle: float, sizes: dict[str, float]) -> list[Artist]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.plot import track as track_plot
-from linksweep.plot.curves import HEADROOM, forces
+from linksweep.plot.curves import forces, headroom
 from linksweep.plot.films.frames import (
     TINY,
     arrows_of,
@@ -45,7 +45,7 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
     figure, machine, curves = panels()
     forces(cycle, ax=curves)
-    top = curves.get_ylim()[1] / HEADROOM
+    top = curves.get_ylim()[1] / headroom(len(drawing.forces))
     draw_ground(machine, scene, drawing, shots[0].shape)
     longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
     arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]

@@ -16,7 +16,7 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
 CURVE = 720  # positions along the curve of a point
-BLOCK = 0.26  # of the mean length of bars and frame: half a side of a block
+BLOCK = 0.26  # of the mean length of two bars, or of bar and frame: half a side of a block
 
 
 class Slide(NamedTuple):
@@ -49,6 +49,7 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
     set_aside: dict[str, Any] = dict(drawing.ideal)
     geometry = Scene(replace(scene.mechanism, **set_aside), omega2=0.0)
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
+    outputs += [name for name, _ in drawing.centres.values()]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     turn = np.arange(CURVE) * (360.0 / CURVE)
     cycle = sweep(geometry, theta2=[*turn, *angles], of=outputs)
@@ -62,11 +63,16 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
     fixed = drawing.fixed(scene.mechanism)
     places = {pin: np.repeat(place[:, None], count, axis=1) for pin, place in fixed.items()}
     places |= {pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving}
+    for name, (distance, line) in drawing.centres.items():
+        rail = line(scene.mechanism)
+        places[name] = rail.point[:, None] + rail.along[:, None] * signals.spread(cycle[distance], count)
     cg = scene.mechanism.masses()[carrier.role]
     distance, turned = point or (cg.cg_distance, cg.cg_angle)
     x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
     along, across = (one(distance) * one(part) for part in cos_sin(turned))
     path = places[carrier.pin] + along * np.array([x, y]) + across * np.array([-y, x])
+    if carrier.end and point is None:
+        path = places[carrier.end]
     slides = (
         Slide(places[block.pin] - (places[block.on[1]] if block.on else 0.0), axes_of(scene, cycle, block.sides))
         for block in drawing.blocks
@@ -111,4 +117,4 @@ def half_side(drawing: Drawing, shape: Shape) -> float:
     lengths = [float(np.hypot(*(end - start))) for start, end in pairs]
     if "D" in shape.pins:
         lengths.append(float(np.hypot(*shape.pins["D"])))
-    return BLOCK * sum(lengths) / len(lengths)
+    return BLOCK * float(np.sqrt(2.0 / len(lengths))) * sum(lengths) / len(lengths)
