@@ -33,6 +33,12 @@ def sliding_contact(frictionless: Number, slope: Number, direction: Number) -> t
     return normal, -(k * normal), wedging
 
 
+def grip(along_squared: Number, across: Number, friction: Number) -> Number:
+    """Return along² − (μ·across)², positive where friction does not wedge: the slope is across over along."""
+    wedged = friction * across
+    return along_squared - wedged * wedged
+
+
 def friction(normal: Number, direction: Number) -> Number:
     """Return the friction force for a normal force that does not depend on it."""
     return -(opposing(normal, direction) * normal)

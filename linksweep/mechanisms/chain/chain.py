@@ -8,6 +8,7 @@ from typing import NamedTuple
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.between_links import force_name, name_between
 from linksweep.mechanisms.chain.forces import Forces
+from linksweep.mechanisms.chain.limits import limits
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows import bodies
@@ -83,9 +84,10 @@ class Chain:
         return (f"{force_name(i, j)}n", *moment)
 
     @lru_cache(maxsize=16)  # noqa: B019
-    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        """Return the table of all quantities for a drive and loads of these forms."""
+    def table(self, drive: str, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
+        """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
         unknown, number = self.drives[drive], self.topology.number(drive)
+        of_limits, limited = limits(self.motion, rubbing)
         rows = [
             *self.motion.rows,
             *self.forces.rows,
@@ -95,11 +97,9 @@ class Chain:
             *power_rows(unknown, f"omega{number}", self.bodies, loads, *self.forces.losses),
             *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
             *self._arms(),
-            Row(planar.identity, ("assembly",), (0.0,)),
-            Row(planar.identity, ("near_toggle_near",), (1.0,)),
-            Row(planar.identity, ("near_toggle_far",), (1.0,)),
+            *of_limits,
         ]
-        return Table("theta2", tuple(rows), tuple(self._quantities(drive, loads)), BETWEEN)
+        return Table("theta2", tuple(rows), tuple(self._quantities(drive, loads)), BETWEEN, limited)
 
     def _status(self) -> Rows:
         """Return rows of the status that fails first, and of the step where it does."""

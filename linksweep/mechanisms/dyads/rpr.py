@@ -4,7 +4,7 @@ rocker 4 about the known pin D, whose line passes B; `offset` is the line's from
 
 from __future__ import annotations
 
-from linksweep.engine.quantity import Row
+from linksweep.engine.quantity import Limit, Row
 from linksweep.mechanisms.dyads.rrr import Certain, Rows, full
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
@@ -14,6 +14,10 @@ from linksweep.physics.closures import dyad_rpr, inverted_slider_crank, moving_g
 CERTAIN_ON_CRANK: Certain = dict.fromkeys(("psi_cos", "psi_cos_lo", "psi_sin", "slide_cosine", "psi_versine"), 1.0)
 CERTAIN: Certain = {"slide_squared": "reach"}
 FOUND: Certain = dict.fromkeys(full("line_"), 1.0)
+TOGGLE = Limit("rocker", ("slide_squared",), ("noise",))
+"""Limit of the dyad's motion."""
+SLIDE = Limit("rocker", ("grip",), ("noise",), "pole"), Limit("rocker", ("slide_leverage",), ("noise",), "jump")
+"""Limits of friction in the slide: where it wedges the block, and where the block turns round."""
 LINE = ("slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
 
 
@@ -79,6 +83,11 @@ def _closed() -> Rows:
         Row(dyad_rpr.rpr_transmission_angle, ("transmission_angle",)),
         Row(planar.product, ("slide_velocity",), ("omega2", "ratio_slide")),
     ]
+
+
+def grip() -> Rows:
+    """Return the row of the signal that is positive where friction does not wedge the block."""
+    return [Row(coulomb.grip, ("grip",), ("slide_squared", "offset", "friction"))]
 
 
 def forces() -> Rows:

@@ -5,7 +5,7 @@ The guide is on the ground or on a link that has its place: O is the origin of i
 
 from __future__ import annotations
 
-from linksweep.engine.quantity import Row
+from linksweep.engine.quantity import Limit, Row
 from linksweep.mechanisms.dyads.rrr import Certain, Rows, full
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
@@ -18,6 +18,10 @@ CERTAIN_ON_CRANK: Certain = {
 }
 CERTAIN: Certain = {"low": "rod_length", "high": "rod_length", "rod_across": "rod_length"}
 FOUND: Certain = {"Cx_lo": "rod_length", "Cy_lo": "rod_length"}
+TOGGLE = Limit("C", ("low", "high"), ("low_noise", "high_noise"))
+"""Limit of the dyad's motion."""
+SLIDE = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")
+"""Limits of friction in the guide: where it wedges the slider, and where the slider turns round."""
 GUIDE = ("guide_cos", "guide_sin")
 ROD = ("rod_along", "rod_across", "inverse_rod_along")
 
@@ -119,6 +123,15 @@ def _closed() -> Rows:
             ("Cx_lo", "Cy_lo"),
             ("B_missing", "guide_missing", "r3x", "r3y", "minus_guide_sin", "guide_cos"),
         ),
+    ]
+
+
+def grip() -> Rows:
+    """Return the rows of the signal that is positive where friction does not wedge the slider."""
+    return [
+        Row(planar.product, ("along_squared",), ("low", "high")),
+        Row(coulomb.grip, ("grip",), ("along_squared", "rod_across", "friction")),
+        Row(planar.product, ("grip_noise",), ("low_noise", "rod_length")),
     ]
 
 

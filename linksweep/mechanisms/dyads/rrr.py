@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linksweep.engine.quantity import Row, Total
+from linksweep.engine.quantity import Limit, Row, Total
 from linksweep.mechanisms.rows.bodies import Source
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import crank_driven
@@ -11,6 +11,8 @@ from linksweep.physics.closures import crank_angle, dyad_rrr, four_bar, pins
 
 Rows = list[Row | Total]
 Certain = dict[str, Source]
+TOGGLE = Limit("C", ("low", "high"), ("low_noise", "high_noise"))
+"""Limit of the dyad's motion."""
 CERTAIN_ON_CRANK: Certain = {
     **dict.fromkeys(("psi_cos", "psi_cos_lo", "psi_sin", "low", "high", "versine", "vercosine"), 1.0),
     **dict.fromkeys(("least_low", "least_high"), "sums_unit"),

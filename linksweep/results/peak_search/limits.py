@@ -126,8 +126,9 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
 def limits_of(unloaded: Scene) -> tuple[dict[str, int], Limits]:
     """Return the limits of designs, row-major over those dims that they depend on, with the dims' sizes."""
     limits = unloaded.table.limits
-    dims = plan(unloaded.table, signals_of(limits), unloaded.inputs.forms).loops
-    sizes = {dim: n for dim, n in unloaded.inputs.sizes.items() if dim in dims}
+    inputs = unloaded.at_one_angle.inputs
+    dims = plan(unloaded.table, signals_of(limits), inputs.forms).loops
+    sizes = {dim: n for dim, n in inputs.sizes.items() if dim in dims}
     return sizes, find_limits(unloaded, limits, different_designs(unloaded, signals_of(limits)))
 
 
