@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
+import numpy as np
+
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, PairField, declared, field_problems, of_kind, word
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
-from linksweep.base.validate import Number, Rule, did_you_mean, is_array, name_problems, quote, refuse
+from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
 from linksweep.mechanisms.chain.chain import Shape
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
@@ -185,6 +187,14 @@ class Linkage(Machine):
     @property
     def both_branches(self) -> dict[str, str]:
         return {f"branch_{name}": f"branch.{name}" for name, branch in self.branch.items() if branch == "both"}
+
+    @property
+    def frictions(self) -> dict[str, Number]:
+        return {f"{name}_friction": guide.friction for name, guide in self.guides.items()}
+
+    @property
+    def rubbing(self) -> tuple[str, ...]:
+        return tuple(name for name, g in self.guides.items() if is_lazy(g.friction) or np.any(g.friction))
 
     def parameters(self) -> dict[str, Any]:
         return self._numbers_of_parts() | self._numbers_of_places()

@@ -61,7 +61,16 @@ class Machine(Mechanism):
         return {"drive": self.drives}
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        return self.chain.table(drive, loads)
+        return self.chain.table(drive, loads, frozenset(self.rubbing))
+
+    @property
+    def rubbing(self) -> tuple[str, ...]:
+        """Names of the guides with friction."""
+        return ()
+
+    def kinks(self) -> tuple[str, ...]:
+        """Return the normal forces of slides, with which friction changes sides."""
+        return tuple(f"{force_name(*pair)}n" for pair in self.chain.topology.slides.values()) if self.rubbing else ()
 
     def kinematics(self) -> tuple[str, ...]:
         return self.chain.kinematics
