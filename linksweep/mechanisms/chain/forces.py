@@ -161,8 +161,8 @@ class Forces:
             for axis in "xy":
                 if role == support:
                     terms = tuple(f"{push}{axis}" for push in pushes.values())
-                    self.rows.append(Total(f"-{name}{axis}", terms))
-                    self.row(planar.opposite, (f"{name}{axis}",), f"-{name}{axis}")
+                    self.rows.append(Total(f"borne_{name}{axis}", terms))
+                    self.row(planar.opposite, (f"{name}{axis}",), f"borne_{name}{axis}")
                 else:
                     turn = planar.opposite if carrier == GROUND else planar.identity
                     self.row(turn, (f"{name}{axis}",), f"{pushes[role]}{axis}")
