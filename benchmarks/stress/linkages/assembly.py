@@ -9,14 +9,20 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from benchmarks.stress.decimals import Array, Number, Vector, directions, exactly
 from benchmarks.stress.linkages.constraints import GROUND, ORIGIN, Apart, Constraint, Frame, OnLine, Pin, Turned
 from benchmarks.stress.linkages.machine import Element, Linkages
 
-ALONG = Vector(1, 0)
 Line = tuple[str, Vector, Vector, Number]
 """Body of a line, a point and a direction of the line in its axes, coefficient of friction."""
+
+
+def length_spline(lengths: Array) -> CubicSpline:
+    """Return the periodic splines over the angle [degree] through lengths (designs, angles) at equal steps."""
+    angles = np.linspace(0.0, 360.0, lengths.shape[1] + 1)
+    return CubicSpline(angles, np.append(lengths, lengths[:, :1], axis=1), axis=1, bc_type="periodic")
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Assembly:
 
     @cached_property
     def driver(self) -> Turned:
-        return Turned(GROUND, self.linkages.crank, self.direction(self.linkages.theta2), target=True)
+        return Turned(GROUND, self.linkages.crank, self.direction(self.linkages.theta2), target=True, drives=True)
 
     def _pins(self) -> Iterator[Pin]:
         for pin in {pin: None for body in self.linkages.bodies for pin in body.pins}:
@@ -141,7 +147,17 @@ class Assembly:
         """Return a cylinder between the links that carry its pins; of length 0 where it follows."""
         i, j = (self.linkages.carriers(pin)[0] for pin in cylinder.ends)
         P, Q = cylinder.ends
-        return Apart(i, self.pin(i, P), j, self.pin(j, Q), self.part(cylinder.role, "length"), cylinder.role)
+        return Apart(i, self.pin(i, P), j, self.pin(j, Q), self.length(cylinder.role), cylinder.role)
+
+    def length(self, role: str) -> tuple[Number, Number, Number]:
+        """Return a cylinder's length and its derivatives by the crank's angle; it may be a spline through some lengths
+        over a turn."""
+        lengths = np.asarray(self.linkages.parts.get(role, {}).get("length", 0.0))
+        if lengths.ndim < 2:
+            return self.exact(lengths), 0, 0
+        spline = length_spline(lengths)
+        value, slope, curvature = (spline(self.linkages.theta2, k) * np.degrees(1.0) ** k for k in range(3))
+        return self.exact(value), self.exact(slope), self.exact(curvature)
 
     # ---- start of Newton's method
 

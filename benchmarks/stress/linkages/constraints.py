@@ -1,12 +1,12 @@
 """Bodies in the plane and the constraints between them, in maximal coordinates: x, y of each centre of gravity, angle.
 
 Each constraint has its value, which vanishes where it holds; the generalised forces of its unit multipliers, which are
-also its gradient; and its second derivative in time. Numbers are floats or decimals, single or arrays.
+also its gradient; its second derivative in time; and what drives it. Numbers are floats or decimals, single or arrays.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -72,6 +72,9 @@ class Pin:
 
     rows: ClassVar[int] = 2
 
+    def driven(self, omega2: Number, alpha2: Number) -> list[tuple[Number, Number]]:
+        return [(0, 0), (0, 0)]
+
     def value(self, frames: Frames) -> list[Number]:
         return [*(frames[self.j].at(self.at_j) - frames[self.i].at(self.at_i))]
 
@@ -100,6 +103,9 @@ class OnLine:
     friction: Number = 0
 
     rows: ClassVar[int] = 1
+
+    def driven(self, omega2: Number, alpha2: Number) -> list[tuple[Number, Number]]:
+        return [(0, 0)]
 
     def axes(self, frames: Frames) -> tuple[Vector, Vector]:
         """Return the line's direction, and the vector from its point to that of j."""
@@ -139,7 +145,8 @@ class OnLine:
 class Turned:
     """The angle of j is that of i times a ratio, plus a constant; its multiplier is the torque on j.
 
-    `direction` is that of j in the axes of i, or in the ground's where `target` is true.
+    `direction` is that of j in the axes of i, or in the ground's where `target` is true; `drives` is true of the
+    crank's own angle.
     """
 
     i: str
@@ -147,8 +154,13 @@ class Turned:
     direction: Vector
     ratio: Number = 1
     target: bool = False
+    drives: bool = False
 
     rows: ClassVar[int] = 1
+
+    def driven(self, omega2: Number, alpha2: Number) -> list[tuple[Number, Number]]:
+        """Return the first and second derivatives in time of the crank's angle; zeros for other angles."""
+        return [(omega2, alpha2)] if self.drives else [(0, 0)]
 
     def value(self, frames: Frames) -> list[Number]:
         base = self.direction if self.target else self.direction.turned(frames[self.i].u)
@@ -164,23 +176,31 @@ class Turned:
 
 @dataclass(frozen=True)
 class Apart:
-    """Two points of i and j are a length apart; its multiplier times the length is the force that pushes them apart."""
+    """Two points of i and j are a length apart; its multiplier times the length is the force that pushes them apart.
+
+    `length` has its first and second derivatives by the crank's angle [rad] with it.
+    """
 
     i: str
     at_i: Vector
     j: str
     at_j: Vector
-    length: Number = 0
+    length: Sequence[Number] = (0, 0, 0)
     role: str = ""
 
     rows: ClassVar[int] = 1
+
+    def driven(self, omega2: Number, alpha2: Number) -> list[tuple[Number, Number]]:
+        """Return the first and second derivatives in time of half the length's square."""
+        length, slope, curvature = self.length
+        return [(length * slope * omega2, (slope * slope + length * curvature) * omega2**2 + length * slope * alpha2)]
 
     def line(self, frames: Frames) -> Vector:
         return frames[self.j].at(self.at_j) - frames[self.i].at(self.at_i)
 
     def value(self, frames: Frames) -> list[Number]:
         w = self.line(frames)
-        return [(w.dot(w) - self.length * self.length) / 2]
+        return [(w.dot(w) - self.length[0] * self.length[0]) / 2]
 
     def pushes(self, frames: Frames) -> list[Push]:
         w = self.line(frames)

@@ -134,24 +134,22 @@ def _displaced(frame: Frame, dx: Array, dy: Array, angle: Array) -> Frame:
 
 
 def moving(assembly: Assembly, frames: Frames) -> Frames:
-    """Return the frames with their velocities: nothing but the crank is driven."""
-    omega2 = assembly.exact(assembly.linkages.omega2)
-    rates = Matrix(assembly, pushes(assembly, frames)).solve(_driven(assembly, omega2))
+    """Return the frames with their velocities."""
+    rates = Matrix(assembly, pushes(assembly, frames)).solve(_driven(assembly, 0))
     return _with(assembly, frames, rates, "v", "omega")
 
 
 def accelerating(assembly: Assembly, frames: Frames) -> Frames:
     """Return the frames with their accelerations."""
-    alpha2 = assembly.exact(assembly.linkages.alpha2)
     second = [value for constraint in assembly.constraints for value in constraint.second(frames)]
-    rhs = [driven - value for driven, value in zip(_driven(assembly, alpha2), second, strict=True)]
+    rhs = [driven - value for driven, value in zip(_driven(assembly, 1), second, strict=True)]
     return _with(assembly, frames, Matrix(assembly, pushes(assembly, frames)).solve(rhs), "a", "alpha")
 
 
-def _driven(assembly: Assembly, rate: Array) -> list[Array]:
-    """Return the rate of the last constraint, the crank's angle, and zeros for the others."""
-    rows = 3 * len(assembly.linkages.bodies)
-    return [assembly.exact(0.0)] * (rows - 1) + [rate]
+def _driven(assembly: Assembly, order: int) -> list[Number]:
+    """Return the first (0) or second (1) derivatives in time of what drives the constraints."""
+    omega2, alpha2 = assembly.exact(assembly.linkages.omega2), assembly.exact(assembly.linkages.alpha2)
+    return [both[order] for constraint in assembly.constraints for both in constraint.driven(omega2, alpha2)]
 
 
 def _with(assembly: Assembly, frames: Frames, values: Sequence[Array], vector: str, turning: str) -> Frames:

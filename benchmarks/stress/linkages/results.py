@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.stress.decimals import Array, Number, Vector, fifty_digits, root
+from benchmarks.stress.decimals import Array, Number, Vector, exactly, fifty_digits, root
 from benchmarks.stress.linkages.constraints import GROUND, Apart, Constraint, OnLine, Pin, Turned
 from benchmarks.stress.linkages.multibody import Solution
 
@@ -14,7 +14,7 @@ Results = dict[str, Array]
 
 
 def named(solution: Solution) -> Results:
-    """Return kinematics, forces and the drive's torque or force by name; directions as `theta3_x`, `theta3_y`."""
+    """Return kinematics, forces and the drive's torque or force by name; angles alone are rounded to floats."""
     with fifty_digits():
         return kinematics(solution) | forces(solution) | {"power": drive_power(solution)}
 
@@ -23,16 +23,14 @@ def kinematics(solution: Solution) -> Results:
     assembly, frames = solution.assembly, solution.frames
     linkages = assembly.linkages
     results: Results = {}
-    for role, k in list(linkages.number.items())[1:]:
-        frame = frames[role]
-        results |= _vector(f"theta{k}_", frame.u) | {f"omega{k}": frame.omega, f"alpha{k}": frame.alpha}
+    for body in linkages.bodies:
+        k, frame = linkages.number[body.role], frames[body.role]
+        if not body.slides:
+            results |= {f"theta{k}": _angle(frame.u), f"omega{k}": frame.omega, f"alpha{k}": frame.alpha}
     for pin in linkages.pins:
         role = linkages.carriers(pin)[0]
         if role != GROUND:
-            local = assembly.pin(role, pin)
-            vectors = frames[role].at(local), frames[role].velocity(local), frames[role].acceleration(local)
-            for name, vector in zip(("", "v", "a"), vectors, strict=True):
-                results |= _vector(f"{name}{pin}", vector)
+            results |= _vector(pin, frames[role].at(assembly.pin(role, pin)))
     for line in (c for c in assembly.constraints if isinstance(c, OnLine)):
         if next(body for body in linkages.bodies if body.role == line.j).slides:
             names = (f"{letter}_{line.j}" for letter in "xva")
@@ -48,6 +46,9 @@ def forces(solution: Solution) -> Results:
     results: Results = {}
     for constraint, values in by_constraint(solution):
         results |= WAYS_OF_FORCES[type(constraint)](solution, constraint, *values)
+    for constraint, (value, *_) in by_constraint(solution):
+        if isinstance(constraint, Turned) and constraint.j in solution.assembly.ratios:
+            results |= _meshed(solution, constraint, value, results)
     return results
 
 
@@ -89,7 +90,7 @@ def _moment(solution: Solution, turned: Turned, torque: Array) -> Results:
     if turned is solution.assembly.driver:
         return _drive(solution, torque)
     if turned.target:  # gears
-        return {f"torque_{turned.j}": torque}
+        return {}
     digits, reported = between(solution, turned.i, turned.j)
     return {f"T{digits}": torque * reported}
 
@@ -102,6 +103,35 @@ def _drive(solution: Solution, value: Array) -> Results:
     }
 
 
+def _meshed(solution: Solution, gears: Turned, torque: Array, results: Results) -> Results:
+    """Return the forces on the pivots of two wheels whose teeth push with a pressure angle, at the pitch point.
+
+    There, at t of the way from pivot to pivot, both wheels have one velocity: t = ratio (t - 1). Along the line of
+    pivots the teeth push external gears apart, and a pinion out of the ring that it runs in.
+    """
+    assembly, wheels = solution.assembly, (gears.i, gears.j)
+    angle = assembly.linkages.gears.get(gears.j, {}).get("pressure_angle")
+    if angle is None:
+        return {}
+    pivots = (
+        {*body.pins} & {*assembly.linkages.ground}
+        for role in wheels
+        for body in assembly.linkages.bodies
+        if body.role == role
+    )
+    A, D = (assembly.pin(GROUND, pin) for (pin,) in pivots)
+    line, slope = D - A, assembly.direction(angle)
+    pitch = gears.ratio / (gears.ratio - 1)
+    across = torque / ((pitch - 1) * line.dot(line))  # over the pivots' distance
+    force = line.left * across + line * (abs(across) * slope.y / slope.x * (-1 if np.all(gears.ratio > 0) else 1))
+    changed: Results = {}
+    for role, sign in zip(wheels, (1, -1), strict=True):
+        name = f"F{assembly.linkages.force(1, assembly.linkages.number[role])[1:]}"
+        pivot = Vector(results[f"{name}x"], results[f"{name}y"]) + force * sign
+        changed |= _vector(name, pivot) | {name: root(pivot.dot(pivot))}
+    return changed
+
+
 def _cylinder_force(solution: Solution, apart: Apart, multiplier: Array) -> Results:
     return {f"force_{apart.role}": multiplier * apart.lengthening(solution.frames)[0]}
 
@@ -111,6 +141,10 @@ WAYS_OF_FORCES = {Pin: _pin_force, OnLine: _line_force, Turned: _moment, Apart: 
 
 def _vector(name: str, vector: Vector) -> Results:
     return {f"{name}x": vector.x, f"{name}y": vector.y}
+
+
+def _angle(u: Vector) -> Array:
+    return exactly(np.degrees(np.arctan2(*(part.astype(float) for part in reversed(u)))))
 
 
 # ---- energy
@@ -127,7 +161,7 @@ def drive_power(solution: Solution) -> Number:
 
 
 def power_terms(solution: Solution) -> list[Number]:
-    """Return powers that sum to zero: of drive, loads, weights and friction, less the rate of kinetic energy."""
+    """Return powers that sum to zero: of drive, cylinders, loads and friction, less the rate of kinetic energy."""
     with fifty_digits():
         assembly, frames = solution.assembly, solution.frames
         terms = [drive_power(solution)]
@@ -140,4 +174,6 @@ def power_terms(solution: Solution) -> list[Number]:
         for constraint, (value, *_) in by_constraint(solution):
             if isinstance(constraint, OnLine):
                 terms.append(-constraint.friction * abs(value) * abs(constraint.sliding(frames)[1]))
+            if isinstance(constraint, Apart):
+                terms.append(value * constraint.length[0] * constraint.lengthening(frames)[1])
         return terms

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.stress.decimals import Array
+from benchmarks.stress.linkages.assembly import length_spline
 from benchmarks.stress.linkages.machine import Linkages, element
 
 SIDE = {"open": 1, "crossed": -1}
@@ -112,6 +113,8 @@ class Sketch:
         """Draw the pin of a second crank geared to the first."""
         phase = self.uniform(-180.0, 180.0)
         self.gears[role] = {"phase": phase}
+        if self.random.random() < 0.5:
+            self.gears[role]["pressure_angle"] = self.uniform(14.0, 25.0)
         self.pins[pin] = self.pins[pivot] + self.uniform(0.2, 1.0) * turn(ratio * self.theta2 + phase)
 
     def yoke(self, role: str, guide: str, pin: str) -> None:
@@ -122,8 +125,12 @@ class Sketch:
         self.parts[role] = {"slot_angle": self.uniform(35.0, 145.0)}
 
     def cylinder(self, role: str, first: str, second: str) -> None:
-        """Hold a cylinder at the distance of two pins."""
-        self.parts[role] = {"length": abs(self.pins[second] - self.pins[first])}
+        """Hold a cylinder at the distance of two pins, or move it over the turn."""
+        length = abs(self.pins[second] - self.pins[first])
+        if self.random.random() < 0.5:
+            around = self.random.uniform(0.9, 1.1, (self.n, 8))
+            length = around * (length / length_spline(around)(self.theta2))[:, None]
+        self.parts[role] = {"length": length}
 
     # ---- the whole
 

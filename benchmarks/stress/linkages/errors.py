@@ -1,0 +1,101 @@
+"""Compute the errors of linksweep's results for random linkages against the multibody reference."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+import linksweep as ls
+from benchmarks.stress.decimals import Array, exactly, fifty_digits
+from benchmarks.stress.linkages.multibody import Solution
+from benchmarks.stress.linkages.results import Results, named
+from benchmarks.stress.linkages.scene import scene_of
+
+KINDS = {
+    "force": r"F\d.*|force_.*",
+    "torque": r"T\d.*",
+    "angle": r"theta\d+",
+    "rate": r"omega\d+",
+    "second rate": r"alpha\d+",
+    "velocity": r"v.*|rate_.*",
+    "acceleration": r"a.*",
+    "position": r".*",
+}
+"""Kinds of results by their names."""
+OF_THE_SCENE = {"theta2", "omega2", "alpha2", "power"}
+"""Results of the reference that are no quantities, or are another's."""
+
+
+class Errors(NamedTuple):
+    """Errors of the designs whose status is ok, the number of those whose status is wrong or whose values are none, and
+    the results of the reference that linksweep does not have.
+
+    Each number's error is relative to the largest of its kind in the machine: forces and torques to the largest force,
+    and it times the longest length. `bound` is the largest force's over `error_bound`.
+    """
+
+    designs: int
+    force: Array
+    torque: Array
+    motion: Array
+    bound: Array
+    power: Array
+    wrong: int
+    missing: frozenset[str]
+
+
+def errors_of(solution: Solution) -> Errors:
+    """Return the errors of linksweep's results for solved linkages."""
+    scene, exact = scene_of(solution.assembly.linkages), named(solution)
+    names = [name for name in exact if name in scene.table.quantity.keys() - OF_THE_SCENE]
+    cycle = ls.sweep(scene, [solution.assembly.linkages.theta2], of=[*names, "error_bound", "power_residual"])
+    status = _values(cycle, "status", solution)
+    ok = (solution.status == 0) & (status == 0)
+    scales = _scales(exact)
+    errors = {name: (_error(name, _values(cycle, name, solution), exact) / scales[kind(name)])[ok] for name in names}
+    force, torque = (_largest(errors, kind) for kind in ({"force"}, {"torque"}))
+    motion = _largest(errors, KINDS.keys() - {"force", "torque"})
+    bound, power = (_values(cycle, name, solution)[ok] for name in ("error_bound", "power_residual"))
+    none = ~np.isfinite(force + torque + motion + bound + power)
+    wrong = int((status != solution.status).sum() + none.sum())
+    missing = frozenset(exact.keys() - {*names} - OF_THE_SCENE)
+    return Errors(len(ok), force, torque, motion, force / bound, np.abs(power), wrong, missing)
+
+
+def kind(name: str) -> str:
+    return next(kind for kind, pattern in KINDS.items() if re.fullmatch(pattern, name))
+
+
+def _values(cycle: xr.Dataset, name: str, solution: Solution) -> Array:
+    values = cycle[name]
+    return np.broadcast_to(values.isel(theta2=0) if "theta2" in values.dims else values, len(solution.status))
+
+
+def _error(name: str, values: Array, exact: Results) -> Array:
+    """Return the absolute error; of an angle [rad]."""
+    with fifty_digits():
+        error = abs(exactly(values) - exact[name]).astype(float)
+    return np.radians(np.minimum(error, np.abs(360.0 - error))) if kind(name) == "angle" else error
+
+
+def _largest(errors: Mapping[str, Array], kinds: set[str]) -> Array:
+    return np.max([error for name, error in errors.items() if kind(name) in kinds], axis=0)
+
+
+def _scales(exact: Results) -> dict[str, Array]:
+    """Return the largest number of each kind; of motions at least that of the longest length at the highest rate."""
+    size = {one: np.zeros(len(exact["omega2"])) for one in KINDS}
+    for name, values in exact.items():
+        size[kind(name)] = np.maximum(size[kind(name)], np.abs(values.astype(float)))
+    rates = size["rate"] ** 2 + size["second rate"]
+    return size | {
+        "torque": np.maximum(size["torque"], size["force"] * size["position"]),
+        "angle": np.ones_like(rates),
+        "second rate": rates,
+        "velocity": size["rate"] * size["position"],
+        "acceleration": rates * size["position"],
+    }
