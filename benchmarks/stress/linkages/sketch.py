@@ -85,7 +85,8 @@ class Sketch:
         self.guides[name] = {"through": (through.real, through.imag), "angle": angle, **self.friction()}
 
     def friction(self) -> dict[str, Any]:
-        return {"friction": self.uniform(0.0, 0.3)} if self.random.random() < 0.6 else {}
+        most = self.random.choice([0.0, 0.3, 1.0])
+        return {"friction": self.uniform(0.0, most)} if most else {}
 
     def line_through(self, role: str, pivot: str, end: str, pin: str, branch: str) -> None:
         """Draw a link pivot-end whose line, which may be off its line of pins, passes through a known pin."""

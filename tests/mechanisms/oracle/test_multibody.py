@@ -124,7 +124,7 @@ def test_energy_is_conserved(name, seed):
     terms, ok = power_terms(solution), solution.status == 0
     with fifty_digits():
         balance = abs(sum(terms))[ok]
-        assert len(balance) > 2
+        assert len(balance) > 1
         assert np.all(balance <= np.max([abs(term) for term in terms], axis=0)[ok] * Decimal("1e-44"))
 
 
