@@ -14,19 +14,19 @@ from benchmarks.stress.decimals import Array
 from benchmarks.stress.linkages.errors import Errors, errors_of
 from benchmarks.stress.linkages.multibody import Solution
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import TOPOLOGIES
+from benchmarks.stress.linkages.topologies import FAMILIES
 
 RESULTS = Path(__file__).parents[2] / "LINKAGES.md"
 AT_ONCE = 50
 """Designs of one crank angle, drive, branches and kinds of loads."""
 GOALS = {"force": 1e-12, "torque": 1e-12, "motion": 1e-12, "bound": 1.0, "power": 1e-12}
-HEADER = ("topology", "designs", "ok", "forces", "torques", "motion", "error / bound", "power", "wrong")
+HEADER = ("linkages", "designs", "ok", "forces", "torques", "motion", "error / bound", "power", "wrong")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Check random linkages of every topology and print their figures; return 1 where a goal is missed."""
+    """Check random linkages of every family and print their figures; return 1 where a goal is missed."""
     options = _parser().parse_args(arguments)
-    names = [name for name in TOPOLOGIES if options.only in name]
+    names = [name for name in FAMILIES if options.only in name]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         errors = {name: checked(name, options.designs, options.seed) for name in names}
@@ -40,19 +40,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def checked(name: str, designs: int, seed: int) -> Errors:
-    """Return the errors of so many linkages of a topology."""
+    """Return the errors of so many linkages of a family."""
     return joined(list(map(errors_of, solutions(name, designs, seed))))
 
 
 def solutions(name: str, designs: int, seed: int, at_once: int = AT_ONCE) -> Iterator[Solution]:
     """Draw and solve linkages, part by part."""
     for part, first in enumerate(range(0, designs, at_once)):
-        random = np.random.default_rng([seed, list(TOPOLOGIES).index(name), part])
-        yield drawn(TOPOLOGIES[name], random, min(at_once, designs - first))
+        random = np.random.default_rng([seed, list(FAMILIES).index(name), part])
+        yield drawn(FAMILIES[name], random, min(at_once, designs - first))
 
 
 def missed(name: str, errors: Errors) -> list[str]:
-    """Return the goals that a topology misses."""
+    """Return the goals that a family misses."""
     worst = {figure: _worst(getattr(errors, figure)) for figure in GOALS}
     problems = [
         f"{name}: {figure} {worst[figure]:.2g} > {goal:g}" for figure, goal in GOALS.items() if worst[figure] > goal
@@ -62,7 +62,7 @@ def missed(name: str, errors: Errors) -> list[str]:
 
 
 def table(errors: Mapping[str, Errors]) -> str:
-    """Return a Markdown table with a row per topology: largest errors."""
+    """Return a Markdown table with a row per family: largest errors."""
     rows = [HEADER, tuple("---" for _ in HEADER), *(_cells(name, of) for name, of in errors.items())]
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
@@ -85,9 +85,9 @@ def joined(parts: Sequence[Errors]) -> Errors:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.stress.linkages", description="Random linkages.")
-    parser.add_argument("--designs", type=int, default=100, metavar="N", help="of each topology")
+    parser.add_argument("--designs", type=int, default=100, metavar="N", help="of each family")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", default="", metavar="WORD", help="topologies with this word in their name")
+    parser.add_argument("--only", default="", metavar="WORD", help="families with this word in their name")
     parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/LINKAGES.md")
     return parser
 

@@ -12,7 +12,7 @@ from benchmarks.stress.decimals import Array, fifty_digits
 from benchmarks.stress.linkages.machine import Damper, Linkages, Load, Spring, TorsionDamper
 from benchmarks.stress.linkages.multibody import Matrix, Solution, pushes, solve
 from benchmarks.stress.linkages.sketch import Sketch
-from benchmarks.stress.linkages.topologies import Topology
+from benchmarks.stress.linkages.topologies import Family
 
 LARGEST_CONDITION = 1e3
 """Condition of the scaled matrices of motion and of forces up to which linkages are away from toggles and jamming."""
@@ -20,20 +20,20 @@ FASTEST = 30.0
 """Largest rate of a link, of that of the crank."""
 
 
-def drawn(topology: Topology, random: np.random.Generator, n: int) -> Solution:
+def drawn(family: Family, random: np.random.Generator, n: int) -> Solution:
     """Return n solved linkages at one crank angle, away from toggles and from jamming."""
     sketch = Sketch(random, 2 * n)
-    topology.draw(sketch)
-    solution = solve(completed(sketch, topology))
+    family.topology.draw(sketch)
+    solution = solve(completed(sketch, family))
     good = np.flatnonzero(away(solution))[:n]
     if len(good) < n:
         raise ValueError(f"{len(good)} of {2 * n} linkages are away from toggles")
     return solve(chosen(solution.assembly.linkages, good))
 
 
-def completed(sketch: Sketch, topology: Topology) -> Linkages:
+def completed(sketch: Sketch, family: Family) -> Linkages:
     """Return the sketched linkages with masses, motion and loads."""
-    linkages, random = sketch.linkages(topology.text), sketch.random
+    linkages, random = sketch.linkages(family.topology.text), sketch.random
     omega2 = 10.0 ** random.uniform(-1.0, 3.0) * sketch.uniform(0.5, 1.0) * random.choice([-1.0, 1.0])
     parts = {
         body.role: _massive(sketch, linkages.parts.get(body.role, {}), bool(body.guide)) for body in linkages.bodies
@@ -44,7 +44,7 @@ def completed(sketch: Sketch, topology: Topology) -> Linkages:
         omega2=omega2,
         alpha2=omega2**2 * sketch.uniform(-2.0, 2.0) * random.integers(0, 2),
         gravity=_gravity(sketch, omega2),
-        drive=str(random.choice(topology.drives)) if random.random() < 0.4 else "",
+        drive=family.drive,
     )
     count = int(random.integers(0, 5))
     return replace(linkages, loads=tuple(_load(sketch, linkages, omega2) for _ in range(count)))

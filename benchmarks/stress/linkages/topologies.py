@@ -16,6 +16,13 @@ class Topology(NamedTuple):
     drives: tuple[str, ...] = ()
 
 
+class Family(NamedTuple):
+    """Random linkages of a topology, driven by one of its links or cylinders; "" is the crank."""
+
+    topology: Topology
+    drive: str = ""
+
+
 def four_bar(sketch: Sketch) -> None:
     sketch.crank()
     sketch.ground("D", "B")
@@ -139,3 +146,10 @@ TOPOLOGIES = {
     ),
     "geared five-bar": Topology("crank A-B, wheel D-E : -2 crank, left B-C, right E-C", geared_five_bar, ("wheel",)),
 }
+
+FAMILIES = {name: Family(topology) for name, topology in TOPOLOGIES.items()} | {
+    f"{name}, {drive} drives": Family(topology, drive)
+    for name, topology in TOPOLOGIES.items()
+    for drive in topology.drives
+}
+"""Families of random linkages by name: the topologies, and those with another drive than the crank."""

@@ -15,7 +15,7 @@ from benchmarks.stress.decimals import fifty_digits
 from benchmarks.stress.linkages import multibody, scenes
 from benchmarks.stress.linkages.machine import Linkages, Load
 from benchmarks.stress.linkages.results import named, power_terms
-from benchmarks.stress.linkages.topologies import TOPOLOGIES
+from benchmarks.stress.linkages.topologies import FAMILIES, TOPOLOGIES
 
 TIGHT = mp.mpf("1e-28")
 
@@ -114,11 +114,11 @@ def test_inverted_slider_crank_with_friction(seed):
 
 def solved(name, seed, n=6):
     """Return linkages of a topology away from toggles and jamming, with masses, loads, and friction in its slides."""
-    return scenes.drawn(TOPOLOGIES[name], np.random.default_rng(seed), n)
+    return scenes.drawn(FAMILIES[name], np.random.default_rng(seed), n)
 
 
-@pytest.mark.parametrize("seed", [2, 3])
-@pytest.mark.parametrize("name", TOPOLOGIES)
+@pytest.mark.parametrize("seed", [2])
+@pytest.mark.parametrize("name", FAMILIES)
 def test_energy_is_conserved(name, seed):
     solution = solved(name, seed)
     terms, ok = power_terms(solution), solution.status == 0
