@@ -68,11 +68,16 @@ class Assembly:
         return self.vector(x, y) - self.vector(*pivot)
 
     def line(self, name: str) -> Line:
-        """Return a guide, or the line of pins of a link for which no guide is stated."""
+        """Return a guide, or the line of pins of a link for which no guide is stated.
+
+        Its point is the foot of the origin of its axes: A, or the first pin of its link.
+        """
         guide = self.linkages.guides.get(name, {"of": name})
         of, through = guide.get("of", GROUND), guide.get("through", (0.0, 0.0))
-        point = self.from_crank_pivot(*through) if of == GROUND else self.vector(*through) - self.centre[of]
-        return of, point, self.direction(guide.get("angle", 0.0)), self.exact(guide.get("friction", 0.0))
+        point = self.from_crank_pivot(*through) if of == GROUND else self.vector(*through)
+        u, friction = self.direction(guide.get("angle", 0.0)), self.exact(guide.get("friction", 0.0))
+        foot = u.left * point.dot(u.left)
+        return of, foot if of == GROUND else foot - self.centre[of], u, friction
 
     # ---- constraints
 
