@@ -79,6 +79,16 @@ class Sketch:
         rod = np.degrees(np.angle((self.pins[pin] - self.pins[first]) * self.choose(pin)))
         self.guide(guide, pin, rod + self.uniform(-60.0, 60.0))
 
+    def rrp_on_link(self, pin: str, first: str, role: str, start: str, end: str) -> None:
+        """Draw a pin of a rod from a known pin, on a new guide that a link start-end carries."""
+        self.pins[pin] = self.around(first)
+        rod, line = self.pins[pin] - self.pins[first], self.pins[end] - self.pins[start]
+        axes = line / abs(line)
+        direction = self.choose(pin) * rod / abs(rod) * turn(self.uniform(-60.0, 60.0)) / axes
+        through = (self.pins[pin] - self.pins[start]) / axes + self.uniform(-1.0, 1.0) * direction
+        angle = np.degrees(np.angle(direction))
+        self.guides[role] = {"of": role, "through": (through.real, through.imag), "angle": angle, **self.friction()}
+
     def guide(self, name: str, pin: str, angle: Array) -> None:
         """Draw a guide of the ground through a pin, with a friction that may be none."""
         through = self.pins[pin] + self.uniform(-1.0, 1.0) * turn(angle)

@@ -68,6 +68,28 @@ def knuckle_press(sketch: Sketch) -> None:
     sketch.rrp("E", "C", "slide")
 
 
+def other_orders(sketch: Sketch) -> None:
+    """Known pins are second or third of their links, and so are those that dyads find."""
+    four_bar(sketch)
+    sketch.carried("E", "C", "B")
+    sketch.ground("F", "E")
+    sketch.rrr("G", "E", "F")
+    sketch.carried("H", "G", "F")
+
+
+def block_on_coupler(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.ground("G", "C")
+    sketch.rrp_on_link("F", "G", "coupler", "B", "C")
+
+
+def arm_past_coupler(sketch: Sketch) -> None:
+    four_bar(sketch)
+    sketch.carried("E", "B", "C")
+    sketch.ground("G", "E")
+    sketch.line_through("arm", "G", "H", "E", "arm")
+
+
 def shaper(sketch: Sketch) -> None:
     """A block of mass on the crank's pin slides along the arm."""
     sketch.crank()
@@ -131,6 +153,15 @@ TOPOLOGIES = {
     ),
     "knuckle-joint press": Topology(
         "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide", knuckle_press, ("upper",)
+    ),
+    "pins in other orders": Topology(
+        "crank A-B, coupler C-B-E, rocker C-D, left G-E, right H-G-F", other_orders, ("rocker", "right")
+    ),
+    "block on a coupler": Topology(
+        "crank A-B, coupler B-C, rocker D-C, rod G-F, block F on coupler", block_on_coupler, ("rocker", "rod")
+    ),
+    "arm past a coupler": Topology(
+        "crank A-B, coupler B-C-E, rocker D-C, arm G-H past E", arm_past_coupler, ("rocker", "arm")
     ),
     "shaper with a block of mass": Topology(
         "crank A-B, block B on arm, arm D-E, rod E-F, ram F on slide", shaper, ("arm",)
