@@ -26,6 +26,8 @@ KINDS = {
     "position": r".*",
 }
 """Kinds of results by their names."""
+LEAST = 1e-17
+"""Bound that every machine has."""
 OF_THE_SCENE = {"theta2", "omega2", "alpha2", "power"}
 """Results of the reference that are no quantities, or are another's."""
 
@@ -35,13 +37,14 @@ class Errors(NamedTuple):
     the results of the reference that linksweep does not have.
 
     Each number's error is relative to the largest of its kind in the machine: forces and torques to the largest force,
-    and it times the longest length. `bound` is the largest force's over `error_bound`.
+    and it times the longest length. `over_bound` is the largest force's over `bound`, which is `error_bound`.
     """
 
     designs: int
     force: Array
     torque: Array
     motion: Array
+    over_bound: Array
     bound: Array
     power: Array
     wrong: int
@@ -63,7 +66,8 @@ def errors_of(solution: Solution) -> Errors:
     none = ~np.isfinite(force + torque + motion + bound + power)
     wrong = int((status != solution.status).sum() + none.sum())
     missing = frozenset(exact.keys() - {*names} - OF_THE_SCENE)
-    return Errors(len(ok), force, torque, motion, force / bound, np.abs(power), wrong, missing)
+    over_bound = force / np.maximum(bound, LEAST)
+    return Errors(len(ok), force, torque, motion, over_bound, bound, np.abs(power), wrong, missing)
 
 
 def kind(name: str) -> str:
