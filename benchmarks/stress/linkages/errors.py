@@ -28,8 +28,8 @@ KINDS = {
 """Kinds of results by their names."""
 LEAST = 1e-17
 """Bound that every machine has."""
-OF_THE_SCENE = {"theta2", "omega2", "alpha2", "power"}
-"""Results of the reference that are no quantities, or are another's."""
+OF_THE_SCENE = {"theta2", "omega2", "alpha2"}
+"""Results of the reference that are parameters."""
 
 
 class Errors(NamedTuple):

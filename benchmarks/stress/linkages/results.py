@@ -16,7 +16,7 @@ Results = dict[str, Array]
 def named(solution: Solution) -> Results:
     """Return kinematics, forces and the drive's torque or force by name; angles alone are rounded to floats."""
     with fifty_digits():
-        return kinematics(solution) | forces(solution) | {"power": drive_power(solution)}
+        return kinematics(solution) | forces(solution)
 
 
 def kinematics(solution: Solution) -> Results:

@@ -38,7 +38,7 @@ def as_linkage(text, data, motion, links, theta2, *, ground=0.0, **own):
 def assert_agree(linkages, expected, **also):
     """Compare all results that both name, and those that differ in name."""
     values = named(multibody.solve(linkages))
-    pairs = {name: name for name in expected if name in values and name != "power"} | also
+    pairs = {name: name for name in expected if name in values} | also
     assert {"F12x", "F32y", "F43", "Bx"} <= {*pairs}
     assert {"omega3", "alpha3"} <= {*pairs} or {"omega4", "alpha4"} <= {*pairs}
     assert sum(name[0] == "T" for name in pairs) == 1 + linkages.text.count(" on ")
