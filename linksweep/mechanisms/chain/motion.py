@@ -121,8 +121,9 @@ class Motion:
         role = self.topology.crank
         pivot, pin = self.topology.links[role][:2]
         self.rows += Names("", {"crank_length": f"{role}_length"}, of_pin("B", pin)).placed(crank_pin_rows())
-        words = (f"{role}_length", "cos2", "cos2_lo", "sin2", "sin2_lo")
-        self.row(pins.crank_pin_low_words, (f"{pin}x_lo", f"{pin}y_lo"), *words)
+        words, low_words = (f"{role}_length", "cos2", "cos2_lo", "sin2", "sin2_lo"), (f"{pin}x_lo", f"{pin}y_lo")
+        self.row(pins.crank_pin_low_words, low_words, *words)
+        self.certain |= dict.fromkeys(low_words, f"{role}_length")
         self.bodies[role] = Body(CRANK.number, role, steady=True, ratio=1.0)
         self.frames[role] = Frame(pivot, ("cos2", "sin2", "cos2_lo", "sin2_lo"), (1.0, 0.0, 0.0, 0.0))
         self._carry(role, {pivot, pin})
