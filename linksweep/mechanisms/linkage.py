@@ -15,6 +15,8 @@ from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
 from linksweep.mechanisms.chain.chain import Shape
+from linksweep.mechanisms.chain.drawing import LinkageDrawing
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
@@ -174,6 +176,20 @@ class Linkage(Machine):
         return Shape(
             self.topology, frozenset(step.name for step in self.topology.steps), frozenset(), frozenset(self.guides)
         )
+
+    @cached_property
+    def drawing(self) -> Drawing:  # type: ignore[override]
+        return LinkageDrawing(self.topology, self.ground, self.guides, self.chain.joints).drawing()
+
+    @property
+    def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
+        guides = {role: guide for role, (_, guide) in self.topology.sliders.items()}
+        guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
+        return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
+
+    @property
+    def frictions(self) -> dict[str, Number]:
+        return {f"{name}_friction": self.guides.get(name, Guide()).friction for name in self.topology.hosts}
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
         lengths = {role: self.parts[role].length for role in self.topology.given}
