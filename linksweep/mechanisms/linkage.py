@@ -187,10 +187,6 @@ class Linkage(Machine):
         guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
         return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
 
-    @property
-    def frictions(self) -> dict[str, Number]:
-        return {f"{name}_friction": self.guides.get(name, Guide()).friction for name in self.topology.hosts}
-
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
         lengths = {role: self.parts[role].length for role in self.topology.given}
         sampled = {
