@@ -14,9 +14,7 @@ from linksweep.base.fields import POLAR_POINT, PairField, declared, field_proble
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
-from linksweep.mechanisms.chain.chain import Shape
-from linksweep.mechanisms.chain.drawing import LinkageDrawing
-from linksweep.mechanisms.drawing import Drawing
+from linksweep.mechanisms.chain.motion import Shape
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
@@ -42,7 +40,7 @@ from linksweep.mechanisms.links import (
 )
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
-from linksweep.mechanisms.rows.crank import BRANCH, frame_parameters
+from linksweep.mechanisms.rows.crank import BRANCH, frame_parameters, turned
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Topology, topology
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
@@ -173,22 +171,12 @@ class Linkage(Machine):
 
     @cached_property
     def shape(self) -> Shape:
-        return Shape(
-            self.topology, frozenset(step.name for step in self.topology.steps), frozenset(), frozenset(self.guides)
-        )
-
-    @cached_property
-    def drawing(self) -> Drawing:  # type: ignore[override]
-        return LinkageDrawing(self.topology, self.ground, self.guides, self.chain.joints).drawing()
-
-    @property
-    def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
-        guides = {role: guide for role, (_, guide) in self.topology.sliders.items()}
-        guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
-        return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
+        steps = frozenset(step.name for step in self.topology.steps)
+        inclined = frozenset(name for name, guide in self.guides.items() if turned(guide.angle))
+        return Shape(self.topology, turned=steps, inclined=inclined)
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
-        lengths = {role: self.parts[role].length for role in self.topology.struts}
+        lengths = {role: self.parts[role].length for role in self.topology.given}
         sampled = {
             role: SampledCylinder(*sample(f"{role}.length", length))
             for role, length in lengths.items()
@@ -222,7 +210,7 @@ class Linkage(Machine):
             numbers |= slot_numbers(role, parts[role])
         for role in joined.gears:
             numbers |= frame_parameters(f"{role}_phase", self.gears.get(role, Gears()).phase)
-        for role in joined.struts:
+        for role in joined.given:
             numbers |= cylinder_numbers(role, parts[role])
         return numbers
 

@@ -9,7 +9,8 @@ from typing import ClassVar
 
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.between_links import force_name
-from linksweep.mechanisms.chain.chain import Chain, Shape, chain
+from linksweep.mechanisms.chain.chain import Chain, Own, chain, table
+from linksweep.mechanisms.chain.motion import Shape
 from linksweep.mechanisms.mechanism import Mechanism
 from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER
@@ -60,8 +61,12 @@ class Machine(Mechanism):
     def choices(self) -> dict[str, dict[str, str]]:
         return {"drive": self.drives}
 
+    def own(self, drive: str) -> Own:
+        """Return a drive, and the rows of the machine's own."""
+        return self.chain.own(drive)
+
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        return self.chain.table(drive, loads, frozenset(self.rubbing))
+        return table(self.chain, self.own(drive), loads, frozenset(self.rubbing))
 
     @property
     def rubbing(self) -> tuple[str, ...]:

@@ -9,13 +9,13 @@ from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.between_links import force_name, name_between
 from linksweep.mechanisms.chain.forces import Forces
 from linksweep.mechanisms.chain.limits import limits
-from linksweep.mechanisms.chain.motion import Motion
+from linksweep.mechanisms.chain.motion import Motion, Shape
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
-from linksweep.mechanisms.topology import GROUND, Topology
+from linksweep.mechanisms.topology import GROUND
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import chain as chains
 from linksweep.physics.closures import crank_angle
@@ -27,13 +27,14 @@ BETWEEN = (
 """Rows of the crank's angle between samples."""
 
 
-class Shape(NamedTuple):
-    """All that decides the rows of a machine's motion: see `Motion`."""
+class Own(NamedTuple):
+    """A drive, and what a machine of its own name adds to the rows of its dyad, or puts in their place."""
 
-    topology: Topology
-    turned: frozenset[str]
-    goes_through: frozenset[str]
-    declared: frozenset[str]
+    unknown: Quantity
+    rate: str
+    rows: tuple[Row | Total, ...] = ()
+    quantities: tuple[Quantity, ...] = ()
+    between: tuple[Row, ...] = BETWEEN
 
 
 class Chain:
@@ -41,7 +42,7 @@ class Chain:
 
     def __init__(self, shape: Shape):
         self.topology = shape.topology
-        self.motion = Motion(*shape)
+        self.motion = Motion(shape)
         self.forces = Forces(self.motion)
         self.bodies = tuple(self.motion.bodies[role] for role in self.topology.roles)
         self.joints = {**self.topology.pins, **self.topology.slides}
@@ -70,12 +71,7 @@ class Chain:
         """Angle, rates and accelerations of all links but the crank, then of all that slides."""
         turning = [self.topology.number(role) for role in self.topology.links if role != self.topology.crank]
         of_links = [f"{word}{k}" for word in ("theta", "omega", "alpha") for k in turning]
-        return (*of_links, *(f"{word}_{role}" for word in "xva" for role in self.sliding))
-
-    @property
-    def sliding(self) -> tuple[str, ...]:
-        """Links that slide on a guide, or along a pin."""
-        return (*self.topology.sliders, *self.topology.yokes, *self.topology.past)
+        return (*of_links, *(names[k] for k in range(3) for names in self.motion.sliding.values()))
 
     def slide_unknowns(self, slide: str) -> tuple[str, ...]:
         """Return normal force and moment of a slide; a block without mass passes on no moment."""
@@ -83,23 +79,35 @@ class Chain:
         moment = (name_between("T", i, j),) if " past " not in slide else ()
         return (f"{force_name(i, j)}n", *moment)
 
-    @lru_cache(maxsize=16)  # noqa: B019
-    def table(self, drive: str, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
+    def own(self, drive: str) -> Own:
+        """Return the drive of a link by a torque."""
+        unknown = bodies.drive_torque(self.drives[drive], drive)
+        return Own(unknown, f"omega{self.topology.number(drive)}")
+
+    def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
         """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
-        unknown, number = self.drives[drive], self.topology.number(drive)
-        of_limits, limited = limits(self.motion, rubbing)
+        of_limits, limited = ([], ()) if self.motion.plain else limits(self.motion, rubbing)
         rows = [
             *self.motion.rows,
             *self.forces.rows,
             Total("work", (*self.motion.work, *self.forces.work)),
             *self._status(),
-            Row(planar.opposite, (unknown,), ("work",)),
-            *power_rows(unknown, f"omega{number}", self.bodies, loads, *self.forces.losses),
+            Row(planar.opposite, (own.unknown.name,), ("work",)),
+            *power_rows(own.unknown.name, own.rate, self.bodies, loads, *self.forces.losses),
             *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
             *self._arms(),
             *of_limits,
+            *own.rows,
         ]
-        return Table("theta2", tuple(rows), tuple(self._quantities(drive, loads)), BETWEEN, limited)
+        friction = "drive, friction, loads, gravity and inertia" if self.topology.slides else ""
+        quantities = [
+            *self._motion_quantities(),
+            *(quantity for slide in self.topology.slides for quantity in self._slide_quantities(slide)),
+            *(bodies.drive_quantities(own.unknown, friction) if friction else bodies.drive_quantities(own.unknown)),
+            *own.quantities,
+            *machine_quantities(self.bodies, self.joints, self.names, loads),
+        ]
+        return Table("theta2", tuple(rows), tuple(quantities), own.between, limited)
 
     def _status(self) -> Rows:
         """Return rows of the status that fails first, and of the step where it does."""
@@ -142,15 +150,9 @@ class Chain:
             rows[body.number] = newton_euler_equations(body.number, pins, torque)
         return tuple(row for of_link in rows.values() for row in of_link)
 
-    def _quantities(self, drive: str, loads: tuple[Form, ...]) -> list[Quantity]:
-        return [
-            *self._motion_quantities(),
-            *(quantity for slide in self.topology.slides for quantity in self._slide_quantities(slide)),
-            *bodies.drive_quantities(bodies.drive_torque(self.drives[drive], drive)),
-            *machine_quantities(self.bodies, self.joints, self.names, loads),
-        ]
-
     def _slide_quantities(self, slide: str) -> list[Quantity]:
+        if self.motion.plain:
+            return []
         i, j = self.topology.slides[slide]
         force, place = force_name(i, j), f"of link {i} ({self.names[i]}) on link {j} ({self.names[j]}) at {slide}"
         moment = Quantity(name_between("T", i, j), "N m", f"moment {place}, about the slider's pin, counter-clockwise")
@@ -166,17 +168,9 @@ class Chain:
             if role != topology.crank:
                 words = f"angle of the {role} {first}→{second} from x, counter-clockwise, in (-180, 180]"
                 quantities.append(Quantity(f"theta{topology.number(role)}", "degree", words))
-        for step in topology.steps:
-            words = f"acute transmission angle at {step.name}: 0 at a toggle"
-            quantities.append(Quantity(f"transmission_angle_{step.name}", "degree", words))
-        for role in self.sliding:
-            quantities += [
-                Quantity(f"x_{role}", "m", f"position of {role} along its guide"),
-                Quantity(f"v_{role}", "m s-1", f"velocity of {role} along its guide"),
-                Quantity(f"a_{role}", "m s-2", f"acceleration of {role} along its guide"),
-            ]
         moving = [pin for pin, role in topology.support.items() if role != GROUND]
-        return quantities + bodies.position_quantities(*moving)
+        return [*quantities, *self.motion.quantities, *bodies.position_quantities(*moving)]
 
 
 chain = lru_cache(maxsize=64)(Chain)
+table = lru_cache(maxsize=64)(Chain.table)

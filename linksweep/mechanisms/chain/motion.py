@@ -10,22 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from linksweep.engine.quantity import Row
+from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
-from linksweep.mechanisms.dyads.names import (
-    NOTHING,
-    Names,
-    Vector,
-    direction_of,
-    frame_of,
-    full,
-    full_of_point,
-    of_force,
-    of_link,
-    of_pin,
-    sliding_of,
-)
-from linksweep.mechanisms.dyads.rrr import Rows
+from linksweep.mechanisms.dyads.names import Names, of_link, of_pin
+from linksweep.mechanisms.dyads.rrr import Rows, full
 from linksweep.mechanisms.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step, Topology
 from linksweep.physics import crank_driven
@@ -33,10 +21,11 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
 
 ORIGIN = (0.0, 0.0, 0.0, 0.0)
+Vector = tuple[Source, ...]
 
 
 class Frame(NamedTuple):
-    """The place of a link: a pin that has its place, and a vector in ground axes and in its own, with low words."""
+    """How a link is placed: a pin in place, and a vector of it in ground axes and in its own, with low words."""
 
     pin: str
     vector: Vector
@@ -51,28 +40,30 @@ class Arm(NamedTuple):
     length_lo: Source
 
 
-class Motion:
-    """Rows of all steps of a topology.
+class Shape(NamedTuple):
+    """All that decides the rows of a machine's motion.
 
     Parameters
     ----------
     topology : links and steps
     turned : names of steps on crank and ground whose frame may lie at an angle to x
     goes_through : names of such steps that may be a parallelogram or a kite
-    declared : names of the guides that are declared; another is its link's line of pins
+    inclined : names of guides on links that may lie at an angle to their link's line of pins
     plain : whether the rows keep the names of the dyad's own machine; for a topology of one step
     """
 
-    def __init__(
-        self,
-        topology: Topology,
-        turned: frozenset[str],
-        goes_through: frozenset[str],
-        declared: frozenset[str],
-        plain: bool = False,
-    ):
-        self.topology, self.turned, self.goes_through = topology, turned, goes_through
-        self.declared, self.plain = declared, plain
+    topology: Topology
+    turned: frozenset[str] = frozenset()
+    goes_through: frozenset[str] = frozenset()
+    inclined: frozenset[str] = frozenset()
+    plain: bool = False
+
+
+class Motion:
+    """Rows of all steps of a machine of some shape."""
+
+    def __init__(self, shape: Shape):
+        self.shape, self.topology, self.plain = shape, shape.topology, shape.plain
         self.rows: Rows = []
         self.bodies: dict[str, Body] = {}
         self.frames: dict[str, Frame] = {}
@@ -80,8 +71,10 @@ class Motion:
         self.certain: dict[str, Source] = {}
         self.work: list[str] = []
         self.sides: dict[str, tuple[Side, Side]] = {}
+        self.sliding: dict[str, tuple[str, str, str]] = {}
+        self.quantities: list[Quantity] = []
         self._crank()
-        for step in topology.steps:
+        for step in self.topology.steps:
             getattr(self, f"_place_{type(step).__name__}")(step)
 
     # ------------------------------------------------------------------------------------------------ names
@@ -227,13 +220,35 @@ class Motion:
         self.row(pins.between, own, *self.own(side.role, pin), *self.own(side.role, side.pin))
         return Frame(side.pin, full(f"placed{k}"), own)
 
-    def _close(self, step: Step, rows: Rows, certain: Mapping[str, Source], *listed: Mapping[str, Source]) -> None:
+    def _close(
+        self,
+        step: Step,
+        rows: Rows,
+        certain: Mapping[str, Source],
+        found: Mapping[str, Source],
+        *listed: Mapping[str, Source],
+    ) -> None:
         """Add the rows of a dyad under their names in this machine."""
         crank = {"crank_length": f"{self.topology.crank}_length"}
         branch = {} if self.plain else {"branch_sign": f"branch_{step.name}"}
         self.names[step.name] = names = Names("" if self.plain else f"_{step.name}", crank, branch, *listed)
         self.rows += names.placed(rows)
-        self.certain |= {str(names[name]): names.of(unit) for name, unit in certain.items()}
+        for numbers in [certain] if self.plain else [certain, found]:
+            self.certain |= {str(names[name]): names.of(unit) for name, unit in numbers.items()}
+
+    def _measure(self, step: Step, words: str) -> None:
+        """Add the quantity of a dyad's transmission angle."""
+        self.quantities.append(Quantity(str(self.names[step.name]["transmission_angle"]), "degree", words))
+
+    def _slides(self, step: Step, role: str, inner: tuple[str, str, str], line: str, start: str) -> None:
+        """Add the quantities of a part's motion along a line."""
+        position, velocity, acceleration = (str(self.names[step.name][name]) for name in inner)
+        self.sliding[role] = position, velocity, acceleration
+        self.quantities += [
+            Quantity(position, "m", f"position of the {role} along the {line}, from {start}"),
+            Quantity(velocity, "m s-1", f"velocity of the {role} along the {line}"),
+            Quantity(acceleration, "m s-2", f"acceleration of the {role} along the {line}"),
+        ]
 
     def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
         """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
@@ -262,7 +277,7 @@ class Motion:
             line = step.link.role in links and {step.link.pin, step.pin} == {*links[step.link.role][:2]}
             return line and step.link.pin == crank_pin and self.topology.hosts[step.guide] == GROUND
         if isinstance(step, RPR):
-            own_line = step.guide == step.link.role and step.link.pin == links[step.guide][0]
+            own_line = step.guide not in self.shape.inclined and step.link.pin == links[step.link.role][0]
             return own_line and step.pin == crank_pin and self._off_origin(step.link.pin)
         return False
 
@@ -279,11 +294,12 @@ class Motion:
         self._rates(X)
         for side in (coupler, rocker):
             self._link(side.role, self._frame(side, X), {side.pin, X})
-        rows = rrr.on_crank_and_ground(step.name in self.turned, step.name in self.goes_through)
+        rows = rrr.on_crank_and_ground(step.name in self.shape.turned, step.name in self.shape.goes_through)
         self._close(
             step,
             rows if special else rrr.between_pins(),
-            rrr.FOUND | (rrr.CERTAIN_ON_CRANK if special else rrr.CERTAIN),
+            rrr.CERTAIN_ON_CRANK if special else rrr.CERTAIN,
+            rrr.FOUND,
             self._swapped(step) if swapped else {},
             {} if self.plain else frame_of("ground", rocker.pin),
             self.pin("B", coupler.pin) | self.pin("D", rocker.pin) | of_pin("C", X),
@@ -292,6 +308,7 @@ class Motion:
             of_force("F32", f"push_{coupler.role}_{coupler.pin}"),
             of_force("F14", f"hold_{rocker.role}"),
         )
+        self._measure(step, f"acute angle between {first.role} and {second.role}")
 
     def _swapped(self, step: Step) -> dict[str, Source]:
         """Return the name of the branch's sign seen from the crank where the link on the ground is named first."""
@@ -308,8 +325,9 @@ class Motion:
         self._slider(slider, X, guide, ratio, slope)
         self._close(
             step,
-            rrp.on_crank_and_ground(step.name in self.turned) if special else rrp.between_pin_and_guide(),
-            rrp.FOUND | (rrp.CERTAIN_ON_CRANK if special else rrp.CERTAIN),
+            rrp.on_crank_and_ground(step.name in self.shape.turned) if special else rrp.between_pin_and_guide(),
+            rrp.CERTAIN_ON_CRANK if special else rrp.CERTAIN,
+            rrp.FOUND,
             guide | {"guide_ratio": ratio, "guide_slope": slope} | self._origin(host),
             self.pin("B", rod.pin) | of_pin("C", X),
             self._side(3, "rod", rod, arm) | of_link(4, k) | self._load(4, k, f"L{k}"),
@@ -318,6 +336,9 @@ class Motion:
             of_force("F32", f"push_{rod.role}_{rod.pin}"),
             of_force("F14", f"hold_{slider}"),
         )
+        self._measure(step, f"acute angle between the {rod.role} and the guide's normal")
+        origin = self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
+        self._slides(step, slider, ("x_slider", "v_slider", "a_slider"), "guide", f"the foot of {origin} on it")
 
     def _slider(self, role: str, pin: str, guide: dict[str, Source], ratio: Source, slope: Source) -> None:
         """Add rows of a link that turns with a guide: its axes and rotation; and its body."""
@@ -365,8 +386,9 @@ class Motion:
             self._slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, *turning)
         self._close(
             step,
-            rpr.on_crank_and_ground(step.name in self.turned) if special else rpr.between_pins(),
-            rpr.FOUND | (rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN),
+            rpr.on_crank_and_ground(step.name in self.shape.turned) if special else rpr.between_pins(),
+            rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN,
+            rpr.FOUND,
             {} if self.plain else frame_of("ground", link.pin),
             numbers | self.pin("B", step.pin) | self.pin("D", link.pin) | of_link(4, k),
             self._load(4, k, f"L{k}_{link.pin}"),
@@ -378,11 +400,14 @@ class Motion:
             of_force("F32", pushed),
             of_force("F14", f"hold_{link.role}"),
         )
+        self._measure(step, f"acute angle between the line {link.pin}-{step.pin} and the normal of the {link.role}")
+        motion = ("slide", "slide_velocity", "slide_acceleration")
+        self._slides(step, slider, motion, f"{link.role}'s line", f"the foot of {link.pin} on it")
 
     def _line_of_pins(self, step: RPR, line: Vector) -> None:
         """Add rows of a link's axes from the direction of its guide."""
         role, k = step.link.role, self.number(step.link.role)
-        if step.guide == role and role not in self.declared:
+        if step.guide not in self.shape.inclined:
             self.row(planar.along, xy(f"r{k}"), f"{role}_length", *line)
             return
         second = self.topology.links[role][1]
@@ -399,3 +424,39 @@ class Motion:
             self.row(pins.offset_from, from_pin, *offset, *direction_of(step.guide), *own)
             offset = from_pin
         return dict(zip(("offset", "offset_lo"), offset, strict=True))
+
+
+NOTHING: dict[str, Source] = {"Q3x": 0.0, "Q3y": 0.0, "N3": 0.0}
+"""Loads on a block without mass."""
+
+
+def frame_of(frame: str, pin: str) -> Mapping[str, Source]:
+    """Return the names of the distance and direction of a ground pin from the crank's pivot."""
+    parts = ("cos", "sin", "cos_lo", "sin_lo")
+    return {f"{frame}_length": f"{pin}_distance"} | {f"{frame}_{part}": f"{pin}_{part}" for part in parts}
+
+
+def direction_of(guide: str) -> Vector:
+    """Return the names of a guide's direction in the axes of its link."""
+    return f"{guide}_cos", f"{guide}_sin", f"{guide}_cos_lo", f"{guide}_sin_lo"
+
+
+def sliding_of(role: str) -> Mapping[str, Source]:
+    """Return the names of a block's position on its line, and of its motion."""
+    return {
+        "slide": f"x_{role}",
+        "slide_velocity": f"v_{role}",
+        "slide_acceleration": f"a_{role}",
+        "ratio_slide": f"ratio_{role}",
+        "slope_slide": f"slope_{role}",
+    }
+
+
+def of_force(force: str, stem: str) -> Mapping[str, Source]:
+    """Return the names of a force's components."""
+    return {f"{force}{axis}": f"{stem}{axis}" for axis in "xy"}
+
+
+def full_of_point(pin: str) -> Vector:
+    """Return the names of a third pin's position in the axes of its link."""
+    return f"{pin}_along", f"{pin}_across", f"{pin}_along_lo", f"{pin}_across_lo"

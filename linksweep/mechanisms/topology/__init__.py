@@ -22,7 +22,7 @@ from linksweep.mechanisms.topology.problems import (
 from linksweep.mechanisms.topology.text import RATIO, Part, read
 from linksweep.mechanisms.topology.topology import GROUND, Topology
 
-__all__ = ["GROUND", "PRP", "RPP", "RPR", "RRP", "RRR", "Gear", "Side", "Step", "Topology", "topology"]
+__all__ = ["GROUND", "PRP", "RPP", "RPR", "RRP", "RRR", "Gear", "Side", "Step", "Topology", "topology", "topology_of"]
 
 Names = tuple[tuple[str, str], ...]
 
@@ -33,7 +33,7 @@ def topology(
     ground: tuple[str, ...],
     hosts: Names = (),
     ratios: Names = (),
-    struts: frozenset[str] = frozenset(),
+    given: frozenset[str] = frozenset(),
     reserved: frozenset[str] = frozenset(),
 ) -> tuple[Topology | None, tuple[str, ...]]:
     """Return the topology of a linkage, or None, and its problems.
@@ -44,7 +44,7 @@ def topology(
     ground : pins on the ground; the first is the crank's pivot
     hosts : name of each declared guide, and the link that carries it or "ground"
     ratios : name of each declared gear pair's wheel, and its ratio as text, "" where `links` states it
-    struts : cylinders of given length, each a massless link
+    given : cylinders of given length
     reserved : names that no link may have
 
     Returns
@@ -56,7 +56,7 @@ def topology(
     problems = [*unread, *part_problems(parts, reserved)]
     if unread or len({part.role for part in parts}) < len(parts):
         return None, tuple(problems)
-    machine = _joined(parts, ground, dict(hosts), dict(ratios), struts).closed()
+    machine = _joined(parts, ground, dict(hosts), dict(ratios), given).closed()
     problems += [
         *pin_problems(parts, machine),
         *guide_problems(parts, machine, dict(hosts)),
@@ -66,8 +66,16 @@ def topology(
     return machine, (*problems, *from_crank)
 
 
+def topology_of(links: str, ground: tuple[str, ...], hosts: Names = ()) -> Topology:
+    """Return the topology of a linkage that is known to close; ValueError for any other."""
+    machine, problems = topology(links, ground, hosts)
+    if machine is None or problems:
+        raise ValueError("\n".join(problems))
+    return machine
+
+
 def _joined(
-    parts: list[Part], ground: tuple[str, ...], hosts: dict[str, str], ratios: dict[str, str], struts: frozenset[str]
+    parts: list[Part], ground: tuple[str, ...], hosts: dict[str, str], ratios: dict[str, str], given: frozenset[str]
 ) -> Topology:
     links = {part.role: tuple(dict.fromkeys(part.pins)) for part in parts if part.pins and not part.guide}
     past = {part.role: part.past for part in parts if part.past and part.pins}
@@ -81,7 +89,7 @@ def _joined(
         past=past,
         yokes={part.role: (part.guide, part.past) for part in parts if part.guide and not part.pins},
         cylinders=cylinders,
-        struts=struts & {*cylinders},
+        given=given & {*cylinders},
         gears={part.role: _ratio(part.ratio or ratios.get(part.role, "")) for part in parts if part.mate},
         hosts={**{name: name for name in lines}, **hosts},
     )
