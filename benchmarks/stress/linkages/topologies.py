@@ -184,3 +184,8 @@ FAMILIES = {name: Family(topology) for name, topology in TOPOLOGIES.items()} | {
     for drive in topology.drives
 }
 """Families of random linkages by name: the topologies, and those with another drive than the crank."""
+
+LATER = ("shaper with two slides", "scotch yoke", "held cylinder", "geared five-bar")
+"""Topologies whose dyads linksweep does not have yet; nor does it compute other drives of linkages than the crank."""
+TODAY = {name: family for name, family in FAMILIES.items() if not family.drive and name not in LATER}
+"""Families that linksweep computes."""
