@@ -67,10 +67,9 @@ class Topology:
     @cached_property
     def members(self) -> dict[str, tuple[str, ...]]:
         """Links that share each pin: the ground first where it has the pin, then in the order of the text."""
-        members: dict[str, tuple[str, ...]] = {}
-        for role in (GROUND, *self.roles):
-            members |= {pin: (*members.get(pin, ()), role) for pin in self.pins_of(role)}
-        return members
+        roles = (GROUND, *self.roles)
+        pins = dict.fromkeys(pin for role in (*self.roles, GROUND) for pin in self.pins_of(role))
+        return {pin: tuple(role for role in roles if pin in self.pins_of(role)) for pin in pins}
 
     @cached_property
     def placed(self) -> tuple[str, ...]:
