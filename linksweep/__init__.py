@@ -22,6 +22,7 @@ from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
 from linksweep.base.version import installed_version
 from linksweep.files.netcdf import load_scene, save
+from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
 from linksweep.mechanisms.links import Bar, Cylinder, Disk, Gears, Guide, Link, Slider
 from linksweep.plot import accessor as _accessor  # noqa: F401  (registers Dataset.linksweep)
@@ -62,6 +63,7 @@ __all__ = [
     "Motor",
     "MultiCylinder",
     "Normal",
+    "NotCarriedOverWarning",
     "OttoCycle",
     "OvershootWarning",
     "QuantityTable",
@@ -79,6 +81,7 @@ __all__ = [
     "duty",
     "example",
     "flywheel",
+    "from_pmks",
     "geometry",
     "load_scene",
     "load_spectrum",

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 
-from linksweep.base.validate import quote, refuse
+from linksweep.base.validate import quote
 from linksweep.files.pmks.drawing import Drawing, Force, Joint
 from linksweep.files.pmks.linkage import linkage_of, words_of
 from linksweep.files.pmks.machines import Machine, machines
@@ -28,8 +28,8 @@ class NotCarriedOverWarning(UserWarning):
 def from_pmks(source: str | os.PathLike[str], *, machine: int = 1) -> Scene:
     """Make a scene of a document of PMKS+, the Planar Mechanism Kinematic Simulator.
 
-    Links, sliders, slots and cylinders become a `Linkage`, assembled as it is drawn, with masses, forces, gravity and the
-    speed of the input, all in SI units.
+    Links, sliders, slots and cylinders become a `Linkage`, assembled as it is drawn, with masses, forces, gravity and
+    the speed of the input, all in SI units.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ def from_pmks(source: str | os.PathLike[str], *, machine: int = 1) -> Scene:
     Notes
     -----
     A link on two ground pins is part of the ground. A joint that slides and lets its link turn becomes a block,
-    `block_C C on guide_C`; a link that slides without turning becomes a slider, whose guide goes through its pin. Where
-    the input is a cylinder, it is the `drive`; where it is no link on the ground, the crank is the first link from which
-    the others can be found, and `omega2` is the speed at which the input has its own in the position drawn.
+    `block_C C on guide_C`; a link that slides without turning becomes a slider, whose guide goes through its pin. A
+    cylinder that is the input is the `drive`. Where the input is no link on the ground, the crank is the first link
+    from which the others can be placed, and `omega2` is the speed at which the input has its own in the position drawn.
 
     Source: the documents' format as PMKS-Web/PMKSWeb on GitHub has it; see `linksweep.files.pmks`.
 
@@ -103,8 +103,7 @@ def _document(source: str | os.PathLike[str]) -> str:
 def _scene(drawing: Drawing, words: Words) -> Scene:
     loads = [_load(force, words) for force in drawing.forces if force.body in words.axes]
     drive = words.roles[words.cylinder[0]] if words.cylinder else ""
-    motion = {"gravity": (0.0, -drawing.gravity), "drive": drive}
-    scene = Scene(linkage_of(words), omega2=1.0, loads=loads, **motion)
+    scene = Scene(linkage_of(words), omega2=1.0, gravity=(0.0, -drawing.gravity), loads=loads, drive=drive)
     return replace(scene, omega2=_speed(scene, words))
 
 
@@ -148,7 +147,9 @@ def _other_machines(drawn: list[Machine], chosen: Machine) -> Iterator[str]:
 def _left_out(drawing: Drawing, words: Words) -> Iterator[str]:
     """Yield what the scene lacks of the machine."""
     machine, crank = words.machine, words.roles[words.crank]
-    yield from (f"the input at {joint.name}: {crank} turns by that at {machine.inputs[0].name}" for joint in machine.inputs[1:])
+    yield from (
+        f"the input at {joint.name}: {crank} turns by that at {machine.inputs[0].name}" for joint in machine.inputs[1:]
+    )
     if not machine.inputs:
         yield f"no joint has an input: {crank} turns"
     elif _other_input(words):

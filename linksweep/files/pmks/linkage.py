@@ -47,7 +47,7 @@ def linkage_of(words: Words) -> Linkage:
 
 
 def _cranks(machine: Machine) -> list[str]:
-    """Return the bodies that may be the crank: that at an input on the ground, else all that turn about a ground pin."""
+    """Return the bodies that may be the crank: one at an input on the ground, else all that have a ground pin."""
     driven = {joint.name for joint in machine.inputs[:1]} & machine.ground
     bodies = [body for name, body in machine.bodies.items() if name not in Words(machine, name).cylinder]
     return [body.name for body in bodies if (driven or machine.ground) & {*body.joints} and len(body.joints) > 1]

@@ -61,7 +61,9 @@ def _standing(drawing: Drawing) -> tuple[set[str], frozenset[str]]:
     """Return the bodies that two pins on the ground hold still, and all pins on the ground: their joints are, too."""
     ground = {joint.name for joint in drawing.joints.values() if joint.grounded and not joint.slides}
     standing: set[str] = set()
-    while held := [body for body in drawing.bodies.values() if body.name not in standing and _held(drawing, body, ground)]:
+    while held := [
+        body for body in drawing.bodies.values() if body.name not in standing and _held(drawing, body, ground)
+    ]:
         standing |= {body.name for body in held}
         ground |= {name for body in held for name in body.joints}
     return standing, frozenset(ground)

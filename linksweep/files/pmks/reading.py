@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from typing import NamedTuple, TypeVar
@@ -86,7 +86,9 @@ def _read(kind: str, records: list[str], read: Callable[[str], Record], problems
         try:
             item = read(record)
         except (ValueError, IndexError):
-            problems.append(f"{kind} {quote(record)}: cannot be read; the document is damaged, or newer than this reader")
+            problems.append(
+                f"{kind} {quote(record)}: cannot be read; the document is damaged, or newer than this reader"
+            )
             continue
         if item.name in result:
             problems.append(f"{kind} {item.name}: is there twice")
@@ -190,12 +192,15 @@ def _whole_degree(angle: float) -> float:
 
 def _dangling(joints: dict[str, Joint], links: dict[str, Body], forces: dict[str, Force]) -> list[str]:
     """Return a line for each name to which a record refers without its being there."""
+    named: list[tuple[str, str, Collection[str]]]
     named = [(f"joint {joint.name}", joint.carrier, links) for joint in joints.values() if joint.carrier]
     named += [(f"joint {joint.name}", pin, joints) for joint in joints.values() for pin in joint.slot if pin]
     named += [(f"link {link.name}", pin, joints) for link in links.values() for pin in link.joints]
     named += [(f"link {link.name}", part, links) for link in links.values() for part in link.parts]
     named += [(f"force {force.name}", force.body, links) for force in forces.values()]
-    return [f"{place}: refers to {name}, which is not in the document" for place, name, known in named if name not in known]
+    return [
+        f"{place}: refers to {name}, which is not in the document" for place, name, known in named if name not in known
+    ]
 
 
 def _folded(
@@ -212,17 +217,18 @@ def _folded(
 
 
 def _lettered(joints: dict[str, Joint], links: dict[str, Body]) -> tuple[dict[str, Joint], dict[str, Body]]:
-    """Return joints and links with a capital letter for each joint, and a number where that is taken."""
-    letters: dict[str, str] = {}
+    """Return joints and links with a capital letter for each joint, and P with a number where that is taken."""
+    letters = {"": ""}
     for name in sorted(joints, key=lambda name: not re.fullmatch("[A-Z]", name)):  # capital letters keep theirs
-        letter = name[0].upper() if name[0].isascii() and name[0].isalpha() else "P"
+        letter = name[0].upper() if re.match("[A-Za-z]", name) else "P1"
         choices = chain([letter], (f"P{number}" for number in count(1)))
         letters[name] = next(choice for choice in choices if choice not in letters.values())
+    renamed = [
+        replace(joint, name=letters[name], slot=(letters[joint.slot[0]], letters[joint.slot[1]]))
+        for name, joint in joints.items()
+    ]
     return (
-        {
-            letters[name]: replace(joint, name=letters[name], slot=tuple(letters.get(pin, "") for pin in joint.slot))
-            for name, joint in joints.items()
-        },
+        {joint.name: joint for joint in renamed},
         {name: replace(link, joints=tuple(letters[pin] for pin in link.joints)) for name, link in links.items()},
     )
 
@@ -235,7 +241,9 @@ def _parts(links: dict[str, Body], name: str) -> list[str]:
 def _left_out(joints: list[str], extras: list[str]) -> list[str]:
     """Return sentences on entries that have no meaning here."""
     fields = {record[1:].partition(",")[0]: record.split(",")[11:] for record in joints}
-    entries = [f"joint {name}: its entries {','.join(rest)} (friction or a name)" for name, rest in fields.items() if any(rest)]
+    entries = [
+        f"joint {name}: its entries {','.join(rest)} (friction or a name)" for name, rest in fields.items() if any(rest)
+    ]
     gears = [extra for extra in extras if extra.startswith("G1~")]
     others = [extra for extra in extras if extra[0] not in PICTURE + "P" and extra not in gears]
     return entries + ["gears" for _ in gears] + [f"the entry {quote(extra)}" for extra in others]

@@ -23,15 +23,15 @@ class Sections(NamedTuple):
 def sections(text: str) -> Sections:
     """Return the sections of a document's text. Raises ValueError where it is damaged, cut off, or no document."""
     parts = _checked(text).split(".")
-    start, records = 4, []
+    start, records = 4, dict[str, list[str]]()
     for what in ("joints", "links", "forces"):
         if "" not in parts[start:]:
             raise ValueError(f"{quote(text)} is no document of PMKS+: it has no list of {what}")
         end = parts.index("", start)
-        records.append(parts[start:end])
+        records[what] = parts[start:end]
         start = end + 1
     extras = ".".join(parts[start + 1 :]).split(",")  # behind the selection
-    return Sections(parts[:4], *records, [extra for extra in extras if extra])
+    return Sections(parts[:4], **records, extras=[extra for extra in extras if extra])
 
 
 def integer(digits: str) -> int:

@@ -88,7 +88,9 @@ class Words:
             if body.name not in {*self.cylinder, *self.sliders}:
                 own = [pin for pin in body.joints if not self._slides_rigidly(pin)]
                 rank = {pin: (pin not in named, pin not in ground, pin not in self._joined(body.name)) for pin in own}
-                first = sorted(sorted(own, key=rank.__getitem__)[:2], key=lambda pin: (pin not in ground, own.index(pin)))
+                first = sorted(
+                    sorted(own, key=rank.__getitem__)[:2], key=lambda pin: (pin not in ground, own.index(pin))
+                )
                 pins[body.name] = [*first, *(pin for pin in own if pin not in first)]
                 named |= {*own}
         return pins
@@ -142,13 +144,13 @@ class Words:
 
     def _elements(self) -> Iterator[str]:
         for body in self.bodies:
-            role, slides = self.roles[body.name], self.sliders.get(body.name)
+            role = self.roles[body.name]
             if body.name in self.pins:
                 yield f"{role} {'-'.join(self.pins[body.name])}"
             elif body.name in self.yokes:
-                yield f"{role} on guide_{slides.name} past {self.yokes[body.name].name}"
-            elif slides:
-                yield f"{role} {self._pin(body.name)} on guide_{slides.name}"
+                yield f"{role} on guide_{self.sliders[body.name].name} past {self.yokes[body.name].name}"
+            elif body.name in self.sliders:
+                yield f"{role} {self._pin(body.name)} on guide_{self.sliders[body.name].name}"
             elif body.name == self.cylinder[0]:
                 yield f"{role} {'~'.join(self.ends)}"
         for joint in self.blocks:
@@ -176,7 +178,9 @@ class Words:
 
     def _pin(self, slider: str) -> str:
         """Return the pin of a slider, or that in its slot."""
-        return self.yokes[slider].name if slider in self.yokes else [*self._joined(slider), self.sliders[slider].name][0]
+        return (
+            self.yokes[slider].name if slider in self.yokes else [*self._joined(slider), self.sliders[slider].name][0]
+        )
 
     def _at(self, pin: str) -> Point:
         return self.machine.joints[pin].at

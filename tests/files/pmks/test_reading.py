@@ -1,4 +1,4 @@
-"""Documents of PMKS+ are read into SI units; expected numbers are those of its published data sets, and its own words."""
+"""Documents of PMKS+ are read into SI units; expected numbers are those of its published data sets and documents."""
 
 import math
 import re
@@ -10,9 +10,7 @@ import pytest
 from linksweep.files.pmks.reading import read_drawing
 from linksweep.files.pmks.text import DIGITS
 
-DOCUMENTS = dict(
-    line.split(" | ") for line in (Path(__file__).parent / "documents.txt").read_text().splitlines()
-)
+DOCUMENTS = dict(line.split(" | ") for line in (Path(__file__).parent / "documents.txt").read_text().splitlines())
 """Public drawings of PMKS+ by name: its verification suite's (document "Verification mechanisms, as links" of
 PMKS-Web/Planar-Mechanism-Kinematic-Simulator) and, marked 2024, the templates of PMKS-Web/PMKSWeb of April 2024."""
 
@@ -36,8 +34,13 @@ def test_watt_six_bar_of_the_published_data():
     """Case watt_i of PMKS_Verification has these coordinates, masses and load, in metres and kilograms."""
     drawing = read_drawing(DOCUMENTS["Watt I"])
     places = {
-        **{"A": (-3.74, -2.41), "B": (-2.72, 0.91), "C": (1.58, 0.43), "D": (-0.24, 4.01)},
-        **{"E": (5.08, 5.31), "F": (8.14, 3.35), "G": (7.32, -3.51)},
+        "A": (-3.74, -2.41),
+        "B": (-2.72, 0.91),
+        "C": (1.58, 0.43),
+        "D": (-0.24, 4.01),
+        "E": (5.08, 5.31),
+        "F": (8.14, 3.35),
+        "G": (7.32, -3.51),
     }
     assert {name: joint.at for name, joint in drawing.joints.items()} == {
         name: (pytest.approx(x / 100, rel=1e-15), pytest.approx(y / 100, rel=1e-15)) for name, (x, y) in places.items()
@@ -126,7 +129,9 @@ def test_welded_links_are_one_body():
 
 def test_small_letters_become_capitals():
     assert list(read_drawing(DOCUMENTS["Stephenson I, 2024"]).joints) == list("ABCDEFG")
-    mixed = read_drawing(stamped(body_of("Drag link").replace("0B,B,0", "0a,a,0").replace("A,B,,", "A,a,,").replace("B,C,,", "a,C,,")))
+    mixed = read_drawing(
+        stamped(body_of("Drag link").replace("0B,B,0", "0a,a,0").replace("A,B,,", "A,a,,").replace("B,C,,", "a,C,,"))
+    )
     assert mixed.bodies["AB"].joints == ("A", "P1") and mixed.joints["P1"].at == pytest.approx((0.0, 0.022))
 
 
@@ -139,7 +144,10 @@ def test_small_letters_become_capitals():
         (lambda text: "", "'' is no document of PMKS+"),
         (lambda text: stamped("abc.def"), "it has no list of joints"),
         (lambda text: stamped(body_of("Watt I").replace(".1011.", ".3011.")), "unit of length is number 3: must be 0"),
-        (lambda text: stamped(body_of("Watt I").replace("YRDE", "XRDE")), "link 'XRDE,DE,1E8,1a,bq,18q,0d125a,D,E,,': cannot"),
+        (
+            lambda text: stamped(body_of("Watt I").replace("YRDE", "XRDE")),
+            "link 'XRDE,DE,1E8,1a,bq,18q,0d125a,D,E,,': cannot",
+        ),
     ],
 )
 def test_damaged_documents_are_refused(spoil, message):
@@ -150,7 +158,7 @@ def test_damaged_documents_are_refused(spoil, message):
 def test_all_names_that_lead_nowhere_are_listed():
     text = body_of("Watt I").replace("YRDE,DE,1E8,1a,bq,18q,0d125a,D,E,,", "YRDE,DE,1E8,1a,bq,18q,0d125a,D,X,,")
     text = text.replace("2F1,CFG", "2F1,CFH")
-    with pytest.raises(ValueError) as refusal:
+    with pytest.raises(ValueError, match="not in the document") as refusal:
         read_drawing(stamped(text))
     assert str(refusal.value).splitlines() == [
         "link DE: refers to X, which is not in the document",
