@@ -156,7 +156,7 @@ CALLS = {
 Plots of a Dataset are called as its methods.
 """
 
-NO_MACHINE = {"example"}
+NO_MACHINE = {"example", "from_pmks"}
 
 COMMANDS = {
     "sweep": lambda s, path: ["sweep", written(s, path), "--theta2", SAMPLES, "-o", path / "cycle.nc"],

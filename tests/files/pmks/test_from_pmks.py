@@ -94,8 +94,8 @@ def test_every_pin_is_where_it_is_drawn(name):
     pivot = next(iter(words.ground.values()))
     for pin in pins:
         there = drawing.joints[pin].at
-        found = (float(cycle[f"{pin}x"].item()) + pivot[0], float(cycle[f"{pin}y"].item()) + pivot[1])
-        assert found == pytest.approx(there, abs=1e-15), pin
+        place = (float(cycle[f"{pin}x"].item()) + pivot[0], float(cycle[f"{pin}y"].item()) + pivot[1])
+        assert place == pytest.approx(there, abs=1e-15), pin
 
 
 @pytest.mark.parametrize("name", MOVING)
