@@ -13,10 +13,11 @@ import pytest
 from long import long_but
 from references import LinkData, LoadData, mp
 
+import linksweep as ls
 from benchmarks.accuracy import digits as accuracy
 from benchmarks.speed.kernel import way
 from benchmarks.stress import __main__ as front_door
-from benchmarks.stress import conservative, errors
+from benchmarks.stress import conservative, errors, six_bars
 from benchmarks.stress.designs import FORCES, LINKS, Designs
 from benchmarks.stress.errors import errors_of
 from benchmarks.stress.families import FAMILIES, chunks
@@ -69,6 +70,14 @@ def test_mean_torque_of_conservative_machines_is_zero():
     means = conservative.means(60, seed=2026)
     assert len(means) >= 50
     assert means.max() < 10.0
+
+
+@pytest.mark.parametrize("kind", six_bars.KINDS)
+def test_no_peak_of_six_bars_is_missed_and_their_arcs_are_right(kind):
+    result = six_bars.check(kind, 25, [2026])
+    assert result.designs == 25
+    assert result.moving > 20
+    assert (result.missed, result.wrong_arcs) == (0, 0), result
 
 
 # ---- its reference -----
@@ -178,6 +187,40 @@ def test_the_command_prints_a_row_for_each_family(capsys):
     printed = capsys.readouterr().out
     assert [line.split(" | ")[1] for line in printed.splitlines() if line.startswith("| inverted")] == ["20"] * 3
     assert "Goals missed: none." in printed
+
+
+def test_six_bars_turn_fully_or_in_part_and_come_near_to_toggles():
+    """The check of six-bars proves little otherwise."""
+    limits = [ls.check(draw(np.random.default_rng(1), 60)) for draw in six_bars.KINDS.values()]
+    for of_kind in limits:
+        everywhere, partly, never = np.bincount(of_kind.assembly, minlength=3)
+        assert everywhere > 15
+        assert partly > 15
+        assert never < 10
+        nearest = of_kind.transmission_angle_min.where(of_kind.assembly == 0)
+        assert ((nearest < 3.0).sum("design") > 3).all()
+
+
+def test_a_missed_peak_and_a_wrong_arc_of_six_bars_are_counted(monkeypatch):
+    peaks, check = ls.peaks, ls.check
+
+    def lower(scene, **angles):
+        return peaks(scene, **angles).pipe(lambda ds: ds if angles else ds.assign(F12_peak=ds.F12_peak * 0.9))
+
+    def shorter(scene):
+        limits = check(scene)
+        return limits.assign(arc_end=limits.arc_end - 0.1)
+
+    monkeypatch.setattr(ls, "peaks", lower)
+    monkeypatch.setattr(ls, "check", shorter)
+    result = six_bars.check("watt", 6, [1])
+    assert result.missed >= 3  # the others are unbounded
+    assert result.wrong_arcs == result.moving
+
+
+def test_the_command_of_six_bars_prints_a_row_for_each_kind(capsys):
+    assert six_bars.main(["--designs", "9"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(six_bars.KINDS)
 
 
 # ---- beside others -----
