@@ -14,7 +14,6 @@ from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, Rule, choice_problems, overflow_problems
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.scene.loads.action import register
 from linksweep.scene.loads.air_cycle import ATMOSPHERE, CYCLES, Cycle, pressure_over
 from linksweep.scene.loads.changing_load import BREAKS, ChangingLoad
@@ -110,7 +109,7 @@ class GasPressure(ChangingLoad):
             return [f"{path} is a GasPressure on {lack(mechanism, 'cylinder')}, or a Load"]
         if problems := choice_problems(f"{path}.link", self.link, mechanism.sliders):
             return problems
-        if mechanism.branch not in BRANCH_SIGN:
+        if "branch" in mechanism.both_branches:
             return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
         turns = mechanism.cylinder.turns_fully if self.cycle else True
         if not hasattr(turns, "dims") and not turns:

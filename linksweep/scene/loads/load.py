@@ -17,7 +17,6 @@ from linksweep.base.validate import Number, Rule, choice_problems, quote
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.rows.bodies import Body
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN
 from linksweep.mechanisms.rows.load_forms import Acting, Form
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.physics.algebra import planar
@@ -150,8 +149,11 @@ class Load(ChangingLoad):
         """Return why this mechanism cannot take the load, which is valid in itself."""
         if self.over is None:
             return []
-        if mechanism.branch not in BRANCH_SIGN:
+        if "branch" in mechanism.both_branches:
             return [f'{path}.over = {quote(self.over)}: is a position of one branch; give branch="open" or "crossed"']
+        if not mechanism.strokes:
+            kind = type(mechanism).__name__
+            return [f"{path}.over = {quote(self.over)}: a {kind} has no positions to follow; give the load over theta2"]
         problems = choice_problems(f"{path}.over", self.over, mechanism.strokes)
         if problems:
             return problems
