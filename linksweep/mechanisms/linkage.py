@@ -14,7 +14,9 @@ from linksweep.base.fields import POLAR_POINT, PairField, declared, field_proble
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
+from linksweep.mechanisms.chain.drawing import LinkageDrawing
 from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.drawing import Drawing
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
@@ -174,6 +176,16 @@ class Linkage(Machine):
         steps = frozenset(step.name for step in self.topology.steps)
         inclined = frozenset(name for name, guide in self.guides.items() if turned(guide.angle))
         return Shape(self.topology, turned=steps, inclined=inclined)
+
+    @cached_property
+    def drawing(self) -> Drawing:  # type: ignore[override]
+        return LinkageDrawing(self.topology, self.ground, self.guides, self.chain.joints).drawing()
+
+    @property
+    def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
+        guides = {role: guide for role, (_, guide) in self.topology.sliders.items()}
+        guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
+        return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
         lengths = {role: self.parts[role].length for role in self.topology.given}

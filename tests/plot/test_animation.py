@@ -14,6 +14,7 @@ from PIL import Image
 import linksweep as ls
 from linksweep.cli.main import main
 from linksweep.plot.films import frames as film_frames
+from linksweep.plot.kit.colors import FORCE_COLORS
 
 BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
 DOWN = (0.0, -9.81)
@@ -96,7 +97,7 @@ def test_arrows_start_at_their_pins_with_the_length_of_the_dense_solution(films)
     for k in range(FRAMES):
         pins = dict(zip("ABCD", pins_of(films["press"], k), strict=True))
         arrows = arrows_of(films["press"], k)
-        for (name, color), pin in zip(film_frames.FORCE_COLORS.items(), "ABCD", strict=True):
+        for (name, color), pin in zip(FORCE_COLORS.items(), "ABCD", strict=True):
             force = np.array([cycle[f"{name}{axis}"].values[k] for axis in "xy"])
             start, end = arrows[color]
             np.testing.assert_allclose(start, pins[pin], atol=1e-12)

@@ -186,6 +186,11 @@ LACKING: dict[str, str] = {
         plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown command.balance
         command.orders command.flywheel
     """,
+    "six-bar": "counterweights position_equation plot.loop command.balance",
+    "knuckle-press": """
+        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
+        command.balance
+    """,
     "scotch-yoke": "counterweights position_equation plot.loop command.balance",
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load
@@ -213,12 +218,51 @@ def stored(subject: Subject, path):
     return path / "study.nc"
 
 
+def bar(length: float) -> ls.Bar:
+    return ls.Bar(length, 0.02, 0.02, 7750.0)
+
+
+def six_bar() -> ls.Scene:
+    """Return a Watt II six-bar."""
+    links = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground={"A": (0.0, 0.0), "D": (0.20, 0.0), "G": (0.42, 0.05)},
+        points={"E": (0.12, -35.0)},
+        crank=bar(0.08),
+        coupler=bar(0.22),
+        rocker=bar(0.18),
+        rod=bar(0.20),
+        output=bar(0.15),
+    )
+    return ls.Scene(links, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("output", torque=-12.0)])
+
+
+def knuckle_press() -> ls.Scene:
+    """Return a knuckle-joint press, whose pin C joins three links, and whose ram slides with friction."""
+    links = ls.Linkage(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
+        ground={"A": (0.0, 0.0), "D": (0.26, 0.16)},
+        guides={"slide": ls.Guide(through=(0.26, 0.0), angle=-90.0, friction=0.1)},
+        crank=bar(0.03),
+        rod=bar(0.25),
+        upper=bar(0.15),
+        lower=bar(0.15),
+        ram=ls.Slider(mass=3.0),
+    )
+    return ls.Scene(links, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("ram", force=-500.0)])
+
+
+LINKAGES = {"six-bar": six_bar, "knuckle-press": knuckle_press}
+
+
 @lru_cache
 def subject(name: str) -> Subject:
     if name == "scotch-yoke":
         yoke = scotch_yoke.ScotchYoke(ls.Bar(0.10, 0.03, 0.02, 7800.0), yoke_mass=5.0)
         push = ls.Load("yoke", force=(-100.0, 0.0), at=(0.3, 0.0))
         return Subject(name, ls.Scene(yoke, omega2=20.0, gravity=(0.0, -9.81), loads=[push]))
+    if name in LINKAGES:
+        return Subject(name, LINKAGES[name]())
     if name == "inline-four":
         return Subject(
             name, ls.MultiCylinder(ls.example("engine"), [0, 540, 180, 360], positions=[-0.1, 0.0, 0.1, 0.2])
@@ -226,8 +270,8 @@ def subject(name: str) -> Subject:
     return Subject(name, ls.example(name))
 
 
-MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", "inline-four")
-ON_PAPER = {"press", "engine", "quick-return", "scotch-yoke", "inline-four"}
+MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", *LINKAGES, "inline-four")
+ON_PAPER = {"press", "engine", "quick-return", "scotch-yoke", *LINKAGES, "inline-four"}
 """Machines whose report takes seconds: it is a long test."""
 
 

@@ -103,7 +103,8 @@ def _checked(scene: Scene, of: Iterable[str]) -> list[str]:
     names = requested("of", of)
     linear = [name for name, q in scene.table.quantity.items() if q.units in LINEAR_UNITS and not q.squared]
     refuse([problem for name in names for problem in quantity_problems("of", name, linear, scene)])
-    problem = "friction is not 0: forces are not linear in the masses then; make it 0"
+    kind = type(scene.mechanism).__name__
+    problem = f"scene is of a {kind} with friction: forces are not linear in the masses then; make it 0"
     refuse([problem] if scene.mechanism.rubs else [])
     return names
 

@@ -18,7 +18,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.run import Field
-from linksweep.results.peak_search.groups import Group, assembled_groups, crossing, empty_over_all
+from linksweep.results.peak_search.groups import (
+    Group,
+    assembled_groups,
+    crossing,
+    empty_over_all,
+    with_assembly_signals,
+)
 from linksweep.scene.scene import Scene
 
 SAMPLES, STEPS = 1440, 12
@@ -60,7 +66,7 @@ def rate_of(position: str) -> str:
 def travel(scene: Scene, name: str, dwell: float) -> Travel:
     """Return the travel of a position as Fields over the design dims; NaN where it turns fully or has no revolution."""
     names = (name, rate_of(name))
-    empty = empty_over_all(scene, (*names, "assembly"))
+    empty = empty_over_all(scene, with_assembly_signals(scene, (*names, "assembly")))
     results = Travel(*(Field(empty.dims, empty.values.copy()) for _ in Travel._fields))
     turns = scene.table.quantity[name].units == "degree"
     for _, group in assembled_groups(scene, names, EVERYWHERE):

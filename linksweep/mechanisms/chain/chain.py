@@ -37,6 +37,9 @@ class Own(NamedTuple):
     between: tuple[Row, ...] = BETWEEN
 
 
+FRICTION_POWER = Quantity("friction_power", "W", "power of friction on all sliders, never positive")
+
+
 class Chain:
     """Motion and forces of all machines of a shape."""
 
@@ -98,6 +101,7 @@ class Chain:
             *self._arms(),
             *of_limits,
             *own.rows,
+            *([] if self.motion.plain else [Total("friction_power", tuple(self.forces.losses))]),
         ]
         friction = "drive, friction, loads, gravity and inertia" if self.topology.slides else ""
         quantities = [
@@ -105,6 +109,7 @@ class Chain:
             *(quantity for slide in self.topology.slides for quantity in self._slide_quantities(slide)),
             *(bodies.drive_quantities(own.unknown, friction) if friction else bodies.drive_quantities(own.unknown)),
             *own.quantities,
+            *([FRICTION_POWER] if self.forces.losses and not self.motion.plain else []),
             *machine_quantities(self.bodies, self.joints, self.names, loads),
         ]
         return Table("theta2", tuple(rows), tuple(quantities), own.between, limited)

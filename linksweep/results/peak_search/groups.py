@@ -123,8 +123,13 @@ def assembled_groups(
 
 def _different(scene: Scene, names: tuple[str, ...]) -> Array:
     """Return one design for all that share the values of these quantities; the assembly is not always one of them."""
+    return different_designs(scene, with_assembly_signals(scene, names))
+
+
+def with_assembly_signals(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return names of quantities, those of the limits' signals in place of an assembly that is no quantity."""
     known = {"assembly": signals_of(scene.table.limits)} if scene.table.limits else {}
-    return different_designs(scene, tuple(chain.from_iterable(known.get(name, (name,)) for name in names)))
+    return tuple(chain.from_iterable(known.get(name, (name,)) for name in names))
 
 
 def _limits(scene: Scene, places: Places, count: int) -> Limits | None:
