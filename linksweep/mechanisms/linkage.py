@@ -175,7 +175,14 @@ class Linkage(Machine):
     def shape(self) -> Shape:
         steps = frozenset(step.name for step in self.topology.steps)
         inclined = frozenset(name for name, guide in self.guides.items() if turned(guide.angle))
-        return Shape(self.topology, turned=steps, inclined=inclined)
+        return Shape(self.topology, turned=steps, inclined=inclined, between=self._between_floats())
+
+    def _between_floats(self) -> frozenset[str]:
+        """Return the ground pins and guides whose distance from the crank's pivot is no float in every design."""
+        numbers = self._numbers_of_places()
+        low_words = {pin: numbers[f"{pin}_distance_lo"] for pin in [*self.ground][1:]}
+        low_words |= {name: numbers[f"{name}_offset_lo"] for name in self.topology.hosts}
+        return frozenset(name for name, low_word in low_words.items() if is_lazy(low_word) or np.any(low_word))
 
     @cached_property
     def drawing(self) -> Drawing:  # type: ignore[override]

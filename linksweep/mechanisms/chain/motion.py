@@ -49,6 +49,7 @@ class Shape(NamedTuple):
     turned : names of steps on crank and ground whose frame may lie at an angle to x
     goes_through : names of such steps that may be a parallelogram or a kite
     inclined : names of guides on links that may lie at an angle to their link's line of pins
+    between : names of ground pins and guides whose distance from the crank's pivot may lie between two floats
     plain : whether the rows keep the names of the dyad's own machine; for a topology of one step
     """
 
@@ -56,6 +57,7 @@ class Shape(NamedTuple):
     turned: frozenset[str] = frozenset()
     goes_through: frozenset[str] = frozenset()
     inclined: frozenset[str] = frozenset()
+    between: frozenset[str] = frozenset()
     plain: bool = False
 
 
@@ -263,7 +265,8 @@ class Motion:
     def on_crank_and_ground(self, step: Step) -> bool:
         """Return whether a dyad joins the crank's pin to the ground by links that are lines of pins.
 
-        Such a dyad closes by the crank's angle, which leaves it more digits near a toggle.
+        Such a dyad closes by the crank's angle, which leaves it more digits near a toggle, where the pivots' distance
+        is a float.
         """
         links, crank_pin = self.topology.links, self.topology.links[self.topology.crank][1]
         if isinstance(step, RRR):
@@ -275,14 +278,15 @@ class Motion:
             return lines and crank_pin in known and all(pin == crank_pin or self._off_origin(pin) for pin in known)
         if isinstance(step, RRP):
             line = step.link.role in links and {step.link.pin, step.pin} == {*links[step.link.role][:2]}
-            return line and step.link.pin == crank_pin and self.topology.hosts[step.guide] == GROUND
+            exact = self.topology.hosts[step.guide] == GROUND and step.guide not in self.shape.between
+            return line and step.link.pin == crank_pin and exact
         if isinstance(step, RPR):
             own_line = step.guide not in self.shape.inclined and step.link.pin == links[step.link.role][0]
             return own_line and step.pin == crank_pin and self._off_origin(step.link.pin)
         return False
 
     def _off_origin(self, pin: str) -> bool:
-        return self.fixed(pin) and not self.is_origin(pin)
+        return self.fixed(pin) and not self.is_origin(pin) and pin not in self.shape.between
 
     def _place_RRR(self, step: RRR) -> None:
         first, second, X = step.first, step.second, step.pin

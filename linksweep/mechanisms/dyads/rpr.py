@@ -77,7 +77,7 @@ def _closed() -> Rows:
         Row(
             dyad_rpr.rpr_direction,
             full("line_"),
-            (*full("exact_DB"), "offset", "offset_lo", "slide", "slide_squared"),
+            (*full("exact_DB"), "offset", "offset_lo", "slide"),
         ),
         Row(dyad_rpr.rpr_status, ("closure",)),
         Row(dyad_rpr.rpr_transmission_angle, ("transmission_angle",)),

@@ -8,7 +8,7 @@ The mechanism supplies s² in a form that does not cancel. Block and line turn t
 """
 
 from linksweep.physics.algebra.arithmetic import NOISE, Number, atan2, degrees, sqrt, where
-from linksweep.physics.algebra.double_double import difference, divide, multiply, square_of, two_product
+from linksweep.physics.algebra.double_double import add, difference, divide, multiply, square_of, two_product
 from linksweep.physics.algebra.double_double import dot as dot_pairs
 from linksweep.physics.algebra.planar import cross, dot
 from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE, range_noise
@@ -51,12 +51,12 @@ def rpr_direction(
     offset: Number,
     offset_lo: Number,
     slide: Number,
-    slide_squared: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """Return u of the module's equations, and its low words."""
-    w, square = ((DBx, DBx_lo), (DBy, DBy_lo)), square_of((DBx, DBx_lo), (DBy, DBy_lo))
-    slide_lo = 0.5 * (difference((slide_squared, 0.0), two_product(slide, slide)) / slide)
-    s, e = (slide, slide_lo), (offset, offset_lo)
+    w, square, e = ((DBx, DBx_lo), (DBy, DBy_lo)), square_of((DBx, DBx_lo), (DBy, DBy_lo)), (offset, offset_lo)
+    e_squared = multiply(e, e)
+    slide_squared = add(square, (-e_squared[0], -e_squared[1]))
+    s = slide, 0.5 * (difference(slide_squared, two_product(slide, slide)) / slide)
     x, y = divide(dot_pairs(s, e, *w), square), divide(dot_pairs(s, (-e[0], -e[1]), w[1], w[0]), square)
     return x[0], y[0], x[1], y[1]
 
