@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.between_links import force_name, name_between
+from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, equations, has_moment
 from linksweep.mechanisms.chain.forces import Forces
 from linksweep.mechanisms.chain.limits import limits
 from linksweep.mechanisms.chain.motion import Motion, Shape
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows import bodies
-from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
+from linksweep.mechanisms.rows.bodies import Equation, Source, xy
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.topology import GROUND
@@ -79,7 +80,7 @@ class Chain:
     def slide_unknowns(self, slide: str) -> tuple[str, ...]:
         """Return normal force and moment of a slide; a block without mass passes on no moment."""
         i, j = self.topology.slides[slide]
-        moment = (name_between("T", i, j),) if " past " not in slide else ()
+        moment = (name_between("T", i, j),) if has_moment(slide) else ()
         return (f"{force_name(i, j)}n", *moment)
 
     def own(self, drive: str) -> Own:
@@ -98,7 +99,8 @@ class Chain:
             Row(planar.opposite, (own.unknown.name,), ("work",)),
             *power_rows(own.unknown.name, own.rate, self.bodies, loads, *self.forces.losses),
             *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
-            *self._arms(),
+            *arm_rows(self.motion),
+            *contact_rows(self.forces.contacts),
             *of_limits,
             *own.rows,
             *([] if self.motion.plain else [Total("friction_power", tuple(self.forces.losses))]),
@@ -126,34 +128,9 @@ class Chain:
             status, at = out
         return rows
 
-    def _arms(self) -> Rows:
-        """Return rows of the vectors from each link's centre of gravity to its pins."""
-        return [
-            Row(planar.difference, xy(name_between("R", other, k)), (*self.motion.arm(role, pin), *xy(f"rG{k}")))
-            for role, pin, k, other in self._ends()
-        ]
-
-    def _ends(self) -> list[tuple[str, str, int, int]]:
-        """Return role, pin and number of each moving link at each pin, and the number of the other link there."""
-        ends = []
-        for joint, pair in self.topology.pins.items():
-            for k in {*pair} - {1}:
-                ends.append((self.names[k], joint.partition(":")[0], k, sum(pair) - k))
-        return ends
-
     def equations(self, drive: str) -> tuple[Equation, ...]:
         """Return the three rows of each moving link: sums of forces, and of moments about its centre of gravity."""
-        rows = {}
-        for body in self.bodies:
-            pins = {
-                force_name(*pair): (1.0 if pair[1] == body.number else -1.0, name_between("R", sum(pair) - k, k))
-                for pair in self.topology.pins.values()
-                for k in pair
-                if k == body.number
-            }
-            torque = self.drives[drive] if body.role == drive else None
-            rows[body.number] = newton_euler_equations(body.number, pins, torque)
-        return tuple(row for of_link in rows.values() for row in of_link)
+        return equations(self.topology, {drive: self.drives[drive]})
 
     def _slide_quantities(self, slide: str) -> list[Quantity]:
         if self.motion.plain:

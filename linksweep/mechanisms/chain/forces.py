@@ -12,8 +12,10 @@ from collections.abc import Callable
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.between_links import name_between
+from linksweep.mechanisms.chain.equations import Contact
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.dyads.names import Slide
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows.bodies import Source, xy
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side
@@ -28,6 +30,7 @@ class Forces:
         self.rows: Rows = []
         self.statuses: list[str] = []
         self.losses: list[str] = []
+        self.contacts: list[Contact] = []
         self.work: list[str] = []
         self.hung: dict[str, list[tuple[str, str]]] = defaultdict(list)
         self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
@@ -59,9 +62,7 @@ class Forces:
         self._rub(step.name, "ratio_slider")
         self._meet(step.link.role, step.slider, step.pin)
         self._push(step.link)
-        self._slide(
-            step.slider, step.guide, f"hold_{step.slider}", step.name, ("normal_force", "friction_force", "T14")
-        )
+        self._slide(step.slider, step.guide, f"hold_{step.slider}", step.name, rrp.CONTACT)
 
     def _force_RPR(self, step: RPR) -> None:
         slider, host = step.block or step.link.role, step.block or self.topology.members[step.pin][0]
@@ -72,8 +73,8 @@ class Forces:
         self._rub(step.name, "ratio_slide")
         self._push(Side(slider, step.pin))
         self._release(step.link)
-        parts = ("F43n", "friction_force", "T43" if step.block else "")
-        self._between(step.link.role, host, f"line_force_{slider}", step.name, parts)
+        slide = rpr.CONTACT if step.block else rpr.CONTACT._replace(moment="")
+        self._between(step.link.role, host, f"line_force_{slider}", step.name, slide)
 
     def _crank(self) -> None:
         role = self.topology.crank
@@ -142,14 +143,14 @@ class Forces:
         else:
             self.pushes[pin][other] = f"push_{other}_{pin}"
 
-    def _slide(self, slider: str, guide: str, hold: str, name: str, parts: tuple[str, str, str]) -> None:
+    def _slide(self, slider: str, guide: str, hold: str, name: str, slide: Slide) -> None:
         """Hang the force of a slider on its guide, with the moment about its pin."""
         host, names, react = self.topology.hosts[guide], self.motion.names[name], f"push_{slider}_{guide}"
         if host != GROUND:
             self._opposite(react, hold)
-            self.row(planar.opposite, (f"react_{slider}",), str(names[parts[2]]))
+            self.row(planar.opposite, (f"react_{slider}",), names[slide.moment])
             self._hang(host, react, (names["OCx"], names["OCy"]), f"react_{slider}")
-        self._between(host, slider, hold, name, parts)
+        self._between(host, slider, hold, name, slide)
 
     # ------------------------------------------------------------------------------------------------ joints
 
@@ -167,13 +168,14 @@ class Forces:
                     turn = planar.opposite if carrier == GROUND else planar.identity
                     self.row(turn, (f"{name}{axis}",), f"{pushes[role]}{axis}")
 
-    def _between(self, one: str, other: str, force: str, name: str, parts: tuple[str, str, str]) -> None:
+    def _between(self, one: str, other: str, force: str, name: str, slide: Slide) -> None:
         """Add rows of the force of one link on another in a slide: of the ground, or else of the later link."""
         i, j = self.topology.pair(one, other)
         same = planar.identity if i == self.motion.number(one) else planar.opposite
         names, stem = self.motion.names[name], name_between("F", i, j)
-        inner = (f"{force}x", f"{force}y", *(str(names[part]) for part in parts if part))
+        inner = (f"{force}x", f"{force}y", *(str(names[part]) for part in slide[:3] if part))
         outer = (f"{stem}x", f"{stem}y", f"{stem}n", f"{stem}t", name_between("T", i, j))
         for out, into in zip(outer, inner, strict=False):
             if out != into:
                 self.row(same, (out,), into)
+        self.contacts.append(Contact((i, j), *(names[own] for own in (slide.normal, *slide.acts))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.rows.bodies import Source
@@ -14,6 +15,16 @@ OF_THE_CRANK = {
 """Names that mean the same in every dyad."""
 PIN = ("{}x", "{}y", "{}x_lo", "{}y_lo", "u{}x", "u{}y", "u{}x_slope", "u{}y_slope", "v{}x", "v{}y", "a{}x", "a{}y")
 LINK = ("r{}x", "r{}y", "ratio{}", "slope{}", "omega{}", "alpha{}", "theta{}")
+
+
+class Slide(NamedTuple):
+    """A dyad's own names of a slide: normal force, friction and moment; then all that its normal force acts by:
+    μ·sign(v), the line's direction, and the slider's pin."""
+
+    normal: str
+    friction: str
+    moment: str
+    acts: tuple[str, str, str, str, str]
 
 
 class Names(dict[str, Source]):

@@ -5,6 +5,7 @@ rocker 4 about the known pin D, whose line passes B; `offset` is the line's from
 from __future__ import annotations
 
 from linksweep.engine.quantity import Limit, Row
+from linksweep.mechanisms.dyads.names import Slide
 from linksweep.mechanisms.dyads.rrr import Certain, Rows, full
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
@@ -18,6 +19,7 @@ TOGGLE = Limit("rocker", ("slide_squared",), ("noise",))
 """Limit of the dyad's motion."""
 SLIDE = Limit("rocker", ("grip",), ("noise",), "pole"), Limit("rocker", ("slide_leverage",), ("noise",), "jump")
 """Limits of friction in the slide: where it wedges the block, and where the block turns round."""
+CONTACT = Slide("F43n", "friction_force", "T43", ("direction", "r3x", "r3y", "Bx", "By"))
 LINE = ("slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")
 
 

@@ -6,6 +6,7 @@ The guide is on the ground or on a link that has its place: O is the origin of i
 from __future__ import annotations
 
 from linksweep.engine.quantity import Limit, Row
+from linksweep.mechanisms.dyads.names import Slide
 from linksweep.mechanisms.dyads.rrr import Certain, Rows, full
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
@@ -23,6 +24,7 @@ TOGGLE = Limit("C", ("low", "high"), ("low_noise", "high_noise"))
 SLIDE = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")
 """Limits of friction in the guide: where it wedges the slider, and where the slider turns round."""
 GUIDE = ("guide_cos", "guide_sin")
+CONTACT = Slide("normal_force", "friction_force", "T14", ("direction", "guide_cos", "guide_sin", "Cx", "Cy"))
 ROD = ("rod_along", "rod_across", "inverse_rod_along")
 
 

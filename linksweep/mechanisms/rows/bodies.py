@@ -252,5 +252,5 @@ def drive_quantities(unknown: Quantity, powers: str = "drive, loads, gravity and
         unknown,
         Quantity("power", "W", "power of the drive, positive when it feeds the mechanism"),
         Quantity("power_residual", "1", f"sum of the powers of {powers}, relative to the magnitudes they are made of"),
-        Quantity("cond", "1", "1-norm condition number of the 9x9, rows and columns scaled by powers of two"),
+        Quantity("cond", "1", "1-norm condition number of the square system, rows and columns scaled by powers of two"),
     ]

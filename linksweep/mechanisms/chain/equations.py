@@ -1,0 +1,93 @@
+"""The square system of a machine made of a crank and dyads: ΣFx, ΣFy, ΣM about its centre of gravity of each link.
+
+A slide between links i and j has two unknowns: the normal force of i on j with the friction that it brings, which acts
+at the slider's pin, and a moment about that pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from linksweep.engine.quantity import Row
+from linksweep.mechanisms.between_links import force_name, name_between
+from linksweep.mechanisms.chain.motion import Motion
+from linksweep.mechanisms.dyads.rrr import Rows
+from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
+from linksweep.mechanisms.topology import Topology
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import inverted_slider_crank
+
+
+class Contact(NamedTuple):
+    """A slide between links i and j: its normal force, μ·sign(v), its line's direction, and the slider's pin."""
+
+    pair: tuple[int, int]
+    normal: Source
+    direction: Source
+    line_x: Source
+    line_y: Source
+    pin_x: Source
+    pin_y: Source
+
+
+def arm_rows(motion: Motion) -> Rows:
+    """Return rows of the vectors from each link's centre of gravity to its pins."""
+    topology = motion.topology
+    ends = [(pin.partition(":")[0], pair, k) for pin, pair in topology.pins.items() for k in pair if k != 1]
+    return [
+        Row(planar.difference, xy(arm(pair, k)), (*motion.arm(topology.roles[k - 2], pin), *xy(f"rG{k}")))
+        for pin, pair, k in ends
+    ]
+
+
+def contact_rows(contacts: Iterable[Contact]) -> Rows:
+    """Return rows of each slide's force per unit of its normal force, and of its moments about centres of gravity."""
+    rows: Rows = []
+    for pair, *contact, x, y in contacts:
+        stem = f"contact_{force_name(*pair)}"
+        rows.append(Row(inverted_slider_crank.contact_direction, xy(stem), tuple(contact)))
+        for k in {*pair} - {1}:
+            lever = f"{stem}_lever{k}"
+            rows.append(Row(planar.difference, xy(lever), (x, y, *xy(f"G{k}"))))
+            rows.append(Row(planar.cross, (f"{stem}_on{k}",), (*xy(lever), *xy(stem))))
+    return rows
+
+
+def equations(topology: Topology, torques: Mapping[str, str]) -> tuple[Equation, ...]:
+    """Return the three rows of each moving link; `torques` names the unknown torque of the driven link."""
+    rows = []
+    for role in topology.roles:
+        k = topology.number(role)
+        pins = {force_name(*pair): (sign(pair, k), arm(pair, k)) for pair in topology.pins.values() if k in pair}
+        of_link = newton_euler_equations(k, pins, torques.get(role))
+        for slide, pair in topology.slides.items():
+            if k in pair:
+                _add_slide(of_link, pair, k, has_moment(slide))
+        rows += of_link
+    return tuple(rows)
+
+
+def _add_slide(rows: list[Equation], pair: tuple[int, int], k: int, with_moment: bool) -> None:
+    """Add the normal force and the moment of a slide to the rows of a link."""
+    force = force_name(*pair)
+    stem = f"contact_{force}"
+    for row, name in zip(rows, (*xy(stem), f"{stem}_on{k}"), strict=True):
+        row.coefficients[f"{force}n"] = (sign(pair, k), name)
+    if with_moment:
+        rows[2].coefficients[name_between("T", *pair)] = sign(pair, k)
+
+
+def has_moment(slide: str) -> bool:
+    """Return whether a slide passes on a moment: a block without mass, which a line passes, does not."""
+    return " past " not in slide
+
+
+def arm(pair: tuple[int, int], k: int) -> str:
+    """Return the name of the vector from the centre of gravity of link k to its pin with the other of two links."""
+    return name_between("R", sum(pair) - k, k)
+
+
+def sign(pair: tuple[int, int], k: int) -> float:
+    """Return 1 for the link on which the force of two links acts, −1 for the other."""
+    return 1.0 if pair[1] == k else -1.0
