@@ -22,6 +22,7 @@ from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
+from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
 from linksweep.mechanisms.topology import topology_of
 from linksweep.physics import advantage, crank_driven
@@ -139,7 +140,7 @@ class FourBar(Machine):
         frame, kite = ({"C"} if turned(self.ground_angle) else ()), ({"C"} if self._goes_through else ())
         return Shape(TOPOLOGY, turned=frozenset(frame), goes_through=frozenset(kite), plain=True)
 
-    def own(self, drive: str) -> Own:
+    def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         return _own(drive)
 
     def findings(self) -> Checks:

@@ -16,6 +16,7 @@ from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins
+from linksweep.mechanisms.topology import GROUND
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,6 +38,11 @@ class Machine(Mechanism):
     @property
     def roles(self) -> tuple[str, ...]:  # type: ignore[override]
         return self.shape.topology.roles
+
+    @property
+    def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
+        joined = self.shape.topology
+        return tuple(role for role, (_, guide) in joined.sliders.items() if joined.hosts[guide] == GROUND)
 
     @property
     def pins(self) -> Pins:  # type: ignore[override]
@@ -61,12 +67,12 @@ class Machine(Mechanism):
     def choices(self) -> dict[str, dict[str, str]]:
         return {"drive": self.drives}
 
-    def own(self, drive: str) -> Own:
+    def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         """Return a drive, and the rows of the machine's own."""
-        return self.chain.own(drive)
+        return self.chain.own(drive, loads)
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        return table(self.chain, self.own(drive), loads, frozenset(self.rubbing))
+        return table(self.chain, self.own(drive, loads), loads, frozenset(self.rubbing))
 
     @property
     def rubbing(self) -> tuple[str, ...]:

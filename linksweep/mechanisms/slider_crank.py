@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,24 +12,36 @@ import numpy as np
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
-from linksweep.engine.quantity import Table
+from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
+from linksweep.mechanisms.chain.chain import Own
+from linksweep.mechanisms.chain.motion import Shape
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
-from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
-from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, STATUS_OF_SLIDER, in_range, turned
+from linksweep.mechanisms.machine import Machine
+from linksweep.mechanisms.mechanism import reach_problems, register
+from linksweep.mechanisms.rows.bodies import Equation, drive_torque, newton_euler_equations
+from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
-from linksweep.mechanisms.rows.slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
+from linksweep.mechanisms.rows.pins import Journals
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
+from linksweep.mechanisms.topology import topology_of
+from linksweep.physics import advantage, coulomb, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import slider_crank
 
+TOPOLOGY = topology_of("crank A-B, rod B-C, slider C on guide", ("A",), (("guide", "ground"),))
+DRIVES = {"crank": "T12", "coupler": "T13"}
+DRIVEN = {"crank": "omega2", "coupler": "omega3"}
+JOURNALS = {"A": 2, "B": 2, "C": 4}
+"""As in engines: the crank carries crankshaft and crankpin, the piston the gudgeon pin; the rod has both its bushes."""
+JOINTS = {**TOPOLOGY.pins, **TOPOLOGY.slides}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
-SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0, "omega4": 0.0, "alpha4": 0.0}
+SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0}
 """Inputs of the slider as a body that does not turn; its axes lie along and across the guide."""
 GUIDE = Frame("guide", "slide_angle")
 
@@ -42,7 +54,7 @@ def _guide(mechanism: Any) -> Rail:
 
 @register
 @dataclass(frozen=True, eq=False, repr=False)
-class SliderCrank(Mechanism):
+class SliderCrank(Machine):
     """A slider-crank: engine, pump, compressor.
 
     Parameters
@@ -101,16 +113,11 @@ class SliderCrank(Mechanism):
     slider_cg_angle: Number = parameter("angle", 0.0)
 
     drives: ClassVar[dict[str, str]] = DRIVES
-    roles: ClassVar[tuple[str, ...]] = ("crank", "rod", "slider")
-    sliders: ClassVar[tuple[str, ...]] = ("slider",)
-    pins: ClassVar[Pins] = rotating(PINS)
     journals: ClassVar[Journals] = JOURNALS
-    bodies: ClassVar[tuple[Body, ...]] = BODIES
-    status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
     balances_partly: ClassVar[bool] = True
     title: ClassVar[str] = "Slider-crank"
     drawing: ClassVar[Drawing] = Drawing(
-        joints=PINS,
+        joints=JOINTS,
         journals=JOURNALS,
         frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: GUIDE},
         bars={2: ("A", "B"), 3: ("B", "C")},
@@ -134,12 +141,8 @@ class SliderCrank(Mechanism):
             "slider_mass": self.slider_mass,
             "guide_cos": guide_cos,
             "guide_sin": guide_sin,
-            "upright_cos": -guide_sin,
-            "upright_cos_lo": -sin_lo,
-            "upright_sin": guide_cos,
-            "upright_sin_lo": cos_lo,
-            "r4x": guide_cos,
-            "r4y": guide_sin,
+            "guide_cos_lo": cos_lo,
+            "guide_sin_lo": sin_lo,
             "branch_sign": self.branch_sign,
             **cg_parameters("slider", self.slider_cg_distance, self.slider_cg_angle),
         }
@@ -149,11 +152,12 @@ class SliderCrank(Mechanism):
     def near_toggle_angle(self) -> Number:
         return 90.0 + self.slide_angle
 
-    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        return table(drive, loads, turned(self.slide_angle))
+    @property
+    def shape(self) -> Shape:
+        return Shape(TOPOLOGY, turned=frozenset({"C"} if turned(self.slide_angle) else ()), plain=True)
 
-    def kinematics(self) -> tuple[str, ...]:
-        return ("theta3", "omega3", "alpha3", "x_slider", "v_slider", "a_slider")
+    def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
+        return _own(drive, any(form.full_turns for form in loads))
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
         return (*UNKNOWN_FORCES, self.drives[drive])
@@ -257,5 +261,41 @@ class SliderCrank(Mechanism):
             wedges = np.square(self.friction * height) >= (b - height) * (b + height) * (1.0 - 1e-9)
         return super().always_ok(drive) and not np.any(wedges)
 
-    def peak_quantities(self, drive: str) -> tuple[str, ...]:
-        return ("F12", "F32", "F43", "F14", self.drives[drive])
+
+@lru_cache
+def _own(drive: str, full_turns: bool) -> Own:
+    """Return a drive, the ratio of the slider's velocity to the crank's, and the document's friction row."""
+    no_cycle = Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))
+    rows = (
+        Row(slider_crank.work_on_crank, ("work",)),
+        Row(planar.identity, ("velocity_ratio",), ("ratio_slider",)),
+        Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
+        Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
+        Total("friction_rhs", ()),
+        *([] if drive == "crank" else DRIVEN_ROD),
+        *([no_cycle] if full_turns else []),
+    )
+    return Own(drive_torque(DRIVES[drive], drive), DRIVEN[drive], rows, QUANTITIES, between_rows("upright_cos", "upright_sin"))
+
+
+DRIVEN_ROD = (
+    Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
+    Row(crank_driven.moment_on_crank, ("moment_r2",)),
+    Row(
+        slider_crank.guide_force,
+        ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),
+        ("inverse_crank_along", "crank_across", "moment_r2", "Q4x", "Q4y", "guide_cos", "guide_sin", "direction"),
+    ),
+    Row(slider_crank.torque_on_rod, ("T13",)),
+    Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0)),
+    Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging")),
+)
+"""Rows in which the crank's moment equation takes the place of the driven rod's."""
+QUANTITIES = (
+    Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
+    Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
+    Quantity("friction_force", "N", "force of the guide on the slider along it"),
+    Quantity("friction_power", "W", "power of friction on the slider, never positive"),
+    Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
+    Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
+)

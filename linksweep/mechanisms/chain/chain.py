@@ -83,7 +83,7 @@ class Chain:
         moment = (name_between("T", i, j),) if has_moment(slide) else ()
         return (f"{force_name(i, j)}n", *moment)
 
-    def own(self, drive: str) -> Own:
+    def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         """Return the drive of a link by a torque."""
         unknown = bodies.drive_torque(self.drives[drive], drive)
         return Own(unknown, f"omega{self.topology.number(drive)}")
@@ -132,6 +132,10 @@ class Chain:
         """Return the three rows of each moving link: sums of forces, and of moments about its centre of gravity."""
         return equations(self.topology, {drive: self.drives[drive]})
 
+    def _counts(self, pin: str) -> bool:
+        """Return whether a pin has results: in a machine of its own name, only a pin that joins links."""
+        return not self.motion.plain or len(self.topology.members[pin]) > 1
+
     def _slide_quantities(self, slide: str) -> list[Quantity]:
         if self.motion.plain:
             return []
@@ -150,7 +154,7 @@ class Chain:
             if role != topology.crank:
                 words = f"angle of the {role} {first}→{second} from x, counter-clockwise, in (-180, 180]"
                 quantities.append(Quantity(f"theta{topology.number(role)}", "degree", words))
-        moving = [pin for pin, role in topology.support.items() if role != GROUND]
+        moving = [pin for pin, role in topology.support.items() if role != GROUND and self._counts(pin)]
         return [*quantities, *self.motion.quantities, *bodies.position_quantities(*moving)]
 
 

@@ -7,6 +7,7 @@ system of equations larger than a dyad's is solved.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
@@ -71,7 +72,7 @@ class Motion:
         self.frames: dict[str, Frame] = {}
         self.names: dict[str, Names] = {}
         self.certain: dict[str, Source] = {}
-        self.work: list[str] = []
+        self._work: dict[str, list[str]] = defaultdict(list)
         self.sides: dict[str, tuple[Side, Side]] = {}
         self.sliding: dict[str, tuple[str, str, str]] = {}
         self.quantities: list[Quantity] = []
@@ -80,6 +81,11 @@ class Motion:
             getattr(self, f"_place_{type(step).__name__}")(step)
 
     # ------------------------------------------------------------------------------------------------ names
+
+    @property
+    def work(self) -> tuple[str, ...]:
+        """Terms of the virtual work of all that acts on the links, without friction, link by link."""
+        return tuple(term for role in self.topology.roles for term in self._work[role])
 
     def number(self, role: str) -> int:
         return self.topology.number(role)
@@ -133,7 +139,7 @@ class Motion:
         self.bodies[role] = Body(CRANK.number, role, steady=True, ratio=1.0)
         self.frames[role] = Frame(pivot, ("cos2", "sin2", "cos2_lo", "sin2_lo"), (1.0, 0.0, 0.0, 0.0))
         self._carry(role, {pivot, pin})
-        self.work.append("N2")
+        self._work[role].append("N2")
 
     def _link(self, role: str, frame: Frame, placed: set[str]) -> None:
         """Add rows of a link that a dyad has placed: its rotation, its other pins, its work; and its body."""
@@ -155,10 +161,10 @@ class Motion:
         )
         if not self.fixed(pin):
             self.row(planar.dot, (f"pin_work{k}",), f"Q{k}x", f"Q{k}y", *u)
-            self.work.append(f"pin_work{k}")
+            self._work[role].append(f"pin_work{k}")
         if ratio != 0.0:
             self.row(planar.product, (f"turn_work{k}",), ratio, f"N{k}")
-            self.work.append(f"turn_work{k}")
+            self._work[role].append(f"turn_work{k}")
 
     def _carry(self, role: str, placed: set[str]) -> None:
         """Add rows of all pins of a placed link: their vectors from its first pin, and the places of its other pins."""
@@ -326,7 +332,7 @@ class Motion:
         self._rates(X)
         self._link(rod.role, self._frame(rod, X), {rod.pin, X})
         ratio, slope = self._turning(host)
-        self._slider(slider, X, guide, ratio, slope)
+        self._slider(slider, X, guide, host)
         self._close(
             step,
             rrp.on_crank_and_ground(step.name in self.shape.turned) if special else rrp.between_pin_and_guide(),
@@ -344,21 +350,18 @@ class Motion:
         origin = self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
         self._slides(step, slider, ("x_slider", "v_slider", "a_slider"), "guide", f"the foot of {origin} on it")
 
-    def _slider(self, role: str, pin: str, guide: dict[str, Source], ratio: Source, slope: Source) -> None:
-        """Add rows of a link that turns with a guide: its axes and rotation; and its body."""
-        k = self.number(role)
+    def _slider(self, role: str, pin: str, guide: Mapping[str, Source], host: str) -> None:
+        """Add rows of a link that turns with its host: its axes along the guide and its rotation; and its body."""
+        k, turning = self.number(role), self._turning(host)
         for axis, part in zip("xy", ("guide_cos", "guide_sin"), strict=True):
             self.row(planar.identity, (f"r{k}{axis}",), guide[part])
-        self.row(planar.product, (f"omega{k}",), "omega2", ratio)
-        self.row(crank_driven.angular_acceleration, (f"alpha{k}",), "omega2", "alpha2", ratio, slope)
-        self._body(role, pin, ratio, slope)
+        for word in ("omega", "alpha"):
+            self.row(planar.identity, (f"{word}{k}",), 0.0 if host == GROUND else f"{word}{self.number(host)}")
+        self._body(role, pin, *turning)
 
     def _turning(self, role: str) -> tuple[Source, Source]:
         """Return the names of a link's rotation per rate of the crank, and of its derivative."""
-        if role == GROUND:
-            return 0.0, 0.0
-        body = self.bodies[role]
-        return body.ratio, body.slope
+        return (0.0, 0.0) if role == GROUND else (self.bodies[role].ratio, self.bodies[role].slope)
 
     def _origin(self, host: str) -> dict[str, Source]:
         """Return the names of the origin of a guide's axes: the first pin of its link, or the crank's pivot."""
@@ -371,7 +374,7 @@ class Motion:
         words = ("guide_cos", "guide_sin", "guide_cos_lo", "guide_sin_lo")
         numbers: dict[str, Source] = {name: f"{guide}_{name}" for name in ("offset", "offset_lo", "friction")}
         if host == GROUND:
-            return {} if self.plain else numbers | dict(zip(words, own, strict=True))
+            return {word: word for word in words} if self.plain else numbers | dict(zip(words, own, strict=True))
         frame, turned = self.frames[host], full(f"direction_{guide}_")
         self.row(pins.quotient, full(f"quotient_{guide}_"), *own, *frame.own)
         self.row(pins.turned_with_low_words, turned, *full(f"quotient_{guide}_"), *frame.vector)
@@ -385,9 +388,8 @@ class Motion:
         numbers = {} if self.plain else self._offset(step) | {"friction": f"{step.guide}_friction"}
         self._link(link.role, Frame(link.pin, exact, direction_of(step.guide)), {link.pin})
         self._line_of_pins(step, line)
-        turning = (f"ratio{k}", f"slope{k}")
         if block:
-            self._slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, *turning)
+            self._slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, link.role)
         self._close(
             step,
             rpr.on_crank_and_ground(step.name in self.shape.turned) if special else rpr.between_pins(),

@@ -37,7 +37,8 @@ def on_crank_and_ground(turned: bool) -> Rows:
         Row(planar.identity, ("upright_sin_lo",), ("guide_cos_lo",)),
     ]
     return [
-        *([*upright, *near_toggle_rows("upright")] if turned else straight_rows("sin2", "cos2", minus_sin=True)),
+        *upright,
+        *(near_toggle_rows("upright") if turned else straight_rows("sin2", "cos2", minus_sin=True)),
         Row(slider_crank.near_toggle_widths, ("near_toggle_near", "near_toggle_far")),
         Row(slider_crank.toggle_cosines, ("low_cos", "low_cos_lo", "high_cos", "high_cos_lo")),
         Row(slider_crank.guide_components, ("crank_along", "crank_across", "rod_across")),
