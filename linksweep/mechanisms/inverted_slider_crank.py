@@ -4,26 +4,55 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, ClassVar
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
-from linksweep.engine.quantity import Table
+from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment
+from linksweep.mechanisms.chain.chain import Own
+from linksweep.mechanisms.chain.motion import Shape
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import inverted_slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
-from linksweep.mechanisms.mechanism import Mechanism, reach_problems, register
-from linksweep.mechanisms.rows.bodies import Body, Equation, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, STATUS_OF_SLIDER, frame_parameters, in_range, turned
-from linksweep.mechanisms.rows.inverted_slider_crank_rows import BODIES, DRIVES, JOURNALS, PINS, table
+from linksweep.mechanisms.machine import Machine
+from linksweep.mechanisms.mechanism import reach_problems, register
+from linksweep.mechanisms.rows.bodies import Equation, Source, arm_rows, drive_torque, newton_euler_equations
+from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals, Pins, rotating
 from linksweep.mechanisms.strokes import Stroke, block_stroke
+from linksweep.mechanisms.topology import topology_of
+from linksweep.physics import advantage, coulomb, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import inverted_slider_crank
+
+TOPOLOGY = topology_of("crank A-B, block B on slide, rocker D-E", ("A", "D"), (("slide", "rocker"),))
+
+
+class Drive(NamedTuple):
+    """A way to drive: its unknown; the rate of the driven part, and that per rate of the crank; the leverage, which
+    vanishes where the part stands still, with the two lengths whose product is its largest value."""
+
+    unknown: Quantity
+    rate: str
+    ratio: Source
+    leverage: tuple[Source, ...] = ()
+
+
+DRIVES = {
+    "crank": Drive(drive_torque("T12", "crank"), "omega2", 1.0),
+    "rocker": Drive(drive_torque("T14", "rocker"), "omega4", "ratio4", ("crank_along", "crank_length", 1.0)),
+    "cylinder": Drive(
+        Quantity("cylinder_force", "N", "force of the cylinder on the block along the line, positive as slide"),
+        "slide_velocity",
+        "ratio_slide",
+        ("slide_leverage", "crank_length", "ground_length"),
+    ),
+}
 
 ROCKER = Frame("rocker", "theta4")
 BLOCK_LENGTH = 1.0
@@ -38,7 +67,7 @@ gravity of block and rocker. cylinder_force acts along (r3x, r3y), F43n across i
 
 @register
 @dataclass(frozen=True, eq=False, repr=False)
-class InvertedSliderCrank(Mechanism):
+class InvertedSliderCrank(Machine):
     """An inverted slider-crank: a shaper's quick-return, Whitworth's, a cylinder-driven rocker.
 
     Parameters
@@ -119,15 +148,10 @@ class InvertedSliderCrank(Mechanism):
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
 
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
-    roles: ClassVar[tuple[str, ...]] = ("crank", "block", "rocker")
-    pins: ClassVar[Pins] = rotating(PINS)
-    journals: ClassVar[Journals] = JOURNALS
-    bodies: ClassVar[tuple[Body, ...]] = BODIES
-    status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
     title: ClassVar[str] = "Inverted slider-crank"
     drawing: ClassVar[Drawing] = Drawing(
-        joints={name.removesuffix(" (at B)"): links for name, links in PINS.items()},
-        journals=JOURNALS,
+        joints={**TOPOLOGY.pins, **TOPOLOGY.slides},
+        journals=TOPOLOGY.journals,
         frames={2: Frame("crank, A→B", "theta2"), 3: ROCKER, 4: ROCKER},
         bars={2: ("A", "B")},
         moving=("B",),
@@ -176,11 +200,12 @@ class InvertedSliderCrank(Mechanism):
         """Position of the block along the rocker's line, or extension of a cylinder, which a load may follow."""
         return {"block.position": block_stroke(*self.lengths(), self.ground_angle, BRANCH_SIGN[self.branch])}
 
-    def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
-        return table(drive, loads, turned(self.ground_angle))
+    @property
+    def shape(self) -> Shape:
+        return Shape(TOPOLOGY, turned=frozenset({"rocker"} if turned(self.ground_angle) else ()), plain=True)
 
-    def kinematics(self) -> tuple[str, ...]:
-        return ("theta4", "omega4", "alpha4", "slide", "slide_velocity", "slide_acceleration")
+    def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
+        return _own(drive)
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
         """Return the nine unknowns of the 9×9: the contact of rocker and block as normal force and moment."""
@@ -256,3 +281,95 @@ class InvertedSliderCrank(Mechanism):
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("F12", "F32", "F43", "F14", "T43", self.drives[drive])
+
+
+@lru_cache
+def _own(drive: str) -> Own:
+    """Return a drive, the arms of the slide's forces, and the ratios of the rocker's velocity and torque.
+
+    Torque or force of the drive come from virtual work, in which block and rocker turn together.
+    """
+    unknown, rate, ratio, leverage = DRIVES[drive]
+    loads = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
+    driven_ratio = [Row(crank_driven.away_from_dead_centre, ("driven_ratio",), (ratio, *leverage))] if leverage else []
+    rows = (
+        Row(planar.direction, ("theta4",), ("r3x", "r3y")),
+        Row(planar.identity, ("theta3",), ("theta4",)),
+        Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
+        Row(crank_driven.moment_on_crank, ("moment_r2",)),
+        Row(crank_driven.work_on_crank, ("work_of_loads",), loads),
+        *_contact(drive),
+        *driven_ratio,
+        *_unknown(drive, unknown.name, "driven_ratio" if leverage else ratio),
+        *_status(drive, leverage),
+        *ARMS,
+        Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
+        Row(advantage.torque_ratio, ("torque_ratio",)),
+    )
+    return Own(unknown, rate, rows, QUANTITIES, between_rows("ground_cos", "ground_sin"))
+
+
+def _contact(drive: str) -> list[Row]:
+    """Return rows of the slide's normal force and friction; with a cylinder, friction changes no other force."""
+    if drive == "cylinder":
+        return [
+            Row(inverted_slider_crank.normal_force_on_block, ("F43n",)),
+            Row(coulomb.friction, ("friction_force",), ("F43n", "direction")),
+        ]
+    if drive == "rocker":
+        return [
+            Row(planar.cross, ("crank_across",), ("r2x", "r2y", "r3x", "r3y")),
+            Row(inverted_slider_crank.contact_force_from_crank, ("F43n", "friction_force", "wedging")),
+        ]
+    return []
+
+
+def _unknown(drive: str, unknown: str, ratio: Source) -> list[Row]:
+    """Return rows of the drive's unknown and, with a cylinder, of the whole force along the line."""
+    if drive == "cylinder":
+        return [
+            Row(crank_driven.balancing_drive, ("line_force",), ("work_of_loads", ratio)),
+            Row(inverted_slider_crank.cylinder_force, (unknown,)),
+        ]
+    return [Row(crank_driven.balancing_drive, (unknown,), ("work", ratio))]
+
+
+def _status(drive: str, leverage: tuple[Source, ...]) -> list[Row]:
+    """Return rows of the status: closure, then leverage of the drive, then jamming, which a cylinder overcomes."""
+    if not leverage:
+        return []
+    moves = Row(crank_driven.drive_status, ("leverage_status",), ("closure", *leverage))
+    if drive == "cylinder":
+        return [moves, Row(planar.identity, ("status",), ("leverage_status",))]
+    return [moves, Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))]
+
+
+LINE = ("r3x", "r3y")
+ARMS = (
+    *arm_rows(3, "R23"),
+    *arm_rows(4, "R14"),
+    Row(inverted_slider_crank.slide_arms, ("normal_arm", "line_arm"), ("DBx", "DBy", "rG4x", "rG4y", *LINE)),
+    Row(
+        inverted_slider_crank.slide_arms,
+        ("block_normal_arm", "block_line_arm"),
+        (0.0, 0.0, "rG3x", "rG3y", *LINE),
+    ),
+    Row(inverted_slider_crank.contact_direction, ("contact_x", "contact_y")),
+    Row(inverted_slider_crank.contact_arm, ("contact_arm",)),
+    Row(
+        inverted_slider_crank.contact_arm,
+        ("block_contact_arm",),
+        ("F43n", "direction", "block_normal_arm", "block_line_arm"),
+    ),
+)
+"""Rows of the arms of the slide's forces from the centres of gravity of block and rocker."""
+QUANTITIES = (
+    Quantity("theta3", "degree", "angle of the block, the rocker's"),
+    Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
+    Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
+    Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
+    Quantity("friction_force", "N", "friction of the rocker on the block along its line"),
+    Quantity("friction_power", "W", "power of friction in the slide, never positive"),
+    Quantity("velocity_ratio", "1", "angular velocity of the rocker per that of the crank"),
+    Quantity("torque_ratio", "1", "torque that the rocker gives per torque on the crank, without any losses"),
+)

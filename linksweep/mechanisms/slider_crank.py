@@ -266,7 +266,7 @@ class SliderCrank(Machine):
 def _own(drive: str, full_turns: bool) -> Own:
     """Return a drive, the ratio of the slider's velocity to the crank's, and the document's friction row."""
     no_cycle = Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))
-    rows = (
+    rows: tuple[Row | Total, ...] = (
         Row(slider_crank.work_on_crank, ("work",)),
         Row(planar.identity, ("velocity_ratio",), ("ratio_slider",)),
         Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
@@ -275,7 +275,9 @@ def _own(drive: str, full_turns: bool) -> Own:
         *([] if drive == "crank" else DRIVEN_ROD),
         *([no_cycle] if full_turns else []),
     )
-    return Own(drive_torque(DRIVES[drive], drive), DRIVEN[drive], rows, QUANTITIES, between_rows("upright_cos", "upright_sin"))
+    return Own(
+        drive_torque(DRIVES[drive], drive), DRIVEN[drive], rows, QUANTITIES, between_rows("upright_cos", "upright_sin")
+    )
 
 
 DRIVEN_ROD = (

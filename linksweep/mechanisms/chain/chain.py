@@ -114,7 +114,8 @@ class Chain:
             *([FRICTION_POWER] if self.forces.losses and not self.motion.plain else []),
             *machine_quantities(self.bodies, self.joints, self.names, loads),
         ]
-        return Table("theta2", tuple(rows), tuple(quantities), own.between, limited)
+        last = {quantity.name: quantity for quantity in quantities}
+        return Table("theta2", tuple(rows), tuple(last.values()), own.between, limited)
 
     def _status(self) -> Rows:
         """Return rows of the status that fails first, and of the step where it does."""

@@ -135,7 +135,8 @@ class Motion:
         self.rows += Names("", {"crank_length": f"{role}_length"}, of_pin("B", pin)).placed(crank_pin_rows())
         words, low_words = (f"{role}_length", "cos2", "cos2_lo", "sin2", "sin2_lo"), (f"{pin}x_lo", f"{pin}y_lo")
         self.row(pins.crank_pin_low_words, low_words, *words)
-        self.certain |= dict.fromkeys(low_words, f"{role}_length")
+        if not self.plain:
+            self.certain |= dict.fromkeys(low_words, f"{role}_length")
         self.bodies[role] = Body(CRANK.number, role, steady=True, ratio=1.0)
         self.frames[role] = Frame(pivot, ("cos2", "sin2", "cos2_lo", "sin2_lo"), (1.0, 0.0, 0.0, 0.0))
         self._carry(role, {pivot, pin})
@@ -193,7 +194,8 @@ class Motion:
         self.row(pins.turned_with_low_words, full(turned), *full(quotient), *frame.vector)
         low_words = (f"{pin}x_lo", f"{pin}y_lo")
         self.row(pins.sum_low_words, low_words, *xy(pin), *self.place(start), *full(turned))
-        self.certain |= dict.fromkeys(low_words, f"{role}_length")
+        if not self.plain:
+            self.certain |= dict.fromkeys(low_words, f"{role}_length")
 
     def _rates(self, pin: str) -> None:
         """Add rows of a pin's velocity and acceleration."""
