@@ -114,13 +114,16 @@ def _load(force: Force, words: Words) -> Load:
 
 
 def _speed(scene: Scene, words: Words) -> float:
-    """Return the speed of the crank at which the input has its own in the position drawn [rad/s]."""
+    """Return the speed of the crank at which the input has its own in the position drawn [rad/s].
+
+    Where the input stands still there, the crank has the document's speed.
+    """
     pivot = words.machine.joints[next(iter(words.ground))]
     if not _other_input(words):
         return pivot.speed
     rate = _rate(words, words.machine.inputs[0])
-    result = sweep(scene, theta2=[words.axes[words.crank].angle], of=[rate])
-    return words.machine.inputs[0].speed / float(result[rate].item())
+    ratio = float(sweep(scene, theta2=[words.axes[words.crank].angle], of=[rate])[rate].item())
+    return words.machine.inputs[0].speed / ratio if abs(ratio) > 0.0 else pivot.speed
 
 
 def _rate(words: Words, joint: Joint) -> str:

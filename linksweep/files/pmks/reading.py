@@ -85,7 +85,7 @@ def _read(kind: str, records: list[str], read: Callable[[str], Record], problems
     for record in records:
         try:
             item = read(record)
-        except (ValueError, IndexError):
+        except (ValueError, IndexError, ZeroDivisionError):
             problems.append(
                 f"{kind} {quote(record)}: cannot be read; the document is damaged, or newer than this reader"
             )
@@ -132,7 +132,7 @@ class _Numbers:
             driven=bool(flags & DRIVEN),
             slides=bool(flags & SLIDES),
             welded=bool(flags & WELDED),
-            sealed=bool(flags & SEALED),
+            sealed=bool(flags & SEALED and carrier),
             angle=_whole_degree(math.degrees(self._number(f"J{name}~2", angle))),
             carrier=carrier,
             slot=(start, end),
@@ -198,7 +198,8 @@ def _dangling(joints: dict[str, Joint], links: dict[str, Body], forces: dict[str
     named += [(f"link {link.name}", pin, joints) for link in links.values() for pin in link.joints]
     named += [(f"link {link.name}", part, links) for link in links.values() for part in link.parts]
     named += [(f"force {force.name}", force.body, links) for force in forces.values()]
-    return [
+    undirected = [joint for joint in joints.values() if joint.carrier and "" in joint.slot]
+    return [f"joint {joint.name}: slides on {joint.carrier} in no direction" for joint in undirected] + [
         f"{place}: refers to {name}, which is not in the document" for place, name, known in named if name not in known
     ]
 
@@ -207,12 +208,20 @@ def _folded(
     joints: dict[str, Joint], links: dict[str, Body], blocks: Iterable[str]
 ) -> tuple[dict[str, Joint], dict[str, Body]]:
     """Return joints and links with each block's pin and sliding joint as one: it has the pin's name."""
-    for block in (links[name] for name in blocks):
-        pin, slide = sorted((joints[name] for name in block.joints), key=lambda joint: joint.slides)
+    for block in blocks:
+        pin, slide = sorted((joints[name] for name in links[block].joints), key=lambda joint: joint.slides)
         moved = replace(slide, name=pin.name, grounded=slide.grounded or (pin.grounded and not slide.carrier))
-        moved = replace(moved, welded=pin.welded, driven=slide.driven or pin.driven, mass=block.mass)
-        joints = {name: moved if name == pin.name else joint for name, joint in joints.items() if name != slide.name}
-        links = {name: link for name, link in links.items() if name != block.name}
+        moved = replace(moved, welded=pin.welded, driven=slide.driven or pin.driven, mass=links[block].mass)
+        others = {name: joint for name, joint in joints.items() if name != slide.name} | {pin.name: moved}
+        names = {name: name for name in joints} | {"": "", slide.name: pin.name}
+        joints = {
+            name: replace(joint, slot=(names[joint.slot[0]], names[joint.slot[1]])) for name, joint in others.items()
+        }
+        links = {
+            name: replace(link, joints=tuple(dict.fromkeys(names[pin] for pin in link.joints)))
+            for name, link in links.items()
+            if name != block
+        }
     return joints, links
 
 
@@ -235,7 +244,10 @@ def _lettered(joints: dict[str, Joint], links: dict[str, Body]) -> tuple[dict[st
 
 def _parts(links: dict[str, Body], name: str) -> list[str]:
     """Return the name of a body and those of all links welded in it."""
-    return [name, *(inner for part in links[name].parts for inner in _parts(links, part))]
+    parts = [name]
+    for part in parts:
+        parts.extend(inner for inner in links[part].parts if inner in links and inner not in parts)
+    return parts
 
 
 def _left_out(joints: list[str], extras: list[str]) -> list[str]:

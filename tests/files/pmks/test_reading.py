@@ -166,6 +166,26 @@ def test_all_names_that_lead_nowhere_are_listed():
     ]
 
 
+@pytest.mark.parametrize(
+    ("name", "old", "new", "message"),
+    [
+        ("Watt I", "1Om,1Q,1ck,8P,DfU", "1Om,1Q,1Om,1Q,DfU", "force '2F1,CFG,F1,1Om,1Q,1Om,1Q,DfU': cannot be read"),
+        ("Shaper's quick-return drive", "0,CD,C,D.", "0,CD,C,.", "joint B: slides on CD in no direction"),
+        ("Watt I", ".0B,B,", ".0A,B,", "joint A: is there twice"),
+    ],
+)
+def test_records_without_sense_are_named(name, old, new, message):
+    body = body_of(name)
+    assert old in body
+    with pytest.raises(ValueError, match=re.escape(message)):
+        read_drawing(stamped(body.replace(old, new)))
+
+
+def test_links_welded_in_themselves_are_one_body():
+    text = stamped(body_of("Drag link").replace("A,B,,.", "A,B,,AB.").replace("B,C,,.", "B,C,,BC,CD."))
+    assert list(read_drawing(text).bodies) == ["AB", "BC", "CD"]
+
+
 def test_entries_without_a_meaning_here_are_listed():
     body = body_of("Slider-crank whose rod comes square to the guide")
     body = body.replace("5C,C,oa,0,0.", "5C,C,oa,0,0,,,,,,,Ram.")
