@@ -7,14 +7,15 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.scene.examples import names
 
 PRESS = ls.example("press")
+NAMES = ("press", "engine", "quick-return", "loop", "watt-1", "jansen-leg")
+"""Examples with all kinds of quantities; tests/scene/test_machines.py sweeps the others."""
 MASSES = xr.DataArray([0.5, 0.7, 0.9], dims="mass")
 WEIGHTY = ls.Link(0.22, MASSES, 2.8e-3, cg_distance=0.11)
 PUSHES = xr.DataArray([[10.0, 20.0]] * 8, dims=("theta2", "push"))
 SCENES = {
-    **{name: ls.example(name) for name in names()},
+    **{name: ls.example(name) for name in NAMES},
     "both branches": replace(PRESS, mechanism=replace(PRESS.mechanism, branch="both")),
     "many masses": replace(PRESS, mechanism=replace(PRESS.mechanism, coupler=WEIGHTY)),
     "driven by its rocker": replace(PRESS, drive="rocker"),
@@ -41,7 +42,7 @@ def test_a_default_sweep_has_what_is_marked_so(scene):
     assert {row.name for row in ls.quantities(scene) if row.default} == {*ls.sweep(scene, 8).data_vars}
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", NAMES)
 def test_peaks_have_all_but_cond_and_status(name):
     scene = ls.example(name)
     peaks = ls.peaks(
