@@ -161,6 +161,10 @@ def _left_out(drawing: Drawing, words: Words) -> Iterator[str]:
     for name in words.cylinder:
         if mass := machine.bodies[name].mass:
             yield f"the mass of {name}, {mass:g} kg: a cylinder has none"
+    for name, slide in words.sliders.items():
+        used = {slide.name, words.pin_of(name)}
+        if points := [pin for pin in machine.bodies[name].joints if pin not in used]:
+            yield f"{', '.join(points)} on {words.roles[name]}: a slider has no further points"
     for joint in (*words.yokes.values(), *words.sliders.values()):
         if joint.mass:
             yield f"the mass of the block at {joint.name}, {joint.mass:g} kg"

@@ -103,7 +103,7 @@ class Words:
     @cached_property
     def guides(self) -> dict[str, Axes]:
         """Line of each guide."""
-        through = {self.sliders[name].name: self._pin(name) for name in self.sliders}
+        through = {self.sliders[name].name: self.pin_of(name) for name in self.sliders}
         pins = {guide: through.get(joint.name, joint.name) for guide, joint in self.sliding.items()}
         return {guide: Axes(self._at(pins[guide]), self.slot(joint)) for guide, joint in self.sliding.items()}
 
@@ -150,7 +150,7 @@ class Words:
             elif body.name in self.yokes:
                 yield f"{role} on guide_{self.sliders[body.name].name} past {self.yokes[body.name].name}"
             elif body.name in self.sliders:
-                yield f"{role} {self._pin(body.name)} on guide_{self.sliders[body.name].name}"
+                yield f"{role} {self.pin_of(body.name)} on guide_{self.sliders[body.name].name}"
             elif body.name == self.cylinder[0]:
                 yield f"{role} {'~'.join(self.ends)}"
         for joint in self.blocks:
@@ -176,7 +176,7 @@ class Words:
     def _riders(self, joint: Joint) -> list[str]:
         return [body.name for body in self.machine.at(joint.name) if body.name != joint.carrier]
 
-    def _pin(self, slider: str) -> str:
+    def pin_of(self, slider: str) -> str:
         """Return the pin of a slider, or that in its slot."""
         return (
             self.yokes[slider].name if slider in self.yokes else [*self._joined(slider), self.sliders[slider].name][0]

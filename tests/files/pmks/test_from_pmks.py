@@ -39,7 +39,10 @@ LEFT_OUT = {
         "the mass of GN, 0.001 kg: a cylinder has none",
         "the mass of PC, 0.001 kg: a cylinder has none",
     ],
-    "Offset-mount hatch": ["the steady speed of the input at S: offset_barrel turns steadily instead and is the drive"],
+    "Offset-mount hatch": [
+        "the steady speed of the input at S: offset_barrel turns steadily instead and is the drive",
+        "B on rod_bracket: a slider has no further points",
+    ],
     "Four-bar driven at its coupler-rocker pin": [
         "the steady speed of the input at C: oa turns steadily instead and is the drive"
     ],
@@ -49,7 +52,8 @@ LEFT_OUT = {
     "Four-bar with a stray link": ["machine 2, of the links EF: machine=2 takes it"],
     "Crank grounded at both ends": ["no joint has an input: bc turns"],
     "Watt I": [],
-    "Scotch yoke": [],
+    "Scotch yoke": ["D on cd: a slider has no further points"],
+    "Guided rod pushed by a link": [],
 }
 
 TEXTS = {
