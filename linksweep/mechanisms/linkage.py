@@ -195,7 +195,7 @@ class Linkage(Machine):
         return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
-        lengths = {role: self.parts[role].length for role in self.topology.given}
+        lengths = {role: self.parts[role].length for role in self.topology.struts}
         sampled = {
             role: SampledCylinder(*sample(f"{role}.length", length))
             for role, length in lengths.items()
@@ -229,7 +229,7 @@ class Linkage(Machine):
             numbers |= slot_numbers(role, parts[role])
         for role in joined.gears:
             numbers |= frame_parameters(f"{role}_phase", self.gears.get(role, Gears()).phase)
-        for role in joined.given:
+        for role in joined.struts:
             numbers |= cylinder_numbers(role, parts[role])
         return numbers
 

@@ -13,8 +13,20 @@ from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
-from linksweep.mechanisms.dyads.names import Names, of_link, of_pin
-from linksweep.mechanisms.dyads.rrr import Rows, full
+from linksweep.mechanisms.dyads.names import (
+    NOTHING,
+    Names,
+    Vector,
+    direction_of,
+    frame_of,
+    full,
+    full_of_point,
+    of_force,
+    of_link,
+    of_pin,
+    sliding_of,
+)
+from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step, Topology
 from linksweep.physics import crank_driven
@@ -22,11 +34,10 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
 
 ORIGIN = (0.0, 0.0, 0.0, 0.0)
-Vector = tuple[Source, ...]
 
 
 class Frame(NamedTuple):
-    """How a link is placed: a pin in place, and a vector of it in ground axes and in its own, with low words."""
+    """The place of a link: a pin that has its place, and a vector in ground axes and in its own, with low words."""
 
     pin: str
     vector: Vector
@@ -432,39 +443,3 @@ class Motion:
             self.row(pins.offset_from, from_pin, *offset, *direction_of(step.guide), *own)
             offset = from_pin
         return dict(zip(("offset", "offset_lo"), offset, strict=True))
-
-
-NOTHING: dict[str, Source] = {"Q3x": 0.0, "Q3y": 0.0, "N3": 0.0}
-"""Loads on a block without mass."""
-
-
-def frame_of(frame: str, pin: str) -> Mapping[str, Source]:
-    """Return the names of the distance and direction of a ground pin from the crank's pivot."""
-    parts = ("cos", "sin", "cos_lo", "sin_lo")
-    return {f"{frame}_length": f"{pin}_distance"} | {f"{frame}_{part}": f"{pin}_{part}" for part in parts}
-
-
-def direction_of(guide: str) -> Vector:
-    """Return the names of a guide's direction in the axes of its link."""
-    return f"{guide}_cos", f"{guide}_sin", f"{guide}_cos_lo", f"{guide}_sin_lo"
-
-
-def sliding_of(role: str) -> Mapping[str, Source]:
-    """Return the names of a block's position on its line, and of its motion."""
-    return {
-        "slide": f"x_{role}",
-        "slide_velocity": f"v_{role}",
-        "slide_acceleration": f"a_{role}",
-        "ratio_slide": f"ratio_{role}",
-        "slope_slide": f"slope_{role}",
-    }
-
-
-def of_force(force: str, stem: str) -> Mapping[str, Source]:
-    """Return the names of a force's components."""
-    return {f"{force}{axis}": f"{stem}{axis}" for axis in "xy"}
-
-
-def full_of_point(pin: str) -> Vector:
-    """Return the names of a third pin's position in the axes of its link."""
-    return f"{pin}_along", f"{pin}_across", f"{pin}_along_lo", f"{pin}_across_lo"

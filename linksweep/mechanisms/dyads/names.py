@@ -15,6 +15,9 @@ OF_THE_CRANK = {
 """Names that mean the same in every dyad."""
 PIN = ("{}x", "{}y", "{}x_lo", "{}y_lo", "u{}x", "u{}y", "u{}x_slope", "u{}y_slope", "v{}x", "v{}y", "a{}x", "a{}y")
 LINK = ("r{}x", "r{}y", "ratio{}", "slope{}", "omega{}", "alpha{}", "theta{}")
+Vector = tuple[Source, ...]
+NOTHING: dict[str, Source] = {"Q3x": 0.0, "Q3y": 0.0, "N3": 0.0}
+"""Loads on a block without mass."""
 
 
 class Slide(NamedTuple):
@@ -65,3 +68,40 @@ def of_pin(letter: str, pin: str, fixed: bool = False, origin: bool = False) -> 
 def of_link(digit: int, number: int) -> dict[str, Source]:
     """Return the names of a link's vector and rotation."""
     return {form.format(digit): form.format(number) for form in LINK}
+
+
+def full(stem: str) -> tuple[str, str, str, str]:
+    """Return the names of a vector's components and their low words."""
+    return f"{stem}x", f"{stem}y", f"{stem}x_lo", f"{stem}y_lo"
+
+
+def frame_of(frame: str, pin: str) -> Mapping[str, Source]:
+    """Return the names of the distance and direction of a ground pin from the crank's pivot."""
+    parts = ("cos", "sin", "cos_lo", "sin_lo")
+    return {f"{frame}_length": f"{pin}_distance"} | {f"{frame}_{part}": f"{pin}_{part}" for part in parts}
+
+
+def direction_of(guide: str) -> Vector:
+    """Return the names of a guide's direction in the axes of its link."""
+    return f"{guide}_cos", f"{guide}_sin", f"{guide}_cos_lo", f"{guide}_sin_lo"
+
+
+def sliding_of(role: str) -> Mapping[str, Source]:
+    """Return the names of a block's position on its line, and of its motion."""
+    return {
+        "slide": f"x_{role}",
+        "slide_velocity": f"v_{role}",
+        "slide_acceleration": f"a_{role}",
+        "ratio_slide": f"ratio_{role}",
+        "slope_slide": f"slope_{role}",
+    }
+
+
+def of_force(force: str, stem: str) -> Mapping[str, Source]:
+    """Return the names of a force's components."""
+    return {f"{force}{axis}": f"{stem}{axis}" for axis in "xy"}
+
+
+def full_of_point(pin: str) -> Vector:
+    """Return the names of a third pin's position in the axes of its link."""
+    return f"{pin}_along", f"{pin}_across", f"{pin}_along_lo", f"{pin}_across_lo"

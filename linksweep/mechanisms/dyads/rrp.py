@@ -6,8 +6,8 @@ The guide is on the ground or on a link that has its place: O is the origin of i
 from __future__ import annotations
 
 from linksweep.engine.quantity import Limit, Row
-from linksweep.mechanisms.dyads.names import Slide
-from linksweep.mechanisms.dyads.rrr import Certain, Rows, full
+from linksweep.mechanisms.dyads.names import Slide, full
+from linksweep.mechanisms.dyads.rrr import Certain, Rows
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
 from linksweep.physics.algebra import planar

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linksweep.engine.quantity import Limit, Row, Total
+from linksweep.mechanisms.dyads.names import full
 from linksweep.mechanisms.rows.bodies import Source
 from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import crank_driven
@@ -26,11 +27,6 @@ CLOSED = (
     *("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3"),
     *("along3", "along4", "across", "inverse_2ff", "half_inverse_root"),
 )
-
-
-def full(stem: str) -> tuple[str, str, str, str]:
-    """Return the names of a vector's components and their low words."""
-    return f"{stem}x", f"{stem}y", f"{stem}x_lo", f"{stem}y_lo"
 
 
 def on_crank_and_ground(turned: bool, goes_through: bool) -> Rows:

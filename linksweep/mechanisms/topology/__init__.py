@@ -33,7 +33,7 @@ def topology(
     ground: tuple[str, ...],
     hosts: Names = (),
     ratios: Names = (),
-    given: frozenset[str] = frozenset(),
+    struts: frozenset[str] = frozenset(),
     reserved: frozenset[str] = frozenset(),
 ) -> tuple[Topology | None, tuple[str, ...]]:
     """Return the topology of a linkage, or None, and its problems.
@@ -44,7 +44,7 @@ def topology(
     ground : pins on the ground; the first is the crank's pivot
     hosts : name of each declared guide, and the link that carries it or "ground"
     ratios : name of each declared gear pair's wheel, and its ratio as text, "" where `links` states it
-    given : cylinders of given length
+    struts : cylinders of given length, each a massless link
     reserved : names that no link may have
 
     Returns
@@ -56,7 +56,7 @@ def topology(
     problems = [*unread, *part_problems(parts, reserved)]
     if unread or len({part.role for part in parts}) < len(parts):
         return None, tuple(problems)
-    machine = _joined(parts, ground, dict(hosts), dict(ratios), given).closed()
+    machine = _joined(parts, ground, dict(hosts), dict(ratios), struts).closed()
     problems += [
         *pin_problems(parts, machine),
         *guide_problems(parts, machine, dict(hosts)),
@@ -75,7 +75,7 @@ def topology_of(links: str, ground: tuple[str, ...], hosts: Names = ()) -> Topol
 
 
 def _joined(
-    parts: list[Part], ground: tuple[str, ...], hosts: dict[str, str], ratios: dict[str, str], given: frozenset[str]
+    parts: list[Part], ground: tuple[str, ...], hosts: dict[str, str], ratios: dict[str, str], struts: frozenset[str]
 ) -> Topology:
     links = {part.role: tuple(dict.fromkeys(part.pins)) for part in parts if part.pins and not part.guide}
     past = {part.role: part.past for part in parts if part.past and part.pins}
@@ -89,7 +89,7 @@ def _joined(
         past=past,
         yokes={part.role: (part.guide, part.past) for part in parts if part.guide and not part.pins},
         cylinders=cylinders,
-        given=given & {*cylinders},
+        struts=struts & {*cylinders},
         gears={part.role: _ratio(part.ratio or ratios.get(part.role, "")) for part in parts if part.mate},
         hosts={**{name: name for name in lines}, **hosts},
     )

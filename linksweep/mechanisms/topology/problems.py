@@ -135,14 +135,14 @@ def closure_problems(topology: Topology) -> list[str]:
         return single
     if topology.freedoms(waiting, topology.placed) > 0:
         return [f"links: {', '.join(waiting)} can move while the crank stands: hold one by another link"]
-    together = [*_inseparable(topology, waiting), *topology.given]
+    together = [*_inseparable(topology, waiting), *topology.struts]
     names = [name for name in topology.waiting if name in together]
     return [f"links: {', '.join(names)} close only together: no dyad finds them; give them another joint or crank"]
 
 
 def _held_twice(topology: Topology) -> Iterator[str]:
     for name in topology.waiting:
-        if name in topology.given and {*topology.cylinders[name]} <= {*topology.support}:
+        if name in topology.struts and {*topology.cylinders[name]} <= {*topology.support}:
             yield f"links: both pins of {name} have their places without it: give it no length, or leave it out"
         if name in topology.roles and topology.freedoms([name], topology.placed) < 0:
             yield f"links: {name} is held by one joint too many: leave out one of its pins or slides, or the link"

@@ -23,7 +23,7 @@ class Topology:
     past : pin of another link that the line of a link passes (`arm D-E past B`)
     yokes : guide and pin of each slider with a slot (`yoke on slide past B`)
     cylinders : both pins of each cylinder (`c1 P~B`)
-    given : cylinders of given length
+    struts : cylinders of given length, each a massless link
     gears : turns of each wheel per turn of the crank
     hosts : link that carries each guide, or "ground"; the guide of `past` and of `block on arm` has the link's name
     steps : gears and dyads in the order in which they find their places
@@ -36,7 +36,7 @@ class Topology:
     past: Mapping[str, str]
     yokes: Mapping[str, tuple[str, str]]
     cylinders: Mapping[str, tuple[str, str]]
-    given: frozenset[str]
+    struts: frozenset[str]
     gears: Mapping[str, Fraction]
     hosts: Mapping[str, str]
     steps: tuple[Step, ...] = ()
@@ -140,7 +140,7 @@ class Topology:
     @property
     def waiting(self) -> list[str]:
         """Names that have no place yet; a cylinder without a given length needs none."""
-        follow = [name for name in self.cylinders if name not in self.given]
+        follow = [name for name in self.cylinders if name not in self.struts]
         return [name for name in self.names if name not in (*self.placed, *follow)]
 
     def pair(self, one: str, other: str) -> tuple[int, int]:
@@ -155,7 +155,7 @@ class Topology:
         yield from ((2, (role, self.hosts.get(guide, ""))) for role, (guide, _) in self.yokes.items())
         yield from ((1, (role, carrier.get(pin, ""))) for role, pin in self.passed.items())
         yield from ((1, (role, self.crank)) for role in self.gears)
-        yield from ((1, [carrier.get(pin, "") for pin in self.cylinders[name]]) for name in self.given)
+        yield from ((1, [carrier.get(pin, "") for pin in self.cylinders[name]]) for name in self.struts)
 
     def _steps(self) -> Iterator[Step | None]:
         waiting = self.waiting

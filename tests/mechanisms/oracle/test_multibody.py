@@ -130,7 +130,7 @@ def test_energy_is_conserved(name, seed):
 
 @pytest.mark.parametrize("name", TOPOLOGIES)
 def test_rates_are_derivatives(name):
-    """Of positions and of rates by the crank's angle, by central differences."""
+    """Derivatives of positions and of rates to the crank's angle, by central differences."""
     solution, step = solved(name, 5), 2.0**-16
     linkages = solution.assembly.linkages
     before, after = (multibody.solve(replace(linkages, theta2=linkages.theta2 + h)).frames for h in (-step, step))

@@ -10,15 +10,15 @@ SLIDE = (("slide", GROUND),)
 FOUR_BAR = "crank A-B, rod B-C, rocker D-C"
 
 
-def of(links: str, ground: str = "AD", hosts=SLIDE, ratios=(), given=()):
+def of(links: str, ground: str = "AD", hosts=SLIDE, ratios=(), struts=()):
     """Return the topology of a sound text."""
-    machine, problems = topology(links, tuple(ground), hosts if "slide" in links else (), ratios, frozenset(given))
+    machine, problems = topology(links, tuple(ground), hosts if "slide" in links else (), ratios, frozenset(struts))
     assert problems == ()
     return machine
 
 
-def problems(links: str, ground: str = "AD", hosts=(), ratios=(), given=(), reserved=()) -> list[str]:
-    return [*topology(links, tuple(ground), hosts, ratios, frozenset(given), frozenset(reserved))[1]]
+def problems(links: str, ground: str = "AD", hosts=(), ratios=(), struts=(), reserved=()) -> list[str]:
+    return [*topology(links, tuple(ground), hosts, ratios, frozenset(struts), frozenset(reserved))[1]]
 
 
 def meet(first: str, second: str, pin: str) -> RRR:
@@ -127,7 +127,7 @@ def test_dyads_of(name):
 
 def test_cylinders_of_given_length_are_links_and_the_one_that_follows_is_none():
     links, ground, steps = EXCAVATOR
-    machine = of(links, ground, given=("c2", "c3"))
+    machine = of(links, ground, struts=("c2", "c3"))
     assert list(machine.steps) == steps
     assert machine.roles == ("boom", "stick", "rocker", "link", "bucket")
     assert machine.members["G"] == ("stick",) and "G" not in machine.pins
@@ -136,7 +136,7 @@ def test_cylinders_of_given_length_are_links_and_the_one_that_follows_is_none():
 
 
 def test_a_cylinder_of_given_length_may_end_at_a_slider():
-    machine = of("crank A-B, c1 B~C, ram C on slide", "A", given=("c1",))
+    machine = of("crank A-B, c1 B~C, ram C on slide", "A", struts=("c1",))
     assert list(machine.steps) == [RRP(Side("c1", "B"), "ram", "C", "slide")]
     assert machine.support["C"] == "ram"
 
@@ -238,7 +238,7 @@ def test_wrong_mobility(links, lines):
 
 def test_cylinders_that_hold_too_much():
     line = "links: both pins of c1 have their places without it: give it no length, or leave it out"
-    assert problems(f"{FOUR_BAR}, c1 D~B", given=("c1",)) == [STUCK, line]
+    assert problems(f"{FOUR_BAR}, c1 D~B", struts=("c1",)) == [STUCK, line]
     assert problems(f"{FOUR_BAR}, c1 C~D") == [
         "links: both pins of c1 are on rocker, so that its length is fixed: leave it out"
     ]
