@@ -209,11 +209,13 @@ class Linkage(Machine):
 
     @property
     def frictions(self) -> dict[str, Number]:
-        return {f"{name}_friction": guide.friction for name, guide in self.guides.items()}
+        guides = {f"{name}_friction": guide.friction for name, guide in self.guides.items()}
+        return guides | {f"{role}_slot_friction": self.parts[role].slot_friction for role in self.topology.yokes}
 
     @property
     def rubbing(self) -> tuple[str, ...]:
-        return tuple(name for name, g in self.guides.items() if is_lazy(g.friction) or np.any(g.friction))
+        rubs = {name: is_lazy(friction) or np.any(friction) for name, friction in self.frictions.items()}
+        return tuple(name.removesuffix("_friction") for name in rubs if rubs[name])
 
     def parameters(self) -> dict[str, Any]:
         return self._numbers_of_parts() | self._numbers_of_places()

@@ -76,8 +76,8 @@ def slider_numbers(role: str, slider: Slider) -> Numbers:
 
 
 def slot_numbers(role: str, slider: Slider) -> Numbers:
-    """Return the direction of a yoke's slot from that of its guide."""
-    return frame_parameters(f"{role}_slot", slider.slot_angle)
+    """Return the direction of a yoke's slot from that of its guide, and its friction."""
+    return frame_parameters(f"{role}_slot", slider.slot_angle) | {f"{role}_slot_friction": slider.slot_friction}
 
 
 def cylinder_numbers(role: str, cylinder: Cylinder) -> Numbers:

@@ -184,6 +184,8 @@ class Slider(ByContent):
         Angle of the centre of gravity from the guide's direction, counter-clockwise [degree].
     slot_angle : float or DataArray, default 90.0
         Direction of the slot of a "yoke on slide past B" from the guide's direction [degree].
+    slot_friction : float or DataArray, default 0.0
+        Coefficient of Coulomb friction between such a slot and its pin [1].
 
     Notes
     -----
@@ -202,6 +204,7 @@ class Slider(ByContent):
     cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     cg_angle: Number = parameter("angle", 0.0)
     slot_angle: Number = parameter("angle", 90.0)
+    slot_friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -76,7 +76,7 @@ class Machine(Mechanism):
 
     @property
     def rubbing(self) -> tuple[str, ...]:
-        """Names of the guides with friction."""
+        """Names of the guides with friction, and of slots such as yoke_slot."""
         return ()
 
     def kinks(self) -> tuple[str, ...]:

@@ -13,6 +13,9 @@ import math
 
 from linksweep.physics.algebra.arithmetic import Number, where
 
+CONTACT_NOISE = 2.0**-44
+"""Part of the forces that press below which a normal force counts as none."""
+
 
 def direction_of_sliding(friction: Number, velocity: Number, omega2: Number, noise: Number) -> Number:
     """Return μ·sign(v), or 0 where the part stands still: slower than `noise` per radian of the crank."""
@@ -37,6 +40,51 @@ def grip(along_squared: Number, across: Number, friction: Number) -> Number:
     """Return along² − (μ·across)², positive where friction does not wedge: the slope is across over along."""
     wedged = friction * across
     return along_squared - wedged * wedged
+
+
+def grip_of_two(sin_squared: Number, friction: Number, second_friction: Number) -> Number:
+    """Return a number that is positive where no friction of two guides wedges what slides on both.
+
+    They wedge where the angle between them is at most the sum of their angles of friction, atan μ.
+    """
+    both = friction + second_friction
+    return sin_squared - both * both / ((1.0 + friction * friction) * (1.0 + second_friction * second_friction))
+
+
+def two_sliding_contacts(
+    along: Number, across: Number, direction: Number, cos: Number, sin: Number, second_direction: Number
+) -> tuple[Number, Number, Number, Number, Number]:
+    """Return normal force and friction of two guides on what slides on both, and the number of consistent solutions.
+
+    A force (along, across), in the axes of the first guide, presses on it; the second guide lies at the angle of this
+    cosine and sine. Each pair of signs of the normal forces is assumed in turn. Only one pair that its own solution
+    confirms makes it a solution: else the forces are NaN.
+    """
+    least = -CONTACT_NOISE * (abs(along) + abs(across))
+    normal = second = count = 0.0
+    for sign in (1.0, -1.0):
+        for second_sign in (1.0, -1.0):
+            k, k2 = sign * direction, second_sign * second_direction
+            pushed_along, pushed_across = sin + k2 * cos, cos - k2 * sin
+            inverse = 1.0 / (pushed_along - k * pushed_across)
+            one = -(along * pushed_across + across * pushed_along) * inverse
+            other = (along + k * across) * inverse
+            confirmed = _confirmed(one, sign, least) * _confirmed(other, second_sign, least)
+            normal, second = where(confirmed > 0.0, one, normal), where(confirmed > 0.0, other, second)
+            count = count + confirmed
+    normal, second = (where(abs(count - 1.0) < 0.5, force, math.nan) for force in (normal, second))
+    return normal, friction(normal, direction), second, friction(second, second_direction), count
+
+
+def _confirmed(force: Number, sign: float, least: Number) -> Number:
+    """Return 1 where a force has the sign that was assumed for it, else 0; one of next to nothing is positive."""
+    return where(force < least, 1.0 if sign < 0.0 else 0.0, 0.0 if sign < 0.0 else 1.0)
+
+
+def solutions_status(status: Number, count: Number) -> Number:
+    """Return `status`, or, where it is 0, 4 (jammed: no solution) or 6 (more than one)."""
+    jammed = where(count < 0.5, 4.0, where(count > 1.5, 6.0, 0.0))
+    return where(status > 0.0, status, jammed)
 
 
 def friction(normal: Number, direction: Number) -> Number:

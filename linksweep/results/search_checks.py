@@ -35,7 +35,7 @@ def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     for name, (table, dims, words) in tables.items():
         values = table.reshape(*sizes.values(), *table.shape[1:])
         variables[name] = xr.Variable((*sizes, *dims), values, {"units": "degree", "long_name": words})
-    return variables | _transmission_angles(scene.unloaded, pins)
+    return variables | (_transmission_angles(scene.unloaded, pins) if pins else {})
 
 
 def _transmission_angles(scene: Scene, pins: Iterable[str]) -> dict[str, xr.Variable]:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.between_links import name_between
+from linksweep.mechanisms.chain import slides
 from linksweep.mechanisms.chain.equations import Contact
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
@@ -44,90 +45,93 @@ class Forces:
     def row(self, function: Callable, outputs: tuple[str, ...], *inputs: Source) -> None:
         self.rows.append(Row(function, outputs, inputs))
 
+    _force_RPP = slides.force_RPP
+    _force_PRP = slides.force_PRP
+
     # ------------------------------------------------------------------------------------------------ dyads
 
     def _force_RRR(self, step: RRR) -> None:
         coupler, rocker = self.motion.sides[step.name]
-        self._act_about(coupler)
-        self._act_about(rocker)
-        self._solve(step.name, rrr.forces(), "closure")
-        self._meet(coupler.role, rocker.role, step.pin)
-        self._push(coupler)
+        self.act_about(coupler)
+        self.act_about(rocker)
+        self.solve(step.name, rrr.forces(), "closure")
+        self.meet(coupler.role, rocker.role, step.pin)
+        self.push(coupler)
         self._release(rocker)
 
     def _force_RRP(self, step: RRP) -> None:
-        self._act_about(step.link)
-        self._act(step.slider)
-        self._solve(step.name, rrp.forces(), "jam_status")
-        self._rub(step.name, "ratio_slider")
-        self._meet(step.link.role, step.slider, step.pin)
-        self._push(step.link)
-        self._slide(step.slider, step.guide, f"hold_{step.slider}", step.name, rrp.CONTACT)
+        self.act_about(step.link)
+        self.act(step.slider)
+        self.solve(step.name, rrp.forces(), "jam_status")
+        self.rub(step.name, "ratio_slider")
+        self.meet(step.link.role, step.slider, step.pin)
+        self.push(step.link)
+        self.slide(step.slider, step.guide, f"hold_{step.slider}", step.name, rrp.CONTACT)
 
     def _force_RPR(self, step: RPR) -> None:
         slider, host = step.block or step.link.role, step.block or self.topology.members[step.pin][0]
-        self._act_about(step.link)
+        self.act_about(step.link)
         if step.block:
-            self._act(step.block)
-        self._solve(step.name, rpr.forces(), "jam_status")
-        self._rub(step.name, "ratio_slide")
-        self._push(Side(slider, step.pin))
+            self.act(step.block)
+        self.solve(step.name, rpr.forces(), "jam_status")
+        self.rub(step.name, "ratio_slide")
+        self.push(Side(slider, step.pin))
         self._release(step.link)
         slide = rpr.CONTACT if step.block else rpr.CONTACT._replace(moment="")
-        self._between(step.link.role, host, f"line_force_{slider}", step.name, slide)
+        self.between(step.link.role, host, f"line_force_{slider}", step.name, slide)
 
     def _crank(self) -> None:
         role = self.topology.crank
-        self._act(role)
+        self.act(role)
         pivot = self.topology.ground[0]
         for axis in "xy":
             self.row(planar.identity, (f"push_{role}_{pivot}{axis}",), f"E2{axis}")
-        self._push(Side(role, pivot))
+        self.push(Side(role, pivot))
 
     # ------------------------------------------------------------------------------------------------ actions
 
-    def _solve(self, name: str, rows: Rows, status: str) -> None:
+    def solve(self, name: str, rows: Rows, status: str) -> None:
         """Add the rows of a dyad's forces, and its status."""
         names = self.motion.names[name]
         self.rows += names.placed(rows)
         self.statuses.append(str(names[status]))
 
-    def _rub(self, name: str, ratio: str) -> None:
+    def rub(self, name: str, ratio: str, friction: str = "friction_force", power: str = "friction_power") -> None:
         """Add the work of a slide's friction, and the power that it loses."""
         names = self.motion.names[name]
-        self.row(planar.product, (f"friction_work_{name}",), names[ratio], names["friction_force"])
-        self.work.append(f"friction_work_{name}")
-        self.losses.append(str(names["friction_power"]))
+        self.row(planar.product, (f"work_of_{names[friction]}",), names[ratio], names[friction])
+        self.work.append(f"work_of_{names[friction]}")
+        self.losses.append(str(names[power]))
 
-    def _act(self, role: str) -> None:
+    def act(self, role: str) -> None:
         """Add up all that acts on a link: force E, and moment L about its first pin."""
         k = self.motion.number(role)
         for axis in "xy":
             self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *(f"{force}{axis}" for force, _ in self.hung[role]))))
         self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.hung[role]))))
 
-    def _act_about(self, side: Side) -> None:
+    def act_about(self, side: Side) -> None:
         """Add up all that acts on a link, also its moment about a known pin."""
-        self._act(side.role)
+        self.act(side.role)
         k, arm = self.motion.number(side.role), self.motion.arm(side.role, side.pin)
         self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"E{k}"))
 
-    def _push(self, side: Side) -> None:
+    def push(self, side: Side) -> None:
         """Hang a link's force on a pin, push_rod_B, on the link that supports the pin."""
         push, host = f"push_{side.role}_{side.pin}", self.topology.support[side.pin]
         self.pushes[side.pin][side.role] = push
-        self._hang(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
+        self.hang(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
 
     def _release(self, side: Side) -> None:
         """Make the force on a pin of the force of the pin, and hang it."""
         self._opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
-        self._push(side)
+        self.push(side)
 
     def _opposite(self, stem: str, of: str) -> None:
         for axis in "xy":
             self.row(planar.opposite, (f"{stem}{axis}",), f"{of}{axis}")
 
-    def _hang(self, host: str, force: str, arm: tuple[Source, Source], *moments: str) -> None:
+    def hang(self, host: str, force: str, arm: tuple[Source, Source], *moments: str) -> None:
         """Let a force act on a link at an arm from its first pin, and further moments."""
         if host == GROUND:
             return
@@ -135,7 +139,7 @@ class Forces:
         self.rows.append(Total(f"moments_{force}", (f"moment_{force}", *moments)))
         self.hung[host].append((force, f"moments_{force}"))
 
-    def _meet(self, one: str, other: str, pin: str) -> None:
+    def meet(self, one: str, other: str, pin: str) -> None:
         """Name the force at the pin of a dyad, push_other_pin, also as that of the other link."""
         if self.topology.support[pin] == other:
             self._opposite(f"push_{one}_{pin}", f"push_{other}_{pin}")
@@ -143,14 +147,16 @@ class Forces:
         else:
             self.pushes[pin][other] = f"push_{other}_{pin}"
 
-    def _slide(self, slider: str, guide: str, hold: str, name: str, slide: Slide) -> None:
-        """Hang the force of a slider on its guide, with the moment about its pin."""
+    def slide(
+        self, slider: str, guide: str, hold: str, name: str, slide: Slide, arm: tuple[str, str] = ("OCx", "OCy")
+    ) -> None:
+        """Hang the force of a slider on its guide, with the moment about its pin, at an arm from the guide's origin."""
         host, names, react = self.topology.hosts[guide], self.motion.names[name], f"push_{slider}_{guide}"
         if host != GROUND:
             self._opposite(react, hold)
             self.row(planar.opposite, (f"react_{slider}",), names[slide.moment])
-            self._hang(host, react, (names["OCx"], names["OCy"]), f"react_{slider}")
-        self._between(host, slider, hold, name, slide)
+            self.hang(host, react, (names[arm[0]], names[arm[1]]), f"react_{slider}")
+        self.between(host, slider, hold, name, slide)
 
     # ------------------------------------------------------------------------------------------------ joints
 
@@ -168,7 +174,7 @@ class Forces:
                     turn = planar.opposite if carrier == GROUND else planar.identity
                     self.row(turn, (f"{name}{axis}",), f"{pushes[role]}{axis}")
 
-    def _between(self, one: str, other: str, force: str, name: str, slide: Slide) -> None:
+    def between(self, one: str, other: str, force: str, name: str, slide: Slide) -> None:
         """Add rows of the force of one link on another in a slide: of the ground, or else of the later link."""
         i, j = self.topology.pair(one, other)
         same = planar.identity if i == self.motion.number(one) else planar.opposite

@@ -6,15 +6,15 @@ from collections.abc import Collection
 
 from linksweep.engine.quantity import Limit
 from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.dyads import prp, rpp, rpr, rrp, rrr
 from linksweep.mechanisms.dyads.names import Names
 from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.topology import RPR, RRP, RRR
+from linksweep.mechanisms.topology import PRP, RPP, RPR, RRP, RRR, Step
 
-TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE}
+TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE, PRP: prp.TOGGLE}
 """Limit of each dyad that does not close everywhere, in its own names."""
-SLIDES = {RRP: (rrp.grip(), rrp.SLIDE), RPR: (rpr.grip(), rpr.SLIDE)}
-"""Rows and limits of each dyad with a slide that may rub, in its own names."""
+GRIPS = {RRP: rrp.grip(), RPR: rpr.grip(), PRP: prp.grip()}
+"""Rows of each dyad with a slide that may rub, in its own names."""
 
 
 def limits(motion: Motion, rubbing: Collection[str]) -> tuple[Rows, tuple[Limit, ...]]:
@@ -22,14 +22,25 @@ def limits(motion: Motion, rubbing: Collection[str]) -> tuple[Rows, tuple[Limit,
     rows: Rows = []
     toggles, of_slides = [], []
     for step in motion.topology.steps:
-        if isinstance(step, RRR | RRP | RPR):
-            names = motion.names[step.name]
+        names = motion.names[step.name]
+        if type(step) in TOGGLES:
             toggles.append(_placed(TOGGLES[type(step)], step.name, names))
-        if isinstance(step, RRP | RPR) and step.guide in rubbing:
-            of_friction, limited = SLIDES[type(step)]
-            rows += names.placed(of_friction)
+        limited = [limit for slide, of_slide in _slides(step) if slide in rubbing for limit in of_slide]
+        if limited:
+            rows += names.placed(GRIPS.get(type(step), ()))
             of_slides += [_placed(limit, step.name, names) for limit in limited]
     return rows, (*toggles, *of_slides)
+
+
+def _slides(step: Step) -> list[tuple[str, tuple[Limit, ...]]]:
+    """Return the slides of a dyad, by their guides, and the limits of friction in each."""
+    if isinstance(step, RRP | RPR):
+        return [(step.guide, rrp.SLIDE if isinstance(step, RRP) else rpr.SLIDE)]
+    if isinstance(step, RPP):
+        return [(step.guide, rpp.SLIDE), (f"{step.slider}_slot", rpp.SLOT)]
+    if isinstance(step, PRP):
+        return [(step.first_guide, prp.SLIDE), (step.second_guide, prp.SECOND_SLIDE)]
+    return []
 
 
 def _placed(limit: Limit, name: str, names: Names) -> Limit:

@@ -12,11 +12,13 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row
+from linksweep.mechanisms.chain import slides
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
 from linksweep.mechanisms.dyads.names import (
     NOTHING,
     Names,
     Vector,
+    block_sliding_of,
     direction_of,
     frame_of,
     full,
@@ -91,6 +93,9 @@ class Motion:
         for step in self.topology.steps:
             getattr(self, f"_place_{type(step).__name__}")(step)
 
+    _place_RPP = slides.place_RPP
+    _place_PRP = slides.place_PRP
+
     # ------------------------------------------------------------------------------------------------ names
 
     @property
@@ -108,7 +113,7 @@ class Motion:
         return pin == self.topology.ground[0]
 
     def fixed(self, pin: str) -> bool:
-        return self.topology.support[pin] == GROUND
+        return self.topology.support.get(pin) == GROUND
 
     def pin(self, letter: str, pin: str) -> dict[str, Source]:
         return of_pin(letter, pin, self.fixed(pin), self.is_origin(pin))
@@ -199,7 +204,7 @@ class Motion:
         ratio, slope = self.bodies[role].ratio, self.bodies[role].slope
         self.row(planar.point_velocity, xy(f"u{pin}"), *u, ratio, *xy(arm))
         self.row(planar.point_acceleration, (f"u{pin}x_slope", f"u{pin}y_slope"), *u_slope, ratio, slope, *xy(arm))
-        self._rates(pin)
+        self.rates(pin)
         self.row(pins.between, full(f"own{k}_{pin}"), *self.own(role, pin), *self.own(role, start))
         self.row(pins.quotient, full(quotient), *full(f"own{k}_{pin}"), *frame.own)
         self.row(pins.turned_with_low_words, full(turned), *full(quotient), *frame.vector)
@@ -208,7 +213,7 @@ class Motion:
         if not self.plain:
             self.certain |= dict.fromkeys(low_words, f"{role}_length")
 
-    def _rates(self, pin: str) -> None:
+    def rates(self, pin: str) -> None:
         """Add rows of a pin's velocity and acceleration."""
         for axis in "xy":
             u = f"u{pin}{axis}"
@@ -241,7 +246,7 @@ class Motion:
         self.row(pins.between, own, *self.own(side.role, pin), *self.own(side.role, side.pin))
         return Frame(side.pin, full(f"placed{k}"), own)
 
-    def _close(
+    def close(
         self,
         step: Step,
         rows: Rows,
@@ -257,11 +262,11 @@ class Motion:
         for numbers in [certain] if self.plain else [certain, found]:
             self.certain |= {str(names[name]): names.of(unit) for name, unit in numbers.items()}
 
-    def _measure(self, step: Step, words: str) -> None:
+    def measure(self, step: Step, words: str) -> None:
         """Add the quantity of a dyad's transmission angle."""
         self.quantities.append(Quantity(str(self.names[step.name]["transmission_angle"]), "degree", words))
 
-    def _slides(self, step: Step, role: str, inner: tuple[str, str, str], line: str, start: str) -> None:
+    def slides_of(self, step: Step, role: str, inner: tuple[str, str, str], line: str, start: str) -> None:
         """Add the quantities of a part's motion along a line."""
         position, velocity, acceleration = (str(self.names[step.name][name]) for name in inner)
         self.sliding[role] = position, velocity, acceleration
@@ -271,14 +276,19 @@ class Motion:
             Quantity(acceleration, "m s-2", f"acceleration of the {role} along the {line}"),
         ]
 
+    def slides_on(self, step: Step, role: str, name: str, guide: str) -> None:
+        """Add the quantities of a slider's motion along its guide; `name` is its own in its dyad."""
+        inner = (f"x_{name}", f"v_{name}", f"a_{name}")
+        self.slides_of(step, role, inner, "guide", f"the foot of {self._origin(guide)} on it")
+
     def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
         """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
         k = self.number(side.role)
         lengths = {f"{word}_length": arm.length, f"{word}_length_lo": arm.length_lo}
         vector = {f"r{digit}{axis}": f"{arm.stem}{axis}" for axis in "xy"}
-        return of_link(digit, k) | lengths | vector | self._load(digit, k, f"L{k}_{side.pin}")
+        return of_link(digit, k) | lengths | vector | self.load(digit, k, f"L{k}_{side.pin}")
 
-    def _load(self, digit: int, number: int, moment: str) -> dict[str, Source]:
+    def load(self, digit: int, number: int, moment: str) -> dict[str, Source]:
         return {f"Q{digit}x": f"E{number}x", f"Q{digit}y": f"E{number}y", f"N{digit}": moment}
 
     def on_crank_and_ground(self, step: Step) -> bool:
@@ -314,11 +324,11 @@ class Motion:
         coupler, rocker = (second, first) if swapped else (first, second)
         self.sides[step.name] = coupler, rocker
         arms = [self._arm(side, X) for side in (coupler, rocker)]
-        self._rates(X)
+        self.rates(X)
         for side in (coupler, rocker):
             self._link(side.role, self._frame(side, X), {side.pin, X})
         rows = rrr.on_crank_and_ground(step.name in self.shape.turned, step.name in self.shape.goes_through)
-        self._close(
+        self.close(
             step,
             rows if special else rrr.between_pins(),
             rrr.CERTAIN_ON_CRANK if special else rrr.CERTAIN,
@@ -331,7 +341,7 @@ class Motion:
             of_force("F32", f"push_{coupler.role}_{coupler.pin}"),
             of_force("F14", f"hold_{rocker.role}"),
         )
-        self._measure(step, f"acute angle between {first.role} and {second.role}")
+        self.measure(step, f"acute angle between {first.role} and {second.role}")
 
     def _swapped(self, step: Step) -> dict[str, Source]:
         """Return the name of the branch's sign seen from the crank where the link on the ground is named first."""
@@ -341,47 +351,51 @@ class Motion:
     def _place_RRP(self, step: RRP) -> None:
         rod, X, slider, k = step.link, step.pin, step.slider, self.number(step.slider)
         special, host = self.on_crank_and_ground(step), self.topology.hosts[step.guide]
-        arm, guide = self._arm(rod, X), self._guide(step.guide)
-        self._rates(X)
+        arm, guide = self._arm(rod, X), self.guide(step.guide)
+        self.rates(X)
         self._link(rod.role, self._frame(rod, X), {rod.pin, X})
-        ratio, slope = self._turning(host)
-        self._slider(slider, X, guide, host)
-        self._close(
+        self.slider(slider, X, guide, host)
+        self.close(
             step,
             rrp.on_crank_and_ground(step.name in self.shape.turned) if special else rrp.between_pin_and_guide(),
             rrp.CERTAIN_ON_CRANK if special else rrp.CERTAIN,
             rrp.FOUND,
-            guide | {"guide_ratio": ratio, "guide_slope": slope} | self._origin(host),
+            self.on_guide(step.guide, guide),
             self.pin("B", rod.pin) | of_pin("C", X),
-            self._side(3, "rod", rod, arm) | of_link(4, k) | self._load(4, k, f"L{k}"),
-            {f"{form}slider": f"{form}{slider}" for form in ("x_", "v_", "a_", "ratio_", "slope_")},
+            self._side(3, "rod", rod, arm) | of_link(4, k) | self.load(4, k, f"L{k}"),
+            sliding_of("slider", slider),
             of_force("F43", f"push_{slider}_{X}"),
             of_force("F32", f"push_{rod.role}_{rod.pin}"),
             of_force("F14", f"hold_{slider}"),
         )
-        self._measure(step, f"acute angle between the {rod.role} and the guide's normal")
-        origin = self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
-        self._slides(step, slider, ("x_slider", "v_slider", "a_slider"), "guide", f"the foot of {origin} on it")
+        self.measure(step, f"acute angle between the {rod.role} and the guide's normal")
+        self.slides_on(step, slider, "slider", step.guide)
 
-    def _slider(self, role: str, pin: str, guide: Mapping[str, Source], host: str) -> None:
+    def slider(self, role: str, pin: str, guide: Mapping[str, Source], host: str) -> None:
         """Add rows of a link that turns with its host: its axes along the guide and its rotation; and its body."""
-        k, turning = self.number(role), self._turning(host)
+        k, turning = self.number(role), self.turning(host)
         for axis, part in zip("xy", ("guide_cos", "guide_sin"), strict=True):
             self.row(planar.identity, (f"r{k}{axis}",), guide[part])
         for word in ("omega", "alpha"):
             self.row(planar.identity, (f"{word}{k}",), 0.0 if host == GROUND else f"{word}{self.number(host)}")
         self._body(role, pin, *turning)
 
-    def _turning(self, role: str) -> tuple[Source, Source]:
+    def turning(self, role: str) -> tuple[Source, Source]:
         """Return the names of a link's rotation per rate of the crank, and of its derivative."""
         return (0.0, 0.0) if role == GROUND else (self.bodies[role].ratio, self.bodies[role].slope)
 
-    def _origin(self, host: str) -> dict[str, Source]:
-        """Return the names of the origin of a guide's axes: the first pin of its link, or the crank's pivot."""
-        pin = self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
-        return self.pin("O", pin)
+    def on_guide(self, guide: str, names: Mapping[str, Source], letter: str = "O") -> dict[str, Source]:
+        """Return the names of a guide, of its rotation, and of the origin of its axes: the first pin of its link, or
+        the crank's pivot."""
+        host = self.topology.hosts[guide]
+        ratio, slope = self.turning(host)
+        return {**names, "guide_ratio": ratio, "guide_slope": slope, **self.pin(letter, self._origin(guide))}
 
-    def _guide(self, guide: str) -> dict[str, Source]:
+    def _origin(self, guide: str) -> str:
+        host = self.topology.hosts[guide]
+        return self.topology.ground[0] if host == GROUND else self.topology.links[host][0]
+
+    def guide(self, guide: str) -> dict[str, Source]:
         """Return the names of a guide's direction, offset and friction, and add rows that turn it with its link."""
         host, own = self.topology.hosts[guide], direction_of(guide)
         words = ("guide_cos", "guide_sin", "guide_cos_lo", "guide_sin_lo")
@@ -402,26 +416,26 @@ class Motion:
         self._link(link.role, Frame(link.pin, exact, direction_of(step.guide)), {link.pin})
         self._line_of_pins(step, line)
         if block:
-            self._slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, link.role)
-        self._close(
+            self.slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, link.role)
+        self.close(
             step,
             rpr.on_crank_and_ground(step.name in self.shape.turned) if special else rpr.between_pins(),
             rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN,
             rpr.FOUND,
             {} if self.plain else frame_of("ground", link.pin),
             numbers | self.pin("B", step.pin) | self.pin("D", link.pin) | of_link(4, k),
-            self._load(4, k, f"L{k}_{link.pin}"),
-            self._load(3, self.number(block), f"L{self.number(block)}") if block else NOTHING,
+            self.load(4, k, f"L{k}_{link.pin}"),
+            self.load(3, self.number(block), f"L{self.number(block)}") if block else NOTHING,
             dict(zip(full("line_"), exact, strict=True)),
             {"r3x": line[0], "r3y": line[1]},
-            {} if self.plain else sliding_of(slider),
+            {} if self.plain else block_sliding_of(slider),
             of_force("F43", f"line_force_{slider}"),
             of_force("F32", pushed),
             of_force("F14", f"hold_{link.role}"),
         )
-        self._measure(step, f"acute angle between the line {link.pin}-{step.pin} and the normal of the {link.role}")
+        self.measure(step, f"acute angle between the line {link.pin}-{step.pin} and the normal of the {link.role}")
         motion = ("slide", "slide_velocity", "slide_acceleration")
-        self._slides(step, slider, motion, f"{link.role}'s line", f"the foot of {link.pin} on it")
+        self.slides_of(step, slider, motion, f"{link.role}'s line", f"the foot of {link.pin} on it")
 
     def _line_of_pins(self, step: RPR, line: Vector) -> None:
         """Add rows of a link's axes from the direction of its guide."""

@@ -86,7 +86,12 @@ def direction_of(guide: str) -> Vector:
     return f"{guide}_cos", f"{guide}_sin", f"{guide}_cos_lo", f"{guide}_sin_lo"
 
 
-def sliding_of(role: str) -> Mapping[str, Source]:
+def sliding_of(name: str, role: str) -> dict[str, Source]:
+    """Return the names of a slider's position and motion along its guide."""
+    return {f"{form}{name}": f"{form}{role}" for form in ("x_", "v_", "a_", "ratio_", "slope_")}
+
+
+def block_sliding_of(role: str) -> dict[str, Source]:
     """Return the names of a block's position on its line, and of its motion."""
     return {
         "slide": f"x_{role}",
@@ -97,7 +102,7 @@ def sliding_of(role: str) -> Mapping[str, Source]:
     }
 
 
-def of_force(force: str, stem: str) -> Mapping[str, Source]:
+def of_force(force: str, stem: str) -> dict[str, Source]:
     """Return the names of a force's components."""
     return {f"{force}{axis}": f"{stem}{axis}" for axis in "xy"}
 

@@ -107,6 +107,22 @@ def rates(name: str) -> Rows:
     ]
 
 
+def slider_rows() -> Rows:
+    """Return the rows of a slider's motion from its position along its guide: vector from O, velocity and slope."""
+    guiding = ("guide_ratio", "guide_slope", "OCx", "OCy", "ratio_slider", *GUIDE)
+    return [
+        Row(moving_guide.on_guide, ("OCx", "OCy"), ("x_slider", "offset", *GUIDE)),
+        Row(
+            moving_guide.sliding_velocity,
+            ("uCx", "uCy"),
+            ("uOx", "uOy", "guide_ratio", "OCx", "OCy", "ratio_slider", *GUIDE),
+        ),
+        Row(moving_guide.guiding_slope, ("guiding_x", "guiding_y"), ("uOx_slope", "uOy_slope", *guiding)),
+        Row(planar.along, ("sliding_x", "sliding_y"), ("slope_slider", *GUIDE)),
+        Row(planar.vector_sum, ("uCx_slope", "uCy_slope"), ("guiding_x", "guiding_y", "sliding_x", "sliding_y")),
+    ]
+
+
 def _closed() -> Rows:
     """Return the rows that follow from the factors low and high."""
     from_B, from_O = full("BC"), full("OC_line")

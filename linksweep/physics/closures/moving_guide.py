@@ -48,3 +48,33 @@ def relative_slope(
         (ux_slope - uOx_slope) + slope * py + square * px + coriolis * guide_sin,
         (uy_slope - uOy_slope) - slope * px + square * py - coriolis * guide_cos,
     )
+
+
+def sliding_velocity(
+    uOx: Number,
+    uOy: Number,
+    ratio: Number,
+    px: Number,
+    py: Number,
+    sliding: Number,
+    guide_cos: Number,
+    guide_sin: Number,
+) -> Vector:
+    """Return the velocity of a point that slides along the guide."""
+    return uOx - ratio * py + sliding * guide_cos, uOy + ratio * px + sliding * guide_sin
+
+
+def guiding_slope(
+    uOx_slope: Number,
+    uOy_slope: Number,
+    ratio: Number,
+    slope: Number,
+    px: Number,
+    py: Number,
+    sliding: Number,
+    guide_cos: Number,
+    guide_sin: Number,
+) -> Vector:
+    """Return the derivative of the velocity of a point that slides evenly along the guide, by `sliding` per radian."""
+    minus = relative_slope(0.0, 0.0, uOx_slope, uOy_slope, ratio, slope, px, py, sliding, guide_cos, guide_sin)
+    return -minus[0], -minus[1]

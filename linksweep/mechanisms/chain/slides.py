@@ -1,0 +1,90 @@
+"""Place and forces of dyads with two slides: a slider with a slot (RPP), two sliders that share a pin (PRP)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from linksweep.mechanisms.dyads import prp, rpp
+from linksweep.mechanisms.dyads.names import of_force, of_link, of_pin, sliding_of
+from linksweep.mechanisms.rows.bodies import Source
+from linksweep.mechanisms.topology import PRP, RPP, Side
+
+if TYPE_CHECKING:
+    from linksweep.mechanisms.chain.forces import Forces
+    from linksweep.mechanisms.chain.motion import Motion
+
+
+def place_RPP(motion: Motion, step: RPP) -> None:
+    """Add rows of the place of a slider with a slot."""
+    slider, k, centre = step.slider, motion.number(step.slider), f"{step.slider}_centre"
+    guide = motion.guide(step.guide)
+    motion.rates(centre)
+    motion.slider(slider, centre, guide, motion.topology.hosts[step.guide])
+    motion.close(
+        step,
+        rpp.between_pin_and_guide(),
+        {},
+        {},
+        motion.on_guide(step.guide, guide),
+        motion.pin("B", step.pin) | of_pin("C", centre) | of_link(4, k) | motion.load(4, k, f"L{k}"),
+        {f"slot_{part}": f"{slider}_slot_{part}" for part in ("cos", "sin", "friction")},
+        sliding_of("slider", slider),
+        of_force("F14", f"hold_{slider}") | of_force("F42", f"push_{slider}_{step.pin}"),
+    )
+    motion.slides_on(step, slider, "slider", step.guide)
+
+
+def force_RPP(forces: Forces, step: RPP) -> None:
+    """Add rows of the forces of a slider with a slot."""
+    slider, host = step.slider, forces.topology.members[step.pin][0]
+    forces.act(slider)
+    forces.solve(step.name, rpp.forces(), "jam_status")
+    forces.rub(step.name, "ratio_slider", "friction_force", "friction_power")
+    forces.rub(step.name, "ratio_in_slot", "slot_friction_force", "slot_friction_power")
+    forces.push(Side(slider, step.pin))
+    forces.slide(slider, step.guide, f"hold_{slider}", step.name, rpp.CONTACT)
+    forces.between(slider, host, f"push_{slider}_{step.pin}", step.name, rpp.SLOT_CONTACT)
+
+
+def place_PRP(motion: Motion, step: PRP) -> None:
+    """Add rows of the place of two sliders that share a pin."""
+    first, second, X = step.first, step.second, step.pin
+    numbers = motion.number(first), motion.number(second)
+    sliders = (first, step.first_guide), (second, step.second_guide)
+    guides = [motion.guide(guide) for _, guide in sliders]
+    motion.rates(X)
+    for (slider, guide), names in zip(sliders, guides, strict=True):
+        motion.slider(slider, X, names, motion.topology.hosts[guide])
+    motion.close(
+        step,
+        prp.between_guides(),
+        prp.CERTAIN,
+        prp.FOUND,
+        motion.on_guide(step.first_guide, guides[0]),
+        second_of(motion.on_guide(step.second_guide, guides[1], "P")),
+        of_pin("C", X) | sliding_of("slider", first) | sliding_of("second", second),
+        *(of_link(d, k) | motion.load(d, k, f"L{k}") for d, k in zip((3, 4), numbers, strict=True)),
+        of_force("F13", f"hold_{first}") | of_force("F14", f"hold_{second}") | of_force("F43", f"push_{second}_{X}"),
+    )
+    motion.measure(step, f"acute angle between the guides of {first} and {second}")
+    motion.slides_on(step, first, "slider", step.first_guide)
+    motion.slides_on(step, second, "second", step.second_guide)
+
+
+def force_PRP(forces: Forces, step: PRP) -> None:
+    """Add rows of the forces of two sliders that share a pin."""
+    for slider in step.roles:
+        forces.act(slider)
+    forces.solve(step.name, prp.forces(), "jam_status")
+    forces.rub(step.name, "ratio_slider", "friction_force", "friction_power")
+    forces.rub(step.name, "ratio_second", "second_friction_force", "second_friction_power")
+    forces.meet(step.first, step.second, step.pin)
+    forces.slide(step.first, step.first_guide, f"hold_{step.first}", step.name, prp.CONTACT)
+    forces.slide(step.second, step.second_guide, f"hold_{step.second}", step.name, prp.SECOND_CONTACT, ("PCx", "PCy"))
+
+
+def second_of(names: Mapping[str, Source]) -> dict[str, Source]:
+    """Return the names of a guide as the second of its dyad."""
+    own = ("guide", "offset", "friction")
+    return {f"second_{name}" if name.startswith(own) else name: source for name, source in names.items()}
