@@ -75,3 +75,11 @@ def test_a_scotch_yoke_moves_as_the_cosine():
 
 def test_parallel_slot_and_guide_are_a_toggle():
     assert np.all(ls.sweep(yoke(slot_angle=180.0), 4, of=["F12", "status"]).status == 2)
+
+
+@pytest.mark.parametrize("scene", [yoke(0.2, 0.3), on_links(0.1)])
+def test_dense_and_fast_agree(scene):
+    names = [name for name in scene.mechanism.unknowns(scene.drive) if name != "T12"]
+    fast, dense = (ls.sweep(scene, 13, of=names, solver=solver) for solver in ("fast", "dense"))
+    largest = max(abs(fast[name]).max() for name in names)
+    assert max(abs(fast[name] - dense[name]).max() for name in names) < 1e-12 * largest
