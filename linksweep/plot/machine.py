@@ -83,7 +83,9 @@ def mechanism(
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.2)
     _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting})
-    _names(ax, shape, "P" if point else f"$G_{drawing.carrier.number}$")
+    _names(ax, shape)
+    if point or not drawing.carrier.end:
+        _name(ax, shape.point, "P" if point else f"$G_{drawing.carrier.number}$")
     ax.set(xlabel="x [m]", ylabel="y [m]")
     ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
     return ax
@@ -229,12 +231,15 @@ def _slideway(ax: Axes, block: Block, slide: Slide, shape: Shape, half: float) -
     return ends
 
 
-def _names(ax: Axes, shape: Shape, point: str) -> None:
+def _names(ax: Axes, shape: Shape) -> None:
+    for name, position in shape.pins.items():
+        _name(ax, position, name, fontweight="bold")
+
+
+def _name(ax: Axes, position: np.ndarray, name: str, **style: Any) -> None:
     from linksweep.plot.kit.labels import label
 
-    for name, position in shape.pins.items():
-        label(ax, *position, (name, BLACK), fontweight="bold")
-    label(ax, *shape.point, (point, BLACK))
+    label(ax, *position, (name, BLACK), **style)
 
 
 def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray]) -> None:

@@ -132,6 +132,13 @@ def test_inverted_slider_crank_has_its_block_on_the_rocker(branch, offset):
     assert "$G_4$" in texts(ax)
 
 
+def test_the_foot_of_a_leg_draws_the_curve_and_has_its_letter_alone():
+    ax = plot.mechanism(ls.example("klann-leg"), theta2=100.0)
+    assert sorted(texts(ax)) == [*"ABCDEFGH"]
+    foot = ls.sweep(ls.example("klann-leg"), [100.0], of=["Hx", "Hy"])
+    np.testing.assert_allclose(points(ax, "_point")[0], [foot.Hx.item(), foot.Hy.item()])
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_forces_are_those_of_the_joints(cycles, name):
     ds = with_peaks(cycles[name])
