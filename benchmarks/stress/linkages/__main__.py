@@ -1,4 +1,4 @@
-"""Stress test of linkages: python -m benchmarks.stress.linkages [--designs N] [--seed S] [--only WORD] [--write]."""
+"""Stress test of linkages: python -m benchmarks.stress.linkages [--designs N] [--seed S] [--only WORD] [--near]."""
 
 from __future__ import annotations
 
@@ -14,19 +14,21 @@ from benchmarks.stress.decimals import Array
 from benchmarks.stress.linkages.errors import Errors, errors_of
 from benchmarks.stress.linkages.multibody import Solution
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import FAMILIES, TODAY
+from benchmarks.stress.linkages.topologies import FAMILIES, NEAR_A_TOGGLE, TODAY
 
 RESULTS = Path(__file__).parents[2] / "LINKAGES.md"
 AT_ONCE = 50
 """Designs of one crank angle, drive, branches and kinds of loads."""
 GOALS = {"force": 1e-12, "torque": 1e-12, "motion": 1e-12, "over_bound": 1.0, "bound": 1e-9, "power": 1e-12}
+NEAR_GOALS = {"force": 2e-12, "motion": 2e-12, "bound": 1e-7}
+"""Goals 0.03 degrees from a toggle."""
 HEADER = ("linkages", "designs", "ok", "forces", "torques", "motion", "error / bound", "bound", "power", "wrong")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Check random linkages of every family and print their figures; return 1 where a goal is missed."""
     options = _parser().parse_args(arguments)
-    names = [name for name in TODAY if options.only in name]
+    names = [name for name in (NEAR_A_TOGGLE if options.near else TODAY) if options.only in name]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         errors = {name: checked(name, options.designs, options.seed) for name in names}
@@ -47,15 +49,16 @@ def checked(name: str, designs: int, seed: int) -> Errors:
 def solutions(name: str, designs: int, seed: int, at_once: int = AT_ONCE) -> Iterator[Solution]:
     """Draw and solve linkages, part by part."""
     for part, first in enumerate(range(0, designs, at_once)):
-        random = np.random.default_rng([seed, list(FAMILIES).index(name), part])
-        yield drawn(FAMILIES[name], random, min(at_once, designs - first))
+        random = np.random.default_rng([seed, [*FAMILIES, *NEAR_A_TOGGLE].index(name), part])
+        yield drawn((TODAY | NEAR_A_TOGGLE)[name], random, min(at_once, designs - first))
 
 
 def missed(name: str, errors: Errors) -> list[str]:
     """Return the goals that a family misses."""
     worst = {figure: _worst(getattr(errors, figure)) for figure in GOALS}
+    goals = GOALS | (NEAR_GOALS if name in NEAR_A_TOGGLE else {})
     problems = [
-        f"{name}: {figure} {worst[figure]:.2g} > {goal:g}" for figure, goal in GOALS.items() if worst[figure] > goal
+        f"{name}: {figure} {worst[figure]:.2g} > {goal:g}" for figure, goal in goals.items() if worst[figure] > goal
     ]
     problems += [f"{name}: {errors.wrong} with a wrong status or without a value"] if errors.wrong else []
     return problems + ([f"{name}: no quantity {', '.join(sorted(errors.missing))}"] if errors.missing else [])
@@ -88,6 +91,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--designs", type=int, default=100, metavar="N", help="of each family")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", metavar="WORD", help="families with this word in their name")
+    parser.add_argument("--near", action="store_true", help="families with a pin 0.03 degrees from a toggle instead")
     parser.add_argument("--write", action="store_true", help="also write the table to benchmarks/LINKAGES.md")
     return parser
 

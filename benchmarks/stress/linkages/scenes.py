@@ -21,13 +21,14 @@ FASTEST = 30.0
 
 
 def drawn(family: Family, random: np.random.Generator, n: int) -> Solution:
-    """Return n solved linkages at one crank angle, away from toggles and from jamming."""
-    sketch = Sketch(random, 2 * n)
+    """Return n solved linkages at one crank angle, away from toggles, but for one stated, and from jamming."""
+    count = 2 * n
+    sketch = Sketch(random, count, family.near)
     family.topology.draw(sketch)
     solution = solve(completed(sketch, family))
-    good = np.flatnonzero(away(solution))[:n]
+    good = np.flatnonzero(away(solution, 100.0 if family.near else 1.0))[:n]
     if len(good) < n:
-        raise ValueError(f"{len(good)} of {2 * n} linkages are away from toggles")
+        raise ValueError(f"{len(good)} of {count} linkages are away from toggles")
     return solve(chosen(solution.assembly.linkages, good))
 
 
@@ -103,14 +104,16 @@ def _end(sketch: Sketch, link: str) -> tuple[str, Array, Array]:
 # ---- choice
 
 
-def away(solution: Solution) -> Array:
-    """Return which linkages are away from toggles, dead centres and jamming."""
+def away(solution: Solution, times: float = 1.0) -> Array:
+    """Return which linkages are away from toggles, dead centres and jamming; the limits may be some times as large."""
     with fifty_digits():
         J = Matrix(solution.assembly, pushes(solution.assembly, solution.frames))
     frames = [solution.frames[body.role] for body in solution.assembly.linkages.bodies]
     rates = np.max([np.abs(np.asarray(frame.omega, dtype=float)) for frame in frames], axis=0)
-    slow = rates < FASTEST * np.abs(solution.assembly.linkages.omega2)
-    return slow & (_condition(J) < LARGEST_CONDITION) & (_condition(solution.matrix) < LARGEST_CONDITION)
+    slow = rates < times * FASTEST * np.abs(solution.assembly.linkages.omega2)
+    return (
+        slow & (_condition(J) < times * LARGEST_CONDITION) & (_condition(solution.matrix) < times * LARGEST_CONDITION)
+    )
 
 
 def _condition(matrix: Matrix) -> Array:

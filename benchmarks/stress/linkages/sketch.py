@@ -1,6 +1,7 @@
 """Sketch random linkages pin by pin at one crank angle: their lengths follow, so all of them close there.
 
-Every pin of a dyad is at least 25 degrees from a toggle. Lengths are of the order of a metre.
+Every pin of a dyad is at least 25 degrees from a toggle, or one of them 0.03 degrees. Lengths are about a
+metre.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from benchmarks.stress.linkages.machine import Linkages, element
 
 SIDE = {"open": 1, "crossed": -1}
 LEAST = np.radians(25.0)
+NEAR = np.radians(0.03)
+"""Transmission angle near a toggle."""
 
 
 def turn(degrees: Any) -> Array:
@@ -22,10 +25,10 @@ def turn(degrees: Any) -> Array:
 
 
 class Sketch:
-    """Pins, guides and branches of n linkages of one topology, as they are drawn."""
+    """Pins, guides and branches of n linkages of one topology, as they are drawn; the pin `near` is near a toggle."""
 
-    def __init__(self, random: np.random.Generator, n: int) -> None:
-        self.random, self.n = random, n
+    def __init__(self, random: np.random.Generator, n: int, near: str = "") -> None:
+        self.random, self.n, self.near = random, n, near
         self.theta2 = float(random.uniform(-180.0, 540.0))
         self.pins: dict[str, Array] = {}
         self.fixed: list[str] = []
@@ -68,16 +71,28 @@ class Sketch:
     def rrr(self, pin: str, first: str, second: str) -> None:
         """Draw a pin of two links from two known pins: the angle between the links, then that at the first pin."""
         P, Q, side = self.pins[first], self.pins[second], self.choose(pin)
-        at_pin = self.uniform(LEAST, np.pi - LEAST)
-        at_first = self.uniform(0.15, 0.85) * (np.pi - at_pin)
+        at_pin, at_first = self._near_toggle() if pin == self.near else self._away_from_toggle()
         ratio = np.sin(at_pin + at_first) / np.sin(at_pin)
         self.pins[pin] = P + (Q - P) * ratio * np.exp(1j * side * at_first)
+
+    def _away_from_toggle(self) -> tuple[Array, Array]:
+        """Draw the angles of a triangle of two links at their pin and at the first known pin [rad]."""
+        at_pin = self.uniform(LEAST, np.pi - LEAST)
+        return at_pin, self.uniform(0.15, 0.85) * (np.pi - at_pin)
+
+    def _near_toggle(self) -> tuple[Array, Array]:
+        """Draw such angles of links that are nearly stretched, or nearly folded with the first the longer one."""
+        stretched, longer = self.uniform(0.0, 1.0) < 0.5, self.uniform(1.3, 2.5)
+        at_first = np.where(stretched, self.uniform(0.2, 0.8) * NEAR, np.arcsin(longer * np.sin(NEAR)) - NEAR)
+        return np.where(stretched, np.pi - NEAR, NEAR), at_first
 
     def rrp(self, pin: str, first: str, guide: str) -> None:
         """Draw a pin of a rod from a known pin, on a new guide of the ground."""
         self.pins[pin] = self.around(first)
         rod = np.degrees(np.angle((self.pins[pin] - self.pins[first]) * self.choose(pin)))
-        self.guide(guide, pin, rod + self.uniform(-60.0, 60.0))
+        most = 90.0 - np.degrees(NEAR)
+        leaning = self.random.choice([-most, most], self.n) if pin == self.near else self.uniform(-60.0, 60.0)
+        self.guide(guide, pin, rod + leaning)
 
     def rrp_on_link(self, pin: str, first: str, role: str, start: str, end: str) -> None:
         """Draw a pin of a rod from a known pin, on a new guide that a link start-end carries."""
@@ -95,7 +110,7 @@ class Sketch:
         self.guides[name] = {"through": (through.real, through.imag), "angle": angle, **self.friction()}
 
     def friction(self) -> dict[str, Any]:
-        most = self.random.choice([0.0, 0.3, 1.0])
+        most = 0.0 if self.near else self.random.choice([0.0, 0.3, 1.0])
         return {"friction": self.uniform(0.0, most)} if most else {}
 
     def line_through(self, role: str, pivot: str, end: str, pin: str, branch: str) -> None:

@@ -17,10 +17,12 @@ class Topology(NamedTuple):
 
 
 class Family(NamedTuple):
-    """Random linkages of a topology, driven by one of its links or cylinders; "" is the crank."""
+    """Random linkages of a topology, driven by one of its links or cylinders, "" is the crank; with a pin near a toggle
+    in `near`."""
 
     topology: Topology
     drive: str = ""
+    near: str = ""
 
 
 def four_bar(sketch: Sketch) -> None:
@@ -184,6 +186,17 @@ FAMILIES = {name: Family(topology) for name, topology in TOPOLOGIES.items()} | {
     for drive in topology.drives
 }
 """Families of random linkages by name: the topologies, and those with another drive than the crank."""
+
+PINS_NEAR_A_TOGGLE = {
+    "Watt I": "CG", "Watt II": "CF", "Stephenson III": "F", "six-bar with a slider": "CF", "pins in other orders": "G",
+    "knuckle-joint press": "E", "shaper with a block of mass": "F", "Whitworth": "F", "Jansen leg": "FG",
+}  # fmt: skip
+NEAR_A_TOGGLE = {
+    f"{name}, near a toggle at {pin}": Family(TOPOLOGIES[name], near=pin)
+    for name, pins in PINS_NEAR_A_TOGGLE.items()
+    for pin in pins
+}
+"""Families of which a pin is near a toggle."""
 
 LATER = ("shaper with two slides", "scotch yoke", "held cylinder", "geared five-bar")
 """Topologies whose dyads linksweep does not have yet; nor does it compute other drives of linkages than the crank."""

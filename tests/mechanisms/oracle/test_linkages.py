@@ -14,7 +14,7 @@ from benchmarks.speed.kernel import way
 from benchmarks.stress.linkages import __main__ as front_door
 from benchmarks.stress.linkages import errors
 from benchmarks.stress.linkages.scene import scene_of
-from benchmarks.stress.linkages.topologies import TODAY
+from benchmarks.stress.linkages.topologies import NEAR_A_TOGGLE, TODAY
 
 
 @pytest.fixture(autouse=True)
@@ -25,7 +25,7 @@ def uncompiled():
 
 
 @pytest.mark.parametrize("designs", long_but([10, 50], 10))
-@pytest.mark.parametrize("name", TODAY)
+@pytest.mark.parametrize("name", TODAY | NEAR_A_TOGGLE)
 def test_linkages_reach_the_goals(name, designs):
     figures = [errors.errors_of(solution) for solution in front_door.solutions(name, designs, 2026, at_once=5)]
     total = front_door.joined(figures)
