@@ -186,6 +186,7 @@ class Linkage(Machine):
 
     @cached_property
     def drawing(self) -> Drawing:  # type: ignore[override]
+        """Linkage as plots draw it."""
         return LinkageDrawing(self.topology, self.ground, self.guides, self.chain.joints).drawing()
 
     @property
@@ -193,6 +194,10 @@ class Linkage(Machine):
         guides = {role: guide for role, (_, guide) in self.topology.sliders.items()}
         guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
         return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
+
+    @property
+    def places(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(step.name for step in self.topology.steps)
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
         lengths = {role: self.parts[role].length for role in self.topology.struts}

@@ -10,6 +10,7 @@ from typing import ClassVar
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.between_links import force_name
 from linksweep.mechanisms.chain.chain import Chain, Own, chain, table
+from linksweep.mechanisms.chain.equations import equations
 from linksweep.mechanisms.chain.motion import Shape
 from linksweep.mechanisms.mechanism import Mechanism
 from linksweep.mechanisms.rows.bodies import Body, Equation
@@ -93,7 +94,7 @@ class Machine(Mechanism):
         return (*self.unknowns(drive), *self.chain.slide_forces)
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        return self.chain.equations(drive)
+        return equations(self.shape.topology, {drive: self.drives[drive]})
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return (*(force_name(*pair) for pair in self.chain.joints.values()), self.drives[drive])

@@ -77,6 +77,8 @@ class Mechanism(ByContent, ABC):
     """The moving links as bodies with mass."""
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_CRANK
     """Meaning of each value of `status`."""
+    places: ClassVar[tuple[str, ...]] = ()
+    """Pins, or links past a pin, in the order in which they find their places, of which `status_at` names one."""
     round_trip: ClassVar[str] = "whether every angle is ok: assembled, not jammed, not at a dead centre"
     """Description of the status of peaks."""
     round_meanings: ClassVar[tuple[str, ...]] = ("ok", "partial_revolution", "cannot_assemble", "unbounded")

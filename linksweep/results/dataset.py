@@ -16,6 +16,7 @@ from linksweep.scene.file.writing import write_scene
 from linksweep.scene.scene import Scene
 
 STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"
+STATUS_AT_LONG_NAME = "pin, or link past a pin, whose dyad first fails at this sample"
 
 
 def described(

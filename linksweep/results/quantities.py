@@ -11,7 +11,7 @@ from linksweep.base.text_table import aligned
 from linksweep.base.validate import name_problems, refuse
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import counts_without_angles, require_scene
-from linksweep.results.dataset import STATUS_LONG_NAME
+from linksweep.results.dataset import STATUS_AT_LONG_NAME, STATUS_LONG_NAME
 from linksweep.results.sweep import default_names
 from linksweep.results.system import names_in, of_form
 from linksweep.scene.designs.lazy import lazy_paths, stand_in
@@ -164,8 +164,8 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
 
     Notes
     -----
-    `linksweep.sweep` takes all of the names; `linksweep.peaks` takes all but `cond` and `status`, each of them also
-    with one of the endings `_mean`, `_rms`, `_bound` and `_samples`.
+    `linksweep.sweep` takes all of the names; `linksweep.peaks` takes all but `cond`, `status` and `status_at`, each of
+    them also with one of the endings `_mean`, `_rms`, `_bound` and `_samples`.
 
     Examples
     --------
@@ -183,6 +183,8 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
         for item in scene.table.quantities
     ]
     rows.append(AvailableQuantity("status", "1", dims["status"], True, STATUS_LONG_NAME))
+    if scene.mechanism.places:
+        rows.append(AvailableQuantity("status_at", "1", dims["status_at"], False, STATUS_AT_LONG_NAME))
     table = QuantityTable(tuple(rows))
     return table if search is None else table.search(search)
 
@@ -190,7 +192,8 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
 def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
     """Return the dims of each quantity, read off the plan without computing anything."""
     sampled = _with_samples(stand_in(scene) if lazy_paths(scene) else scene)
-    names = [name for name in (*scene.table.quantity, "status") if name != "cond"]
+    of_status = ("status", "status_at") if scene.mechanism.places else ("status",)
+    names = [name for name in (*scene.table.quantity, *of_status) if name != "cond"]
     of_matrix = names_in(of_form(scene, "reduced")[1])
     request = plan(scene.table, tuple(dict.fromkeys([*names, *of_matrix])), sampled.inputs.forms)
     order = (*sampled.inputs.sizes, request.index)

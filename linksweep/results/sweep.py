@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.engine.run import Field, Grid
 from linksweep.mechanisms.between_links import force_name
 from linksweep.results.compute import (
     angles_of,
@@ -22,13 +23,14 @@ from linksweep.results.compute import (
     sample_status,
 )
 from linksweep.results.dask_blocks import by_blocks
-from linksweep.results.dataset import described
+from linksweep.results.dataset import STATUS_AT_LONG_NAME, described, flags, plain
 from linksweep.results.system import dense_solution
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 COUNT = 720
 """Angles of a turn where none are named."""
+STATUS_AT = "status_at"
 SOLVERS = ("fast", "superposed", "dense")
 
 
@@ -74,7 +76,8 @@ def sweep(
     -------
     Dataset
         Over (design dims…, theta2); each variable has only the dims that it depends on, with unit and sign in its
-        attributes. `status` states for each sample whether it is ok; where it is not 0 (ok), values are NaN.
+        attributes. `status` states for each sample whether it is ok; where it is not 0 (ok), values are NaN. For a
+        linkage, `status_at`, where requested, states which pin or link past a pin fails first.
 
     Raises
     ------
@@ -99,6 +102,7 @@ def sweep(
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
     word, quantities = either(of=of, outputs=outputs)
     names = default_names(scene) if quantities is None else _names(scene, word, requested(word, quantities))
+    with_place, names = STATUS_AT in names, tuple(name for name in names if name != STATUS_AT)
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     angles = COUNT if angles is None else angles
     grid = crank_grid(angles, scene.period, scene.mechanism.index)
@@ -112,7 +116,8 @@ def sweep(
     fields = compute(sampled, grid, names, threads, known, solver)
     blank(fields, status)
     command = _command(grid.dim, angles, None if quantities is None else names, solver)
-    return described(scene, sampled, grid, fields, status, command)
+    cycle = described(scene, sampled, grid, fields, status, command)
+    return cycle.assign(status_at=_status_at(sampled, grid, threads)) if with_place else cycle
 
 
 def default_names(scene: Scene) -> tuple[str, ...]:
@@ -123,9 +128,16 @@ def default_names(scene: Scene) -> tuple[str, ...]:
 
 
 def _names(scene: Scene, word: str, names: list[str]) -> tuple[str, ...]:
-    known = [*scene.table.quantity, "status"]
+    known = [*scene.table.quantity, "status", *([STATUS_AT] if scene.mechanism.places else [])]
     refuse([problem for name in names for problem in quantity_problems(word, name, known, scene)])
     return tuple(name for name in names if name != "status")
+
+
+def _status_at(sampled: Scene, grid: Grid, threads: int | None) -> xr.Variable:
+    """Return the place that fails first at each sample, 0 where none does."""
+    place = compute(sampled, grid, (STATUS_AT,), threads)[STATUS_AT]
+    attributes = flags(STATUS_AT_LONG_NAME, ("none", *sampled.mechanism.places))
+    return plain(Field(place.dims, place.values.astype(np.int8)), attributes)
 
 
 def _bound_missing(names: Iterable[str], solver: str) -> list[str]:

@@ -2,12 +2,15 @@
 
 import itertools
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from refusals import FOUR_BAR, LINK, LOAD, SCENE, array, coupler, four_bar, refusal, scene
 
 import linksweep as ls
+
+EXAMPLES = ", ".join(sorted(path.stem for path in (Path(ls.__file__).parent / "scene" / "examples").glob("*.toml")))
 
 # ------------------------------------------------------------------------------ dimensions that disagree
 
@@ -207,9 +210,9 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.peaks(SCENE, threads=True), "threads = True: must be a whole number, 1 or more"),
         (
             lambda: ls.example("pres"),
-            "name = 'pres': must be one of engine, loop, press, quick-return; did you mean \"press\"?",
+            f"name = 'pres': must be one of {EXAMPLES}; did you mean \"press\"?",
         ),
-        (lambda: ls.example(None), "name = None: must be one of engine, loop, press, quick-return"),
+        (lambda: ls.example(None), f"name = None: must be one of {EXAMPLES}"),
     ],
 )
 def test_names_and_options_of_a_request(request_, message):

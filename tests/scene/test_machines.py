@@ -90,8 +90,8 @@ def test_klanns_leg_stands_where_his_patent_puts_it():
     patent = {"C": 0.741 + 0.75j, "E": 0.232 + 0.866j, "F": 0.866 + 1.5j, "H": 0.0}
     leg = ls.sweep(ls.example("klann-leg"), [180.0], of=[f"{pin}{axis}" for pin in patent for axis in "xy"])
     for pin, place in patent.items():
-        found = complex(leg[f"{pin}x"].item(), leg[f"{pin}y"].item())
-        assert abs(found - 0.4 * (place - 1.599 - 0.75j)) < 0.4e-3, pin
+        pin_place = complex(leg[f"{pin}x"].item(), leg[f"{pin}y"].item())
+        assert abs(pin_place - 0.4 * (place - 1.599 - 0.75j)) < 0.4e-3, pin
 
 
 def test_feet_walk_level():

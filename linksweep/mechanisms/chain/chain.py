@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.between_links import force_name, name_between
-from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, equations, has_moment
+from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, has_moment
 from linksweep.mechanisms.chain.forces import Forces
 from linksweep.mechanisms.chain.limits import limits
 from linksweep.mechanisms.chain.motion import Motion, Shape
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows import bodies
-from linksweep.mechanisms.rows.bodies import Equation, Source, xy
+from linksweep.mechanisms.rows.bodies import Source, xy
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.mechanisms.topology import GROUND
@@ -128,10 +128,6 @@ class Chain:
             rows.append(Row(chains.first_failure, out, (step_status, float(k), status, at)))
             status, at = out
         return rows
-
-    def equations(self, drive: str) -> tuple[Equation, ...]:
-        """Return the three rows of each moving link: sums of forces, and of moments about its centre of gravity."""
-        return equations(self.topology, {drive: self.drives[drive]})
 
     def _counts(self, pin: str) -> bool:
         """Return whether a pin has results: in a machine of its own name, only a pin that joins links."""

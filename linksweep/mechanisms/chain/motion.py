@@ -251,7 +251,7 @@ class Motion:
         step: Step,
         rows: Rows,
         certain: Mapping[str, Source],
-        found: Mapping[str, Source],
+        of_found_pin: Mapping[str, Source],
         *listed: Mapping[str, Source],
     ) -> None:
         """Add the rows of a dyad under their names in this machine."""
@@ -259,7 +259,7 @@ class Motion:
         branch = {} if self.plain else {"branch_sign": f"branch_{step.name}"}
         self.names[step.name] = names = Names("" if self.plain else f"_{step.name}", crank, branch, *listed)
         self.rows += names.placed(rows)
-        for numbers in [certain] if self.plain else [certain, found]:
+        for numbers in [certain] if self.plain else [certain, of_found_pin]:
             self.certain |= {str(names[name]): names.of(unit) for name, unit in numbers.items()}
 
     def measure(self, step: Step, words: str) -> None:
