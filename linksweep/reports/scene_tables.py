@@ -12,7 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.fields import FieldKind, NumberField, RowField, declared, field_rules, has_fields, left_out
+from linksweep.base.fields import (
+    FieldKind,
+    NumberField,
+    PairField,
+    RowField,
+    declared,
+    field_rules,
+    has_fields,
+    left_out,
+)
+from linksweep.base.records import NamedField
 from linksweep.base.validate import UNITS
 from linksweep.mechanisms.links import Bar, Disk
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
@@ -102,6 +112,21 @@ def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
             yield _plain(name), quantity(value, kind)
         elif isinstance(value, str):
             yield name, value
+        elif isinstance(field, NamedField) and not field.inline:
+            yield from ((f"{_plain(name)} {key}", _named(field.each, item)) for key, item in value.items())
+
+
+def _named(kind: FieldKind, item: Any) -> str:
+    """Return a named thing in words: a point, a word, or an object by its fields."""
+    if isinstance(kind, PairField):
+        return _pair(kind, item)
+    return _in_words(item) if has_fields(item) else str(item)
+
+
+def _pair(kind: PairField, pair: Any) -> str:
+    """Return a point in words, by its coordinates or by distance and angle."""
+    first, second = quantity(pair[0], kind.first.kind), quantity(pair[1], kind.second.kind)
+    return f"{first} at {second}" if kind.second.kind == "angle" else f"({first}, {second})"
 
 
 def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
@@ -176,6 +201,8 @@ def _field_in_words(name: str, kind: FieldKind, value: Any) -> str:
         return f"{name}: {_in_words(value)}"
     if isinstance(kind, NumberField):
         return f"{name} {quantity(value, kind.rule.kind)}"
+    if isinstance(kind, PairField):
+        return f"{name} {_pair(kind, value)}"
     if isinstance(kind, RowField):
         return f"{name} at {', '.join(quantity(number, kind.rule.kind) for number in value)}"
     return f"{name} {_end(value) if isinstance(kind, EndField) else value}"

@@ -97,7 +97,9 @@ class LinkageDrawing(NamedTuple):
     def _carrier(self) -> Carrier:
         """Return the link with a free pin, which draws the curve; else the first that no ground pin holds."""
         joined = self.topology
-        free = [(role, pin) for pin, (role, *others) in joined.members.items() if not others and role in joined.links]
+        taken = {*joined.passed.values(), *(pin for pins in joined.cylinders.values() for pin in pins)}
+        single = [(role, pin) for pin, (role, *others) in joined.members.items() if not others and pin not in taken]
+        free = [(role, pin) for role, pin in single if role in joined.links]
         floating = [role for role, pins in joined.links.items() if not {*pins} & {*joined.ground}]
         role, end = free[-1] if free else ((*floating, joined.crank)[0], "")
         return Carrier(role, joined.number(role), joined.links[role][0], end)

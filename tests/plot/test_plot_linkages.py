@@ -1,0 +1,68 @@
+"""Drawings of linkages: pins at the links' lengths, plates, blocks on their guides, the curve of a free pin."""
+
+import numpy as np
+import pytest
+from drawn import closed_figures, line, page_hides_nothing, texts  # noqa: F401
+
+import linksweep as ls
+from linksweep import plot
+from linksweep.reports.scene_tables import settings
+
+NAMES = ("watt-2", "knuckle-press", "crank-shaper", "whitworth", "jansen-leg", "scissor-lift")
+
+
+def pins_of(ax, scene):
+    """Return the drawn places of the pins by name."""
+    names = sorted(scene.mechanism.topology.members)
+    return dict(zip(names, np.transpose(line(ax, "_pins").get_data()), strict=True))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_are_drawn_to_scale_with_their_pins_named(name):
+    scene = ls.example(name)
+    ax = plot.mechanism(scene, 40.0)
+    pins, mechanism = pins_of(ax, scene), scene.mechanism
+    assert {*pins} <= {*texts(ax)}
+    for role, (first, second, *_) in mechanism.topology.links.items():
+        drawn = np.linalg.norm(pins[second] - pins[first])
+        np.testing.assert_allclose(drawn, mechanism.parts[role].length, rtol=1e-12)
+    pivot = np.array(next(iter(mechanism.ground.values())))
+    for pin, place in mechanism.ground.items():
+        np.testing.assert_allclose(pins[pin], np.array(place) - pivot, atol=1e-15)
+
+
+def test_the_foot_of_a_leg_draws_the_curve_and_a_link_of_choice_another():
+    scene = ls.example("jansen-leg")
+    ax = plot.mechanism(scene, 40.0)
+    foot, curve = pins_of(ax, scene)["H"], np.transpose(line(ax, "_coupler curve").get_data())
+    step = np.linalg.norm(np.diff(curve, axis=0), axis=1).max()
+    assert np.linalg.norm(curve - foot, axis=1).min() < step
+    assert not any("G" in text and "_" in text for text in texts(ax))
+    crank = plot.mechanism(scene, 40.0, link=scene.mechanism.roles[0], point=(0.05, 0.0))
+    radii = np.linalg.norm(np.transpose(line(crank, "_coupler curve").get_data()), axis=1)
+    np.testing.assert_allclose(radii, 0.05)
+    with pytest.raises(ValueError, match=r"^link = 'wing': must be one of "):
+        plot.mechanism(scene, 40.0, link="wing")
+
+
+def test_a_press_has_its_ram_on_the_guide_and_an_arrow_at_every_joint():
+    scene = ls.example("knuckle-press")
+    ax = plot.mechanism(scene, 40.0, forces=True)
+    ram = pins_of(ax, scene)["E"]
+    corners = np.transpose(line(ax, "_block").get_data())
+    np.testing.assert_allclose(corners[:4].mean(axis=0), ram)
+    sizes = [text.get_text() for text in ax.texts] + texts(ax)
+    assert {"F_{53}", "F_{65}", "F_{16}"} <= {part for text in sizes for part in text.replace("$", " ").split()}
+
+
+def test_a_cycle_of_a_press_has_all_forces_in_its_legend():
+    ax = plot.forces(ls.sweep(ls.example("knuckle-press"), 360))
+    legend = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert [text.split("(")[1] for text in legend if ":" in text] == ["C:upper)", "C:lower)"]
+    assert ax.get_ylabel() == "pin and slide force [N]"
+
+
+def test_a_report_lists_ground_pins_guides_and_branches():
+    page = str(settings(ls.example("knuckle-press")))
+    for row in ("ground D", "guides slide", "branch C"):
+        assert row in page
