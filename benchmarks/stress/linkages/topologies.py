@@ -199,7 +199,7 @@ NEAR_A_TOGGLE = {
 """Families of which a pin is near a toggle."""
 
 LATER = ("shaper with two slides", "held cylinder", "geared five-bar")
-"""Topologies that linksweep does not compute yet, or with an error_bound far too wide (the two slides); nor does it compute
+"""Topologies that linksweep does not compute yet, or with far too wide an error_bound (the two slides); nor does it do
 other drives of linkages than the crank."""
 TODAY = {name: family for name, family in FAMILIES.items() if not family.drive and name not in LATER}
 """Families that linksweep computes."""
