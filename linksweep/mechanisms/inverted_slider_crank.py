@@ -150,7 +150,7 @@ class InvertedSliderCrank(Machine):
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
     title: ClassVar[str] = "Inverted slider-crank"
     drawing: ClassVar[Drawing] = Drawing(
-        joints={**TOPOLOGY.pins, **TOPOLOGY.slides},
+        joints={"A": (1, 2), "B": (3, 2), "slide": (4, 3), "D": (1, 4)},
         journals=TOPOLOGY.journals,
         frames={2: Frame("crank, A→B", "theta2"), 3: ROCKER, 4: ROCKER},
         bars={2: ("A", "B")},
