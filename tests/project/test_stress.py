@@ -72,11 +72,11 @@ def test_mean_torque_of_conservative_machines_is_zero():
     assert means.max() < 10.0
 
 
-@pytest.mark.parametrize("kind", six_bars.KINDS)
+@pytest.mark.parametrize("kind", long_but([*six_bars.KINDS, *six_bars.OTHERS], "watt", "Whitworth", "Jansen leg"))
 def test_no_peak_of_six_bars_is_missed_and_their_arcs_are_right(kind):
     result = six_bars.check(kind, 25, [2026])
     assert result.designs == 25
-    assert result.moving > 20
+    assert result.moving > 15
     assert (result.missed, result.wrong_arcs) == (0, 0), result
 
 

@@ -118,14 +118,16 @@ class Chain:
         return Table("theta2", tuple(rows), tuple(last.values()), own.between, limited)
 
     def _status(self) -> Rows:
-        """Return rows of the status that fails first, and of the step where it does."""
+        """Return rows of the status and its step: of the first dyad that does not close, or else of the first jam."""
         rows: Rows = []
         status: Source = 0.0
         at: Source = 0.0
-        for k, step_status in reversed([*enumerate(self.forces.statuses, 1)]):
-            last = k == 1
-            out = ("status", "status_at") if last else (f"status_from_{k}", f"status_at_from_{k}")
-            rows.append(Row(chains.first_failure, out, (step_status, float(k), status, at)))
+        steps = [*enumerate(self.forces.statuses, 1)]
+        jams = [(k, jam) for k, (closure, jam) in steps if jam != closure]
+        closures = [(k, closure) for k, (closure, _) in steps if len(steps) > 1 or not jams]
+        for n, (k, one) in reversed([*enumerate([*closures, *jams])]):
+            out = ("status", "status_at") if n == 0 else (f"status_from_{n}", f"status_at_from_{n}")
+            rows.append(Row(chains.first_failure, out, (one, float(k), status, at)))
             status, at = out
         return rows
 

@@ -29,7 +29,7 @@ class Forces:
     def __init__(self, motion: Motion):
         self.motion, self.topology = motion, motion.topology
         self.rows: Rows = []
-        self.statuses: list[str] = []
+        self.statuses: list[tuple[str, str]] = []
         self.losses: list[str] = []
         self.contacts: list[Contact] = []
         self.work: list[str] = []
@@ -94,7 +94,7 @@ class Forces:
         """Add the rows of a dyad's forces, and its status."""
         names = self.motion.names[name]
         self.rows += names.placed(rows)
-        self.statuses.append(str(names[status]))
+        self.statuses.append((str(names["closure"]), str(names[status])))
 
     def rub(self, name: str, ratio: str, friction: str = "friction_force", power: str = "friction_power") -> None:
         """Add the work of a slide's friction, and the power that it loses."""
