@@ -203,6 +203,7 @@ def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearTog
     turning = extremes(curves, values, noise)
     height = turning.sign * turning.values[1]
     curve, angle = zeros(curves, values, noise, turning.some(height < -turning.noise))
+    angle = in_period(angle, TURN) if curves.turns else angle  # the last samples of a turn are the first ones again
     closes = (turning.sign > 0.0) | (curves.limit.zeros != "toggle")
     near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise)))
     least = turning.some(closes & (np.abs(height) <= turning.noise))

@@ -90,6 +90,17 @@ def test_arcs_of_machines_that_nearly_turn_fully(machines, margin, atol):
     compare_arcs(machines(random, 200, margin * random.uniform(0.1, 1.0, 200)), atol)
 
 
+def test_short_arcs_and_a_narrow_gap_where_the_turn_begins():
+    """It lay between samples that were counted from the end of the turn, the arc's start from its beginning."""
+    n = 24
+    ground_angle, a, d = np.linspace(0.0, 23.0, n), np.full(n, 0.3), np.full(n, 1.0)
+    reach = np.sqrt(a**2 + d**2 - 2.0 * a * d * np.cos(np.radians(10.0)))
+    difference = (d - a) * (1.0 + 1e-7)
+    b, c = 0.5 * (reach + difference), 0.5 * (reach - difference)
+    machine = ls.FourBar(link(a), link(b), link(c), over_designs(d), ground_angle=over_designs(ground_angle))
+    compare_arcs(ls.Scene(machine, 1.0), 1e-9)
+
+
 @pytest.mark.parametrize("machines", MACHINES)
 @pytest.mark.parametrize("decades", [(-4.0, -1.5), (-9.0, -4.0)])
 def test_near_toggles_of_machines_that_barely_turn_fully(machines, decades):
