@@ -24,7 +24,7 @@ from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
-from linksweep.mechanisms.topology import topology_of
+from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rrr, freudenstein
@@ -78,6 +78,7 @@ class FourBar(Machine):
 
     drives: ClassVar[dict[str, str]] = DRIVES
     position_equation: ClassVar[PositionEquation | None] = freudenstein.POSITION_EQUATION
+    topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Four-bar"
     drawing: ClassVar[Drawing] = Drawing(
         joints=TOPOLOGY.pins,

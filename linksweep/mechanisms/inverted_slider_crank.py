@@ -25,7 +25,7 @@ from linksweep.mechanisms.rows.bodies import Equation, Source, arm_rows, drive_t
 from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.strokes import Stroke, block_stroke
-from linksweep.mechanisms.topology import topology_of
+from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import inverted_slider_crank
@@ -148,6 +148,7 @@ class InvertedSliderCrank(Machine):
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
 
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
+    topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Inverted slider-crank"
     drawing: ClassVar[Drawing] = Drawing(
         joints={"A": (1, 2), "B": (3, 2), "slide": (4, 3), "D": (1, 4)},

@@ -140,7 +140,7 @@ class Linkage(Machine):
         raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{did_you_mean(name, parts)}")
 
     @cached_property
-    def topology(self) -> Topology:
+    def topology(self) -> Topology:  # type: ignore[override]
         """Who is joined to whom, and the order in which the dyads close."""
         joined, problems = self._topology_and_problems
         if joined is None or problems:

@@ -17,7 +17,7 @@ from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals, Pins
-from linksweep.mechanisms.topology import GROUND
+from linksweep.mechanisms.topology import GROUND, Topology
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -25,6 +25,9 @@ class Machine(Mechanism):
     """A machine made of a crank and dyads."""
 
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_SLIDER
+
+    topology: ClassVar[Topology]
+    """Links and joints, and the order in which the dyads close."""
 
     @property
     @abstractmethod
@@ -38,20 +41,20 @@ class Machine(Mechanism):
 
     @property
     def roles(self) -> tuple[str, ...]:  # type: ignore[override]
-        return self.shape.topology.roles
+        return self.topology.roles
 
     @property
     def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
-        joined = self.shape.topology
+        joined = self.topology
         return tuple(role for role, (_, guide) in joined.sliders.items() if joined.hosts[guide] == GROUND)
 
     @property
     def pins(self) -> Pins:  # type: ignore[override]
-        return self.shape.topology.pins
+        return self.topology.pins
 
     @property
     def journals(self) -> Journals:  # type: ignore[override]
-        return self.shape.topology.journals
+        return self.topology.journals
 
     @property
     def bodies(self) -> tuple[Body, ...]:  # type: ignore[override]
@@ -63,7 +66,7 @@ class Machine(Mechanism):
 
     @property
     def defaults(self) -> dict[str, str]:  # type: ignore[override]
-        return {"drive": self.shape.topology.crank}
+        return {"drive": self.topology.crank}
 
     def choices(self) -> dict[str, dict[str, str]]:
         return {"drive": self.drives}
@@ -82,7 +85,7 @@ class Machine(Mechanism):
 
     def kinks(self) -> tuple[str, ...]:
         """Return the normal forces of slides, with which friction changes sides."""
-        return tuple(f"{force_name(*pair)}n" for pair in self.chain.topology.slides.values()) if self.rubbing else ()
+        return tuple(f"{force_name(*pair)}n" for pair in self.topology.slides.values()) if self.rubbing else ()
 
     def kinematics(self) -> tuple[str, ...]:
         return self.chain.kinematics
@@ -94,7 +97,7 @@ class Machine(Mechanism):
         return (*self.unknowns(drive), *self.chain.slide_forces)
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        return equations(self.shape.topology, {drive: self.drives[drive]})
+        return equations(self.topology, {drive: self.drives[drive]})
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return (*(force_name(*pair) for pair in self.chain.joints.values()), self.drives[drive])

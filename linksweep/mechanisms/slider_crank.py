@@ -28,7 +28,7 @@ from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, i
 from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.rows.pins import Journals
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
-from linksweep.mechanisms.topology import topology_of
+from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import slider_crank
@@ -115,6 +115,7 @@ class SliderCrank(Machine):
     drives: ClassVar[dict[str, str]] = DRIVES
     journals: ClassVar[Journals] = JOURNALS
     balances_partly: ClassVar[bool] = True
+    topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Slider-crank"
     drawing: ClassVar[Drawing] = Drawing(
         joints=JOINTS,
