@@ -201,7 +201,7 @@ def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
         machine_parts.number_of_link(ax, number, corners, covered)
     for (barrel, rod), shortest in zip(drawing.telescopes, shape.shortest, strict=True):
         machine_parts.telescope(ax, shape.pins[barrel], shape.pins[rod], shortest)
-    machine_parts.pins(ax, np.array(list(shape.pins.values())))
+    machine_parts.pins(ax, np.array(list(shape.lettered.values())))
     machine_parts.point(ax, shape.point)
 
 
@@ -232,7 +232,7 @@ def _slideway(ax: Axes, block: Block, slide: Slide, shape: Shape, half: float) -
 
 
 def _names(ax: Axes, shape: Shape) -> None:
-    for name, position in shape.pins.items():
+    for name, position in shape.lettered.items():
         _name(ax, position, name, fontweight="bold")
 
 

@@ -138,7 +138,7 @@ def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.nd
     draw_links(ax, drawing, shape)
     for name, ends in arrows.items():
         _arrow(ax, name, ends, NAMED * longest)
-    for name, pin in shape.pins.items():
+    for name, pin in shape.lettered.items():
         ax.annotate(name, tuple(pin), (6.0, 6.0), **_beside(BLACK), fontweight="bold")
 
 

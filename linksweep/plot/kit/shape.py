@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.degrees import cos_sin
+from linksweep.mechanisms.between_links import is_pin
 from linksweep.mechanisms.drawing import Drawing, Frame
 from linksweep.plot.kit import signals
 from linksweep.results.sweep import sweep
@@ -42,6 +43,11 @@ class Shape(NamedTuple):
     point: np.ndarray
     slides: tuple[Slide, ...]
     shortest: tuple[float, ...]
+
+    @property
+    def lettered(self) -> dict[str, np.ndarray]:
+        """Places of pins alone, without the centres of yokes."""
+        return {name: place for name, place in self.pins.items() if is_pin(name)}
 
 
 def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
