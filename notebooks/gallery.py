@@ -34,6 +34,7 @@ machines = {  # crank angle [°] of the picture, and what else to draw
     "drag-link-press": (220, {"link": "driven", "point": (0.120, 95.0)}),
     "crank-shaper": (40, {"link": "arm", "point": (0.600, 0.0)}),
     "whitworth": (60, {"link": "arm", "point": (0.090, 0.0)}),
+    "scotch-yoke": (40, {"link": "crank", "point": (0.0, 0.0)}),
     "pump-jack": (40, {"link": "beam", "point": (3.2766, 0.0)}),
     "jansen-leg": (60, {}),
     "klann-leg": (100, {}),

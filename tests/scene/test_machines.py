@@ -8,7 +8,7 @@ import linksweep as ls
 
 TURN = np.arange(0.0, 360.0, 2.5)
 DIG = np.arange(0.0, 41.0, 5.0)  # degrees of the excavator's boom
-WAITING = {"excavator", "geared-five-bar", "scotch-yoke"}
+WAITING = {"excavator", "geared-five-bar"}
 machines = pytest.mark.parametrize("name", sorted({*MACHINES} - WAITING))
 
 
@@ -57,6 +57,7 @@ STROKES = {
     "crank-shaper": ("ram", 2 * 0.6 * 0.1 / 0.3),
     "drag-link-press": ("ram", 2 * 0.12),
     "knuckle-press": ("ram", knuckle_stroke()),
+    "scotch-yoke": ("yoke", 2 * 0.04),
     "whitworth": ("ram", 2 * 0.09),
 }
 
@@ -119,3 +120,13 @@ def test_the_claw_pulls_a_film_by_one_perforation():
 def test_a_dwell_for_a_third_of_the_turn():
     waiting = ls.sweep(ls.example("stephenson-3"), np.arange(161.0, 281.5, 0.5), of=["theta6"])
     assert np.ptp(waiting.theta6.values) < 0.6
+
+
+def test_a_scotch_yoke_in_closed_form():
+    """Crank at constant speed: the pin passes on the plunger's pressure and the inertia of the yoke, a pure cosine."""
+    cycle = ls.sweep(ls.example("scotch-yoke"), TURN, of=["T12", "a_yoke"])
+    omega, sine, cosine = 6 * np.pi, np.sin(np.radians(TURN)), np.cos(np.radians(TURN))
+    pressure = np.where(TURN < 180.0, 0.0, 3000.0)
+    assert abs(cycle.a_yoke + 0.04 * omega**2 * cosine).max() < 1e-13
+    torque = (6.0 * 0.04 * omega**2 * cosine - pressure) * 0.04 * sine
+    assert abs(cycle.T12 - torque).max() < 1e-12

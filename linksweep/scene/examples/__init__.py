@@ -19,8 +19,8 @@ def example(name: str) -> Scene:
         document 3's example 17-4.
 
         Linkages: "watt-1", "watt-2", "stephenson-1" and "stephenson-3", six-bars that feed, stir, pull film and dwell;
-        the presses "knuckle-press" and "drag-link-press"; "crank-shaper" and "whitworth", quick returns; "pump-jack";
-        "jansen-leg" and "klann-leg", which walk; "wipers", of a car; "scissor-lift".
+        the presses "knuckle-press" and "drag-link-press"; "crank-shaper" and "whitworth", quick returns; "scotch-yoke",
+        a pump; "pump-jack"; "jansen-leg" and "klann-leg", which walk; "wipers", of a car; "scissor-lift".
 
     Returns
     -------
