@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+from linksweep.base.validate import refuse
 from linksweep.engine.quantity import Table
 from linksweep.mechanisms.between_links import force_name
 from linksweep.mechanisms.chain.chain import Chain, Own, chain, table
@@ -76,6 +77,7 @@ class Machine(Mechanism):
         return self.chain.own(drive, loads)
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
+        refuse(self.chain.drive_problems(drive, self.rubbing))
         return table(self.chain, self.own(drive, loads), loads, frozenset(self.rubbing))
 
     @property

@@ -87,7 +87,8 @@ def _error(name: str, values: Array, exact: Results) -> Array:
 
 
 def _largest(errors: Mapping[str, Array], kinds: set[str]) -> Array:
-    return np.max([error for name, error in errors.items() if kind(name) in kinds], axis=0)
+    nothing = np.zeros_like(next(iter(errors.values())))
+    return np.max([nothing, *(error for name, error in errors.items() if kind(name) in kinds)], axis=0)
 
 
 def _scales(exact: Results) -> dict[str, Array]:

@@ -198,8 +198,9 @@ NEAR_A_TOGGLE = {
 }
 """Families of which a pin is near a toggle."""
 
-LATER = ("shaper with two slides", "held cylinder", "geared five-bar")
-"""Topologies that linksweep does not compute yet, or with far too wide an error_bound (the two slides); nor does it do
-other drives of linkages than the crank."""
-TODAY = {name: family for name, family in FAMILIES.items() if not family.drive and name not in LATER}
+LATER = ("geared five-bar",)
+"""Topologies whose dyads linksweep does not have yet."""
+RUBBED = (*(name for name in FAMILIES if name.endswith("arm drives")), "block on a coupler, rod drives")
+"""Families whose drive loads a slide with friction, which linksweep refuses."""
+TODAY = {name: family for name, family in FAMILIES.items() if not name.startswith(LATER) and name not in RUBBED}
 """Families that linksweep computes."""

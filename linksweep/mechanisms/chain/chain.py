@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.between_links import force_name, name_between
-from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, has_moment
+from linksweep.mechanisms.chain.cylinders import force_quantity
+from linksweep.mechanisms.chain.drives import Drive, friction_problems
+from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, cylinder_rows, has_moment
 from linksweep.mechanisms.chain.forces import Forces
 from linksweep.mechanisms.chain.limits import limits
 from linksweep.mechanisms.chain.motion import Motion, Shape
@@ -36,6 +39,7 @@ class Own(NamedTuple):
     rows: tuple[Row | Total, ...] = ()
     quantities: tuple[Quantity, ...] = ()
     between: tuple[Row, ...] = BETWEEN
+    name: str = ""
 
 
 FRICTION_POWER = Quantity("friction_power", "W", "power of friction on all sliders, never positive")
@@ -47,22 +51,50 @@ class Chain:
     def __init__(self, shape: Shape):
         self.topology = shape.topology
         self.motion = Motion(shape)
-        self.forces = Forces(self.motion)
         self.bodies = tuple(self.motion.bodies[role] for role in self.topology.roles)
         self.joints = {**self.topology.pins, **self.topology.slides}
         self.names = {self.topology.number(role): role for role in (GROUND, *self.topology.roles)}
 
     @cached_property
     def drives(self) -> dict[str, str]:
-        """Unknown torque of each link that turns about a ground pin."""
-        on_ground = [role for role in self.topology.links if {*self.topology.links[role]} & {*self.topology.ground}]
-        return {role: name_between("T", 1, self.topology.number(role)) for role in on_ground}
+        """Unknown torque of each link that turns about a ground pin, or force of each cylinder that follows."""
+        joined = self.topology
+        on_ground = [role for role in joined.links if {*joined.links[role]} & {*joined.ground}]
+        follow = [role for role in joined.cylinders if role not in joined.struts]
+        torques = {role: name_between("T", 1, joined.number(role)) for role in on_ground}
+        return torques | {role: f"force_{role}" for role in follow}
+
+    def drive(self, name: str) -> Drive:
+        """Return a drive by the name of its link or cylinder."""
+        if name in self.topology.cylinders:
+            hosts = tuple(self.topology.support[pin] for pin in self.topology.cylinders[name])
+            return Drive(
+                name,
+                force_quantity(name),
+                f"rate_{name}",
+                f"lengthening_{name}",
+                hosts,
+                f"{self.topology.crank}_length",
+            )
+        unknown = bodies.drive_torque(self.drives[name], name)
+        return Drive(name, unknown, f"omega{self.topology.number(name)}", self.motion.bodies[name].ratio, (name,))
+
+    def drive_problems(self, name: str, rubbing: Collection[str]) -> list[str]:
+        """Return the problems of a drive of a machine whose slides on these guides rub."""
+        return [] if self.motion.plain else friction_problems(self.topology, self.drive(name), rubbing)
+
+    @lru_cache(maxsize=16)  # noqa: B019
+    def forces(self, name: str = "") -> Forces:
+        """Return the rows of the forces with a drive; with that of the crank where none is named."""
+        return Forces(self.motion, self.drive(name) if name and not self.motion.plain else None)
 
     @property
     def unknowns(self) -> tuple[str, ...]:
-        """Forces at the pins, then normal force and moment of each slide."""
+        """Forces at the pins, then normal force and moment of each slide, and the forces of struts."""
         of_pins = [part for i, j in self.topology.pins.values() for part in xy(force_name(i, j))]
-        return (*of_pins, *(part for slide in self.topology.slides for part in self.slide_unknowns(slide)))
+        of_slides = (part for slide in self.topology.slides for part in self.slide_unknowns(slide))
+        struts = (role for role in self.topology.cylinders if role in self.topology.struts)
+        return (*of_pins, *of_slides, *(f"force_{role}" for role in struts))
 
     @property
     def slide_forces(self) -> tuple[str, ...]:
@@ -85,25 +117,27 @@ class Chain:
 
     def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         """Return the drive of a link by a torque."""
-        unknown = bodies.drive_torque(self.drives[drive], drive)
-        return Own(unknown, f"omega{self.topology.number(drive)}")
+        driven = self.drive(drive)
+        return Own(driven.unknown, driven.rate, tuple(driven.rows()), name=drive)
 
     def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
         """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
         of_limits, limited = ([], ()) if self.motion.plain else limits(self.motion, rubbing)
+        forces, driven = self.forces(own.name), self.drive(own.name) if own.name else None
         rows = [
             *self.motion.rows,
-            *self.forces.rows,
-            Total("work", (*self.motion.work, *self.forces.work)),
-            *self._status(),
+            *forces.rows,
+            Total("work", (*self.motion.work, *forces.work)),
+            *self._status(forces, driven),
             Row(planar.opposite, (own.unknown.name,), ("work",)),
-            *power_rows(own.unknown.name, own.rate, self.bodies, loads, *self.forces.losses),
+            *power_rows(own.unknown.name, own.rate, self.bodies, loads, *forces.losses, *forces.powers),
             *machine_rows(self.bodies, self.joints, loads, **self.motion.certain),
             *arm_rows(self.motion),
-            *contact_rows(self.forces.contacts),
+            *contact_rows(forces.contacts),
+            *cylinder_rows(self.topology),
             *of_limits,
             *own.rows,
-            *([] if self.motion.plain else [Total("friction_power", tuple(self.forces.losses))]),
+            *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
         ]
         friction = "drive, friction, loads, gravity and inertia" if self.topology.slides else ""
         quantities = [
@@ -111,20 +145,30 @@ class Chain:
             *(quantity for slide in self.topology.slides for quantity in self._slide_quantities(slide)),
             *(bodies.drive_quantities(own.unknown, friction) if friction else bodies.drive_quantities(own.unknown)),
             *own.quantities,
-            *([FRICTION_POWER] if self.forces.losses and not self.motion.plain else []),
+            *(force_quantity(role) for role in self.topology.cylinders if role in self.topology.struts),
+            *([FRICTION_POWER] if forces.losses and not self.motion.plain else []),
             *machine_quantities(self.bodies, self.joints, self.names, loads),
         ]
         last = {quantity.name: quantity for quantity in quantities}
+        if driven:
+            limited = (*limited, *driven.limits())
         return Table("theta2", tuple(rows), tuple(last.values()), own.between, limited)
 
-    def _status(self) -> Rows:
-        """Return rows of the status and its step: of the first dyad that does not close, or else of the first jam."""
+    def _status(self, forces: Forces, drive: Drive | None) -> Rows:
+        """Return rows of the status and its step: of the first dyad that does not close, else of the first jam.
+
+        Where the driven part stands still, jams have no meaning.
+        """
         rows: Rows = []
         status: Source = 0.0
         at: Source = 0.0
-        steps = [*enumerate(self.forces.statuses, 1)]
+        steps = [*enumerate(forces.statuses, 1)]
         jams = [(k, jam) for k, (closure, jam) in steps if jam != closure]
-        closures = [(k, closure) for k, (closure, _) in steps if len(steps) > 1 or not jams]
+        standing = drive is not None and not drive.is_crank
+        closures = [(k, closure) for k, (closure, _) in steps if len(steps) > 1 or standing or not jams]
+        if drive and standing:
+            place = [k for k, step in enumerate(self.topology.steps, 1) if drive.name in step.roles]
+            closures.append(((*place, 1)[0], "drive_status"))
         for n, (k, one) in reversed([*enumerate([*closures, *jams])]):
             out = ("status", "status_at") if n == 0 else (f"status_from_{n}", f"status_at_from_{n}")
             rows.append(Row(chains.first_failure, out, (one, float(k), status, at)))

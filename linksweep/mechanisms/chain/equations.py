@@ -6,7 +6,7 @@ at the slider's pin, and a moment about that pin.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Row
@@ -54,8 +54,28 @@ def contact_rows(contacts: Iterable[Contact]) -> Rows:
     return rows
 
 
+def cylinder_rows(topology: Topology) -> Rows:
+    """Return rows of the moments of each cylinder's unit force about the centres of gravity of the links it pushes."""
+    rows: Rows = []
+    for role, pin, k, _ in _pushed(topology, topology.cylinders):
+        lever = f"lever_{role}_{pin}"
+        rows.append(Row(planar.difference, xy(lever), (*xy(pin), *xy(f"G{k}"))))
+        rows.append(Row(planar.cross, (f"axis_{role}_at_{pin}",), (*xy(lever), *xy(f"axis_{role}"))))
+    return rows
+
+
+def _pushed(topology: Topology, cylinders: Iterable[str]) -> Iterator[tuple[str, str, int, float]]:
+    """Yield each cylinder with a pin, the number of the moving link that carries it, and the sign of its push there."""
+    for role in cylinders:
+        for pin, way in zip(topology.cylinders[role], (-1.0, 1.0), strict=True):
+            k = topology.number(topology.members[pin][0])
+            if k != 1:
+                yield role, pin, k, way
+
+
 def equations(topology: Topology, torques: Mapping[str, str]) -> tuple[Equation, ...]:
-    """Return the three rows of each moving link; `torques` names the unknown torque of the driven link."""
+    """Return the three rows of each moving link; `torques` names the unknown of the driven link, or cylinder."""
+    cylinders = [*topology.struts, *(role for role in torques if role in topology.cylinders)]
     rows = []
     for role in topology.roles:
         k = topology.number(role)
@@ -64,6 +84,9 @@ def equations(topology: Topology, torques: Mapping[str, str]) -> tuple[Equation,
         for slide, pair in topology.slides.items():
             if k in pair:
                 _add_slide(of_link, pair, k, has_moment(slide))
+        for name, pin, number, way in _pushed(topology, cylinders):
+            if number == k:
+                _add_cylinder(of_link, name, pin, way)
         rows += of_link
     return tuple(rows)
 
@@ -76,6 +99,12 @@ def _add_slide(rows: list[Equation], pair: tuple[int, int], k: int, with_moment:
         row.coefficients[f"{force}n"] = (sign(pair, k), name)
     if with_moment:
         rows[2].coefficients[name_between("T", *pair)] = sign(pair, k)
+
+
+def _add_cylinder(rows: list[Equation], role: str, pin: str, way: float) -> None:
+    """Add the force of a cylinder on its pin to the rows of a link."""
+    for row, name in zip(rows, (*xy(f"axis_{role}"), f"axis_{role}_at_{pin}"), strict=True):
+        row.coefficients[f"force_{role}"] = (way, name)
 
 
 def has_moment(slide: str) -> bool:

@@ -12,7 +12,8 @@ from collections.abc import Callable
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.between_links import name_between
-from linksweep.mechanisms.chain import slides
+from linksweep.mechanisms.chain import cylinders, slides
+from linksweep.mechanisms.chain.drives import Drive
 from linksweep.mechanisms.chain.equations import Contact
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
@@ -26,15 +27,18 @@ from linksweep.physics.algebra import planar
 class Forces:
     """Rows of the forces at all pins and slides of a machine whose motion is known."""
 
-    def __init__(self, motion: Motion):
+    def __init__(self, motion: Motion, drive: Drive | None = None):
         self.motion, self.topology = motion, motion.topology
         self.rows: Rows = []
         self.statuses: list[tuple[str, str]] = []
         self.losses: list[str] = []
+        self.powers: list[str] = []
         self.contacts: list[Contact] = []
         self.work: list[str] = []
         self.hung: dict[str, list[tuple[str, str]]] = defaultdict(list)
         self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
+        if drive and not drive.is_crank:
+            self._drive(drive)
         for step in reversed(self.topology.steps):
             getattr(self, f"_force_{type(step).__name__}")(step)
         self._crank()
@@ -56,6 +60,9 @@ class Forces:
         self.act_about(rocker)
         self.solve(step.name, rrr.forces(), "closure")
         self.meet(coupler.role, rocker.role, step.pin)
+        for side in (coupler, rocker):
+            if side.role in self.topology.struts:
+                cylinders.force_strut(self, side, step.pin, f"push_{side.role}_{step.pin}")
         self.push(coupler)
         self._release(rocker)
 
@@ -65,6 +72,8 @@ class Forces:
         self.solve(step.name, rrp.forces(), "jam_status")
         self.rub(step.name, "ratio_slider")
         self.meet(step.link.role, step.slider, step.pin)
+        if step.link.role in self.topology.struts:
+            cylinders.force_strut(self, step.link, step.pin, f"push_{step.link.role}_{step.pin}")
         self.push(step.link)
         self.slide(step.slider, step.guide, f"hold_{step.slider}", step.name, rrp.CONTACT)
 
@@ -88,6 +97,13 @@ class Forces:
             self.row(planar.identity, (f"push_{role}_{pivot}{axis}",), f"E2{axis}")
         self.push(Side(role, pivot))
 
+    def _drive(self, drive: Drive) -> None:
+        """Hang the torque or force of the drive."""
+        if drive.name in self.topology.cylinders:
+            cylinders.drive_by_cylinder(self, drive.name)
+        else:
+            self.hung[drive.name].append(("", drive.unknown.name))
+
     # ------------------------------------------------------------------------------------------------ actions
 
     def solve(self, name: str, rows: Rows, status: str) -> None:
@@ -104,15 +120,20 @@ class Forces:
         self.losses.append(str(names[power]))
 
     def act(self, role: str) -> None:
-        """Add up all that acts on a link: force E, and moment L about its first pin."""
+        """Add up all that acts on a link: force E, and moment L about its first pin; nothing acts on a strut."""
+        if role in self.topology.struts:
+            return
         k = self.motion.number(role)
         for axis in "xy":
-            self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *(f"{force}{axis}" for force, _ in self.hung[role]))))
+            terms = (f"{force}{axis}" for force, _ in self.hung[role] if force)
+            self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *terms)))
         self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.hung[role]))))
 
     def act_about(self, side: Side) -> None:
         """Add up all that acts on a link, also its moment about a known pin."""
         self.act(side.role)
+        if side.role in self.topology.struts:
+            return
         k, arm = self.motion.number(side.role), self.motion.arm(side.role, side.pin)
         self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"E{k}"))
 
@@ -124,10 +145,10 @@ class Forces:
 
     def _release(self, side: Side) -> None:
         """Make the force on a pin of the force of the pin, and hang it."""
-        self._opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
+        self.opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
         self.push(side)
 
-    def _opposite(self, stem: str, of: str) -> None:
+    def opposite(self, stem: str, of: str) -> None:
         for axis in "xy":
             self.row(planar.opposite, (f"{stem}{axis}",), f"{of}{axis}")
 
@@ -142,7 +163,7 @@ class Forces:
     def meet(self, one: str, other: str, pin: str) -> None:
         """Name the force at the pin of a dyad, push_other_pin, also as that of the other link."""
         if self.topology.support[pin] == other:
-            self._opposite(f"push_{one}_{pin}", f"push_{other}_{pin}")
+            self.opposite(f"push_{one}_{pin}", f"push_{other}_{pin}")
             self.pushes[pin][one] = f"push_{one}_{pin}"
         else:
             self.pushes[pin][other] = f"push_{other}_{pin}"
@@ -153,7 +174,7 @@ class Forces:
         """Hang the force of a slider on its guide, with the moment about its pin, at an arm from the guide's origin."""
         host, names, react = self.topology.hosts[guide], self.motion.names[name], f"push_{slider}_{guide}"
         if host != GROUND:
-            self._opposite(react, hold)
+            self.opposite(react, hold)
             self.row(planar.opposite, (f"react_{slider}",), names[slide.moment])
             self.hang(host, react, (names[arm[0]], names[arm[1]]), f"react_{slider}")
         self.between(host, slider, hold, name, slide)

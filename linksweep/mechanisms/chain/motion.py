@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.chain import slides
+from linksweep.mechanisms.chain import cylinders, slides
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
 from linksweep.mechanisms.dyads.names import (
     NOTHING,
@@ -92,6 +92,8 @@ class Motion:
         self._crank()
         for step in self.topology.steps:
             getattr(self, f"_place_{type(step).__name__}")(step)
+        for role in self.topology.cylinders:
+            cylinders.place_cylinder(self, role)
 
     _place_RPP = slides.place_RPP
     _place_PRP = slides.place_PRP
@@ -222,6 +224,8 @@ class Motion:
 
     def _arm(self, side: Side, pin: str) -> Arm:
         """Return a dyad's link from its known pin to the pin that is found, and add rows that make its axes of it."""
+        if side.role in self.topology.struts:
+            return Arm(f"r_{side.role}", f"{side.role}_length", 0.0)
         role, k = side.role, self.number(side.role)
         first, second, *_ = self.topology.links[role]
         if (side.pin, pin) == (first, second):
@@ -281,8 +285,17 @@ class Motion:
         inner = (f"x_{name}", f"v_{name}", f"a_{name}")
         self.slides_of(step, role, inner, "guide", f"the foot of {self._origin(guide)} on it")
 
+    def _side_link(self, side: Side, pin: str) -> None:
+        """Add rows of a link from a known pin to the pin that its dyad finds; a strut is no body."""
+        if side.role not in self.topology.struts:
+            self._link(side.role, self._frame(side, pin), {side.pin, pin})
+
     def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
         """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
+        if side.role in self.topology.struts:
+            letter = "D" if digit == 4 else "B"
+            strut = cylinders.side_of_strut(self, digit, letter, word, side)
+            return {**of_link(digit, f"_{side.role}"), **strut}
         k = self.number(side.role)
         lengths = {f"{word}_length": arm.length, f"{word}_length_lo": arm.length_lo}
         vector = {f"r{digit}{axis}": f"{arm.stem}{axis}" for axis in "xy"}
@@ -326,7 +339,7 @@ class Motion:
         arms = [self._arm(side, X) for side in (coupler, rocker)]
         self.rates(X)
         for side in (coupler, rocker):
-            self._link(side.role, self._frame(side, X), {side.pin, X})
+            self._side_link(side, X)
         rows = rrr.on_crank_and_ground(step.name in self.shape.turned, step.name in self.shape.goes_through)
         self.close(
             step,
@@ -353,7 +366,7 @@ class Motion:
         special, host = self.on_crank_and_ground(step), self.topology.hosts[step.guide]
         arm, guide = self._arm(rod, X), self.guide(step.guide)
         self.rates(X)
-        self._link(rod.role, self._frame(rod, X), {rod.pin, X})
+        self._side_link(rod, X)
         self.slider(slider, X, guide, host)
         self.close(
             step,

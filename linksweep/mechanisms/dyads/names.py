@@ -65,7 +65,7 @@ def of_pin(letter: str, pin: str, fixed: bool = False, origin: bool = False) -> 
     return names
 
 
-def of_link(digit: int, number: int) -> dict[str, Source]:
+def of_link(digit: int, number: int | str) -> dict[str, Source]:
     """Return the names of a link's vector and rotation."""
     return {form.format(digit): form.format(number) for form in LINK}
 

@@ -14,8 +14,14 @@ from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_prp, dyad_rpp, moving_guide, pins, slider_crank
 from linksweep.physics.closures.crank_angle import CHANGE_POINT_NOISE
 
-CERTAIN: Certain = {"crossing_cos": 1.0, "crossing_cos_lo": 1.0, "crossing_sin": 1.0}
-FOUND: Certain = {}
+CERTAIN: Certain = {
+    "crossing_cos": 1.0,
+    "crossing_cos_lo": 1.0,
+    "crossing_sin": 1.0,
+    "gap": "size",
+    "second_gap": "size",
+}
+FOUND: Certain = {"Cx_lo": "size", "Cy_lo": "size"}
 TOGGLE = Limit("C", ("low",), ("low_noise",))
 """Limit of the dyad's motion: where the guides are parallel."""
 WEDGED = Limit("C", ("grip",), ("low_noise",), "pole")
@@ -36,22 +42,18 @@ def between_guides() -> Rows:
     turning = ("second_guide_ratio", "second_guide_slope")
     return [
         Row(dyad_prp.prp_crossing, (*crossing, "crossing_sin", "low"), (*LINE[:4], *SECOND_LINE[:4])),
-        Row(planar.opposite, ("minus_crossing_sin",), ("crossing_sin",)),
         Row(planar.identity, ("low_noise",), (CHANGE_POINT_NOISE,)),
         Row(dyad_prp.prp_status, ("closure",)),
         Row(dyad_prp.crossing_angle, ("transmission_angle",), ("crossing_cos", "crossing_sin")),
         Row(pins.between, full("OP"), (*full("P"), *full("O"))),
         Row(pins.between, full("PO"), (*full("O"), *full("P"))),
+        Row(dyad_prp.prp_gap, ("gap", "size"), (*full("OP"), *SECOND_LINE, "offset", "offset_lo", *crossing)),
         Row(
-            dyad_prp.prp_position,
-            ("x_slider",),
-            (*full("OP"), *SECOND_LINE, "offset", "offset_lo", *crossing, "minus_crossing_sin"),
+            dyad_prp.prp_gap,
+            ("second_gap", "second_size"),
+            (*full("PO"), *LINE, "second_offset", "second_offset_lo", *crossing),
         ),
-        Row(
-            dyad_prp.prp_position,
-            ("x_second",),
-            (*full("PO"), *LINE, "second_offset", "second_offset_lo", *crossing, "crossing_sin"),
-        ),
+        Row(dyad_prp.prp_positions, ("x_slider", "x_second")),
         Row(moving_guide.on_guide, ("PCx", "PCy"), ("x_second", "second_offset", *SECOND)),
         Row(planar.point_velocity, ("vgx", "vgy"), ("uOx", "uOy", "guide_ratio", "OCx", "OCy")),
         Row(planar.point_velocity, ("vhx", "vhy"), ("uPx", "uPy", "second_guide_ratio", "PCx", "PCy")),

@@ -31,7 +31,7 @@ def prp_crossing(
     return *dot(*first, *second), sin, sin * sin
 
 
-def prp_position(
+def prp_gap(
     OOx: Number,
     OOy: Number,
     OOx_lo: Number,
@@ -46,17 +46,22 @@ def prp_position(
     other_offset_lo: Number,
     crossing_cos: Number,
     crossing_cos_lo: Number,
-    crossing_sin: Number,
-) -> Number:
-    """Return the position along the other guide: (e' − e cos γ + n·D)/sin γ, D from that guide's origin to this one's.
+) -> tuple[Number, Number]:
+    """Return e − e' cos γ + n·D of this guide and another, D from that guide's origin to this one's; and the size of
+    its terms.
 
-    The equations of the module have this form for both guides, γ and the sign of the sine taken from the other guide
-    to this one.
+    Divided by the sine of the angle from this guide to the other, it is the position along the other guide.
     """
     across = dot((guide_cos, guide_cos_lo), (-guide_sin, -guide_sin_lo), (OOy, OOy_lo), (OOx, OOx_lo))
     turned = multiply((other_offset, other_offset_lo), (crossing_cos, crossing_cos_lo))
-    missing = difference(add((offset, offset_lo), across), turned)
-    return missing / crossing_sin
+    gap = difference(add((offset, offset_lo), across), turned)
+    return gap, abs(OOx) + abs(OOy) + abs(offset) + abs(other_offset)
+
+
+def prp_positions(gap: Number, second_gap: Number, crossing_sin: Number) -> tuple[Number, Number]:
+    """Return x_1 and x_2 of the module's equations, from the gaps of the second and of the first guide."""
+    inverse = 1.0 / crossing_sin
+    return -(gap * inverse), second_gap * inverse
 
 
 def prp_status(low: Number, low_noise: Number) -> Number:

@@ -1,0 +1,98 @@
+"""Drives of a machine of dyads other than the crank: any link on a ground pin, and any cylinder that follows.
+
+Torque or force follow from the virtual work of all that acts on the links. It is hung on the driven links before their
+dyads' forces are computed; the torque that the crank then needs is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from linksweep.engine.quantity import Limit, Quantity, Row
+from linksweep.mechanisms.dyads.rrr import Rows
+from linksweep.mechanisms.rows.bodies import Source
+from linksweep.mechanisms.topology import GROUND, PRP, RPP, RPR, RRP, RRR, Step, Topology
+from linksweep.physics import crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.algebra.arithmetic import NOISE
+from linksweep.physics.closures import cylinder
+
+
+class Drive(NamedTuple):
+    """A drive: its unknown, its rate and that per rate of the crank, the links on which it acts, and the size of that
+    ratio."""
+
+    name: str
+    unknown: Quantity
+    rate: str
+    ratio: Source
+    roles: tuple[str, ...]
+    size: Source = 1.0
+
+    @property
+    def is_crank(self) -> bool:
+        return self.ratio == 1.0
+
+    def rows(self) -> Rows:
+        """Return the rows of torque or force, and of the status where the driven part stands still."""
+        if self.is_crank:
+            return [Row(planar.opposite, (self.unknown.name,), ("work",))]
+        return [
+            Row(crank_driven.balancing_drive, (self.unknown.name,), ("work", self.ratio)),
+            Row(cylinder.standing_status, ("drive_status",), (self.ratio, self.size)),
+            Row(planar.product, ("drive_noise",), (NOISE, self.size)),
+        ]
+
+    def limits(self) -> tuple[Limit, ...]:
+        """Return the limit at which the driven part stands still and its force is unbounded."""
+        return () if self.is_crank else (Limit(self.name, (str(self.ratio),), ("drive_noise",), "pole"),)
+
+
+def steps_that_bear(topology: Topology, roles: Collection[str]) -> Iterator[Step]:
+    """Yield the steps whose forces depend on what acts on these links: their own, then those of their hosts."""
+    for step in reversed(topology.steps):
+        if {*step.roles} & {*roles}:
+            yield step
+            roles = {*roles, *hosts(topology, step)} - {GROUND}
+
+
+def hosts(topology: Topology, step: Step) -> list[str]:
+    """Return the links, or the ground, that hold a dyad."""
+    support, of_guide = topology.support, topology.hosts
+    match step:
+        case RRR(first, second):
+            return [support[first.pin], support[second.pin]]
+        case RRP(link, guide=guide):
+            return [support[link.pin], of_guide[guide]]
+        case RPR(link, pin=pin):
+            return [support[link.pin], support[pin]]
+        case PRP(first_guide=first_guide, second_guide=second_guide):
+            return [of_guide[first_guide], of_guide[second_guide]]
+        case RPP(guide=guide, pin=pin):
+            return [of_guide[guide], support[pin]]
+    return [topology.crank]
+
+
+def guides_of(step: Step) -> tuple[str, ...]:
+    """Return the names of the guides of a dyad's slides."""
+    match step:
+        case RRP(guide=guide) | RPR(guide=guide):
+            return (guide,)
+        case PRP(first_guide=first_guide, second_guide=second_guide):
+            return (first_guide, second_guide)
+        case RPP(slider=slider, guide=guide):
+            return (guide, f"{slider}_slot")
+    return ()
+
+
+def friction_problems(topology: Topology, drive: Drive, rubbing: Collection[str]) -> list[str]:
+    """Return the problem of each slide whose friction depends on the drive, and the drive on it."""
+    bearing = [] if drive.is_crank else [*steps_that_bear(topology, drive.roles)]
+    return [
+        f'drive = "{drive.name}": the drive loads the slide on {guide}, whose friction then decides it in turn; '
+        f'drive by "{topology.crank}", or take the friction of {guide} away'
+        for step in bearing
+        for guide in guides_of(step)
+        if guide in rubbing
+    ]

@@ -1,0 +1,89 @@
+"""Cylinders of given length, and drives other than the crank, beside the multibody reference."""
+
+import numpy as np
+import pytest
+
+import linksweep as ls
+from benchmarks.stress.linkages.__main__ import checked, missed
+
+BAR = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
+PARTS = {"crank": 0.08, "rod": 0.22, "rocker": 0.18}
+MOTION = {"omega2": 20.0, "alpha2": 30.0, "gravity": (0.0, -9.81)}
+
+
+def boom(drive="", friction=0.0, length=None, text=""):
+    """Return a four-bar with a cylinder to its pin C, and what else is written."""
+    machine = ls.Linkage(
+        f"crank A-B, rod B-C, rocker D-C, c1 P~C, tip C-E, ram E on slide{text}",
+        ground={"A": (0.0, 0.0), "D": (0.2, 0.0), "P": (0.3, -0.2)},
+        **{role: ls.Bar(value, **BAR) for role, value in PARTS.items()},
+        tip=ls.Bar(0.4, **BAR),
+        ram=ls.Slider(2.0),
+        guides={"slide": ls.Guide(angle=10.0, friction=friction)},
+    )
+    return ls.Scene(machine, drive=drive, loads=[ls.Load("rocker", torque=-12.0)], **MOTION)
+
+
+@pytest.mark.filterwarnings("ignore:.*the spline through its values leaves their range")
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("held cylinder", "held cylinder, jack drives", "held cylinder, rocker drives"),
+        *("scotch yoke, lever drives", "knuckle-joint press, upper drives"),
+    ],
+)
+def test_beside_the_reference(name):
+    assert missed(name, checked(name, 10, 7)) == []
+
+
+def test_the_crank_of_another_drive_needs_no_torque():
+    """The moments on the crank add up to zero without one: of F12 and F32, weight and inertia."""
+    for drive in ("rocker", "c1"):
+        scene = boom(drive, friction=0.2)
+        cycle = ls.sweep(scene, 24, of=["F32x", "F32y", "Bx", "By", "power_residual"])
+        mass = 0.08 * 0.02 * 0.02 * 7750.0
+        inertia = mass * (0.08**2 + 0.02**2) / 12.0 + mass * 0.04**2
+        weight = 0.5 * cycle.Bx * mass * -9.81
+        moment = cycle.Bx * cycle.F32y - cycle.By * cycle.F32x + weight
+        np.testing.assert_allclose(moment, inertia * 30.0, rtol=0, atol=1e-10)
+        assert abs(cycle.power_residual).max() < 1e-14
+
+
+def test_powers_of_all_drives_are_one():
+    """Without friction, work is the same whatever drives."""
+    powers = [ls.sweep(boom(drive), 24, of=["power"]).power for drive in ("crank", "rocker", "c1")]
+    for power in powers[1:]:
+        np.testing.assert_allclose(power, powers[0], rtol=1e-12)
+
+
+def test_dense_and_fast_agree_with_cylinders():
+    for drive in ("rocker", "c1"):
+        scene = boom(drive)
+        names = scene.mechanism.unknowns(drive)
+        fast, dense = (ls.sweep(scene, 13, of=names, solver=solver) for solver in ("fast", "dense"))
+        for name in names:
+            assert abs(fast[name] - dense[name]).max() < 1e-11 * abs(fast[names[0]]).max(), name
+
+
+def test_a_drive_at_rest_is_a_dead_centre():
+    """The rocker stands still where crank and rod lie in one line: cos of the angle there, by the cosine rule."""
+    a, b, c, d = 0.08, 0.22, 0.18, 0.2
+    stretched = np.degrees(np.arccos((d * d + (a + b) ** 2 - c * c) / (2.0 * d * (a + b))))
+    for angle, status in ((stretched, 3), (stretched + 1.0, 0)):
+        cycle = ls.sweep(boom("rocker"), [angle], of=["T14", "status"])
+        assert cycle.status.item() == status
+        assert np.isnan(cycle.T14.item()) == bool(status)
+
+
+def test_friction_that_the_drive_decides_is_refused():
+    """Friction beyond the driven link is known before its torque; where the drive loads the slide it is not."""
+    assert abs(ls.sweep(boom("rocker", 0.3), 12, of=["power_residual"]).power_residual).max() < 1e-14
+    whitworth = ls.Linkage(
+        "crank A-B, arm D-E past B",
+        ground={"A": (0.0, 0.0), "D": (0.0, -0.05)},
+        crank=ls.Bar(0.1, **BAR),
+        arm=ls.Bar(0.15, **BAR),
+        guides={"arm": ls.Guide(of="arm", friction=0.1)},
+    )
+    with pytest.raises(ValueError, match=r'drive = "arm": .*drive by "crank", or take the friction of arm away'):
+        ls.Scene(whitworth, omega2=1.0, drive="arm")
