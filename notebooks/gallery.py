@@ -40,6 +40,7 @@ machines = {  # crank angle [°] of the picture, and what else to draw
     "klann-leg": (100, {}),
     "wipers": (40, {}),
     "scissor-lift": (120, {}),
+    "excavator": (12, {}),
 }
 
 
@@ -50,6 +51,9 @@ def show(name, ax):
     ax.set(xlabel="", ylabel="", xticklabels=[], yticklabels=[])
     ax.set_title("")
     ax.set_title(name, loc="left")
+    if name == "excavator":  # its boom moves on an arc, not all the way round
+        ax.set_aspect("equal", adjustable="box")
+        ax.set(xlim=(-0.5, 8.5), ylim=(-4.5, 4.5))
 
 
 columns = 4

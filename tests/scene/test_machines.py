@@ -1,14 +1,16 @@
 """Example machines: each turns, keeps its power balance, survives its file, and moves as compass and ruler say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from compass import MACHINES, ahead, meet
+from compass import MACHINES, ahead, meet, polar
 
 import linksweep as ls
 
 TURN = np.arange(0.0, 360.0, 2.5)
 DIG = np.arange(0.0, 41.0, 5.0)  # degrees of the excavator's boom
-WAITING = {"excavator", "geared-five-bar"}
+WAITING = {"geared-five-bar"}
 machines = pytest.mark.parametrize("name", sorted({*MACHINES} - WAITING))
 
 
@@ -130,3 +132,28 @@ def test_a_scotch_yoke_in_closed_form():
     assert abs(cycle.a_yoke + 0.04 * omega**2 * cosine).max() < 1e-13
     torque = (6.0 * 0.04 * omega**2 * cosine - pressure) * 0.04 * sine
     assert abs(cycle.T12 - torque).max() < 1e-12
+
+
+def cross(place, force):
+    return (place.conj() * force).imag
+
+
+def test_the_boom_cylinder_holds_all_moments_about_the_boom_s_pivot():
+    """At rest: those of five weights, of the force on the teeth, and of the earth."""
+    pins = MACHINES["excavator"](DIG)
+    C, K, I, J = (pins[pin] for pin in "CKIJ")  # noqa: E741
+    weights = {
+        1900.0: polar(0.0, C, 2.7, 8.0),
+        950.0: polar(C, K, 0.9, 12.0) + polar(K, J, 0.65, -85.0),  # stick and bucket weigh the same
+        45.0: 0.5 * (polar(C, K, 2.52, 3.0) + I),
+        60.0: 0.5 * (I + J),
+    }
+    teeth = 1e3 * np.array([0, 44 - 16j, 41.5 - 18.5j, 24 - 12j, 0, 0, 0, 0, 0])
+    earth = -1e3j * np.array([0, 2.4, 8.4, 14.4, 18, 18, 18, 18, 18])
+    moment = sum(cross(place, -9.81j * mass) for mass, place in weights.items())
+    moment += cross(pins["T"], teeth) + cross(polar(K, J, 0.7, -85.0), earth)
+    cylinder = pins["B"] - (0.45 - 0.5j)
+    thrust = -moment / cross(pins["B"], cylinder / abs(cylinder))
+    at_rest = ls.sweep(replace(ls.example("excavator"), omega2=0.0), DIG, of=["force_c1", "length_c1"])
+    assert abs(at_rest.force_c1 / thrust - 1.0).max() < 1e-12
+    assert abs(at_rest.length_c1 - abs(cylinder)).max() < 1e-14
