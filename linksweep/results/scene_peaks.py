@@ -26,6 +26,7 @@ from linksweep.results.compute import (
 )
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
 from linksweep.results.peak_search.along_paths import SignalPeak
+from linksweep.results.peak_search.between import NEVER
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
@@ -39,6 +40,8 @@ SUMMARIES = ("mean", "rms", "bound", "samples")
 STATUS_ANGLES = 720
 """Angles of a turn at which the status is computed, if the mechanism's numbers do not show that it is always ok."""
 PARTIAL, UNBOUNDED = 1, 3
+CANNOT_ASSEMBLE, TOGGLE = 1, 2
+"""Statuses of a sample at which a design does not close."""
 
 
 class Request(NamedTuple):
@@ -168,7 +171,9 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
         extremes[signal] = SignalPeak(value, angle, value, value)
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
-    return Result(sampled, grid, assembly_of(scene, threads), extremes, averaged)
+    # a search for where designs close takes longer than samples, whose status shows enough
+    assembly = Field((), np.zeros(())) if scene.table.limits else assembly_of(scene, threads)
+    return Result(sampled, grid, assembly, extremes, averaged)
 
 
 def _over_time(
@@ -197,7 +202,8 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
-        status = xr.where((worst > 0.0) & (status == 0.0), float(PARTIAL), status)
+        closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not scene.table.limits)
+        status = xr.where((worst > 0.0) & (status == 0.0), xr.where(closes, float(PARTIAL), NEVER), status)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
         _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)
     for dims, values in (*(peak.value for peak in largest.values()), *averages.values()):

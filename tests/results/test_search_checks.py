@@ -113,3 +113,15 @@ def test_extreme_transmission_angles_are_those_of_a_dense_sweep():
             np.testing.assert_allclose(own[f"transmission_angle_{kind}"], extreme, atol=5e-3)
             away = np.mod(own[f"transmission_angle_{kind}_at"] - at + 180.0, 360.0) - 180.0
             assert abs(away) < 0.02 or abs(float(extreme) - 90.0) < 5e-3
+
+
+def test_status_of_the_largest_samples_is_that_of_exact_peaks():
+    scene = scene_of("four-bar of any lengths")
+    machine = scene.mechanism
+    length = machine.rocker.length.copy(data=np.where(np.arange(DESIGNS) < 3, 100.0, machine.rocker.length))
+    machine = replace(machine, rocker=replace(machine.rocker, length=length))
+    scene = ls.Scene(four_bar(replace(scene, mechanism=machine)), 1.0)
+    exact, samples = ls.peaks(scene), ls.peaks(scene, theta2=720)
+    assert (samples.status[:3] == 2).all()
+    assert {0, 1, 2} == {*samples.status.values.tolist()}
+    np.testing.assert_array_equal(samples.status, exact.status.where(exact.status != 3, 1))
