@@ -79,14 +79,15 @@ class Table:
     """Table of a machine: rows, the quantities that can be requested, and the sweep's own dim.
 
     The rows `between` replace others between samples, where no grid tabulates the index. `limits` are those of a
-    machine without closed forms: toggles of its parts in the order in which these close, then poles and jumps.
+    machine without closed forms: toggles of its parts in the order in which these close, then poles and jumps; None of
+    a machine that has closed forms.
     """
 
     index: str
     rows: tuple[Row | Total, ...]
     quantities: tuple[Quantity, ...] = field(default=())
     between: tuple[Row, ...] = field(default=())
-    limits: tuple[Limit, ...] = field(default=())
+    limits: tuple[Limit, ...] | None = None
 
     @cached_property
     def between_samples(self) -> Table:

@@ -172,7 +172,8 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
-    assembly = Field((), np.zeros(())) if scene.table.limits else assembly_of(scene, threads)
+    known = scene.table.limits is None
+    assembly = assembly_of(scene, threads) if known else Field((), np.zeros(()))
     return Result(sampled, grid, assembly, extremes, averaged)
 
 
@@ -202,7 +203,7 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
-        closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not scene.table.limits)
+        closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (scene.table.limits is None)
         status = xr.where((worst > 0.0) & (status == 0.0), xr.where(closes, float(PARTIAL), NEVER), status)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
         _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
-from linksweep.mechanisms.limits.finding import ASSEMBLY
+from linksweep.mechanisms.limits.finding import ASSEMBLY, Array
 from linksweep.results.dataset import flags
 from linksweep.results.peak_search.exact import exact_peaks
 from linksweep.results.peak_search.limits import assembly_of, limits_of
@@ -19,7 +19,7 @@ from linksweep.scene.scene import Scene
 
 def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     """Return assembly, arcs, toggles and extreme transmission angles by pin; nothing where closed forms exist."""
-    if not scene.table.limits:
+    if scene.table.limits is None:
         return {}
     toggles = [k for k, limit in enumerate(scene.table.limits) if limit.zeros == "toggle"]
     pins = [scene.table.limits[k].name for k in toggles]
@@ -27,7 +27,7 @@ def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     tables = {
         "arc_start": (limits.arc_start, ("arc",), "crank angle at which an assembled arc starts"),
         "arc_end": (limits.arc_end, ("arc",), "crank angle at which it ends (may pass 360)"),
-        "toggle_angle": (limits.zeros[:, toggles], ("pin", "toggle"), "crank angle of a toggle at this pin"),
+        "toggle_angle": (_numbers(limits.zeros[:, toggles]), ("pin", "toggle"), "crank angle of a toggle at this pin"),
     }
     assembly = np.reshape(limits.assembly, tuple(sizes.values())).astype(np.int8)
     meanings = flags("crank angles at which it can be assembled", ASSEMBLY)
@@ -36,6 +36,11 @@ def search_checks(scene: Scene) -> dict[str, xr.Variable]:
         values = table.reshape(*sizes.values(), *table.shape[1:])
         variables[name] = xr.Variable((*sizes, *dims), values, {"units": "degree", "long_name": words})
     return variables | (_transmission_angles(scene.unloaded, pins) if pins else {})
+
+
+def _numbers(table: Array) -> Array:
+    """Return a table without those columns that hold no number."""
+    return table[..., ~np.isnan(table).all(axis=(0, 1))]
 
 
 def _transmission_angles(scene: Scene, pins: Iterable[str]) -> dict[str, xr.Variable]:

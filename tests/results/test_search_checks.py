@@ -125,3 +125,11 @@ def test_status_of_the_largest_samples_is_that_of_exact_peaks():
     assert (samples.status[:3] == 2).all()
     assert {0, 1, 2} == {*samples.status.values.tolist()}
     np.testing.assert_array_equal(samples.status, exact.status.where(exact.status != 3, 1))
+
+
+def test_a_machine_without_toggles_closes_everywhere():
+    yoke = ls.example("scotch-yoke")
+    limits = ls.check(yoke)
+    assert (limits.assembly, limits.arc_start.item(), limits.arc_end.item()) == (0, 0.0, 360.0)
+    assert limits.sizes["pin"] == limits.sizes["toggle"] == 0
+    assert ls.peaks(yoke, of=["T12"]).status == 0

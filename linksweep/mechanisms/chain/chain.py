@@ -122,7 +122,7 @@ class Chain:
 
     def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
         """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
-        of_limits, limited = ([], ()) if self.motion.plain else limits(self.motion, rubbing)
+        of_limits, limited = ([], None) if self.motion.plain else limits(self.motion, rubbing)
         forces, driven = self.forces(own.name), self.drive(own.name) if own.name else None
         rows = [
             *self.motion.rows,

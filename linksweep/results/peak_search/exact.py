@@ -46,7 +46,7 @@ def exact_peaks(
     scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None = None
 ) -> dict[str, SignalPeak]:
     """Return the peak of each signal over the continuous revolution, for every design; NaN where it has none."""
-    fused = scene.steady and not scene.table.limits
+    fused = scene.steady and scene.table.limits is None
     peaks = _fused_first(scene, signals, assembly, threads) if fused else _by_paths(scene, signals, threads)
     _raise_to_poles(scene, peaks, threads)
     return peaks

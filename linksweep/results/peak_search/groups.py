@@ -83,7 +83,7 @@ class Group(NamedTuple):
         """Return the angles (design, nth) [degree] of one kind of zeros that a search has located."""
         if self.limits is None:
             return np.empty((len(self.designs), 0))
-        return self.limits.zeros_of(self.scene.table.limits, kind)
+        return self.limits.zeros_of(self.scene.table.limits or (), kind)
 
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""
@@ -128,13 +128,14 @@ def _different(scene: Scene, names: tuple[str, ...]) -> Array:
 
 def with_assembly_signals(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return names of quantities, those of the limits' signals in place of an assembly that is no quantity."""
-    known = {"assembly": signals_of(scene.table.limits)} if scene.table.limits else {}
+    limits = scene.table.limits
+    known = {} if limits is None else {"assembly": signals_of(limits)}
     return tuple(chain.from_iterable(known.get(name, (name,)) for name in names))
 
 
 def _limits(scene: Scene, places: Places, count: int) -> Limits | None:
     """Return the limits of `count` designs at these places; None where closed forms take their place."""
-    if not scene.table.limits:
+    if scene.table.limits is None:
         return None
     sizes, limits = limits_of(scene.unloaded)
     at = np.ravel_multi_index([places[dim] for dim in sizes], tuple(sizes.values())) if sizes else np.zeros(count, int)

@@ -115,7 +115,7 @@ class Limits(NamedTuple):
 
 def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     """Return the assembly of each design: at every angle (0), at some (1) or at none (2)."""
-    if scene.table.limits:
+    if scene.table.limits is not None:
         sizes, limits = limits_of(scene.unloaded)
         return Field(tuple(sizes), limits.assembly.reshape(tuple(sizes.values())))
     at_one = crank_grid(1, scene.period, scene.mechanism.index)
@@ -125,7 +125,7 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
 @lru_cache(maxsize=2)
 def limits_of(unloaded: Scene) -> tuple[dict[str, int], Limits]:
     """Return the limits of designs, row-major over those dims that they depend on, with the dims' sizes."""
-    limits = unloaded.table.limits
+    limits = unloaded.table.limits or ()
     inputs = unloaded.at_one_angle.inputs
     dims = plan(unloaded.table, signals_of(limits), inputs.forms).loops
     sizes = {dim: n for dim, n in inputs.sizes.items() if dim in dims}
