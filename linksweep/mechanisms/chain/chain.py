@@ -151,7 +151,7 @@ class Chain:
         ]
         last = {quantity.name: quantity for quantity in quantities}
         if driven:
-            limited = (*limited, *driven.limits())
+            limited = (*(limited or ()), *driven.limits())
         return Table("theta2", tuple(rows), tuple(last.values()), own.between, limited)
 
     def _status(self, forces: Forces, drive: Drive | None) -> Rows:
