@@ -4,25 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from linksweep.engine.quantity import Limit, Row
+from linksweep.engine.quantity import Limit
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads import prp, rpp, rpr, rrp, rrr
 from linksweep.mechanisms.dyads.names import Names
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.topology import PRP, RPP, RPR, RRP, RRR, Step
-from linksweep.physics.algebra import planar
 
 TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE, PRP: prp.TOGGLE}
 """Limit of each dyad that does not close everywhere, in its own names."""
 GRIPS = {RRP: rrp.grip(), RPR: rpr.grip(), PRP: prp.grip()}
 """Rows of each dyad with a slide that may rub, in its own names."""
-
-CLOSES_EVERYWHERE: Rows = [
-    Row(planar.identity, ("assembly",), (0.0,)),
-    Row(planar.identity, ("near_toggle_near",), (1.0,)),
-    Row(planar.identity, ("near_toggle_far",), (1.0,)),
-]
-"""Rows of a chain without limits, as of a scotch yoke."""
 
 
 def limits(motion: Motion, rubbing: Collection[str]) -> tuple[Rows, tuple[Limit, ...]]:
@@ -37,8 +29,7 @@ def limits(motion: Motion, rubbing: Collection[str]) -> tuple[Rows, tuple[Limit,
         if limited:
             rows += names.placed(GRIPS.get(type(step), ()))
             of_slides += [_placed(limit, step.name, names) for limit in limited]
-    of_all = (*toggles, *of_slides)
-    return (rows if of_all else CLOSES_EVERYWHERE), of_all
+    return rows, (*toggles, *of_slides)
 
 
 def _slides(step: Step) -> list[tuple[str, tuple[Limit, ...]]]:
