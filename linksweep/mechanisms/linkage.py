@@ -21,6 +21,7 @@ from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
     cylinder_numbers,
+    gear_numbers,
     ground_pin,
     guide_numbers,
     point_on_link,
@@ -42,7 +43,7 @@ from linksweep.mechanisms.links import (
 )
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
-from linksweep.mechanisms.rows.crank import BRANCH, frame_parameters, turned
+from linksweep.mechanisms.rows.crank import BRANCH, turned
 from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Topology, topology
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
@@ -168,14 +169,15 @@ class Linkage(Machine):
         if joined is None:
             return problems
         problems += [*part_problems(joined, self.parts), *point_problems(joined, self.points)]
-        problems += [*ground_problems(self.ground), *pressure_angle_problems(self.gears)]
+        problems += [*ground_problems(self.ground), *gear_problems(joined, self.gears)]
         return problems if of_text else [*problems, *branch_problems(joined, self.branch)]
 
     @cached_property
     def shape(self) -> Shape:
         steps = frozenset(step.name for step in self.topology.steps)
         inclined = frozenset(name for name, guide in self.guides.items() if turned(guide.angle))
-        return Shape(self.topology, turned=steps, inclined=inclined, between=self._between_floats())
+        meshed = frozenset(name for name, gears in self.gears.items() if gears.pressure_angle is not None)
+        return Shape(self.topology, turned=steps, inclined=inclined, between=self._between_floats(), meshed=meshed)
 
     def _between_floats(self) -> frozenset[str]:
         """Return the ground pins and guides whose distance from the crank's pivot is no float in every design."""
@@ -235,7 +237,7 @@ class Linkage(Machine):
         for role in joined.yokes:
             numbers |= slot_numbers(role, parts[role])
         for role in joined.gears:
-            numbers |= frame_parameters(f"{role}_phase", self.gears.get(role, Gears()).phase)
+            numbers |= gear_numbers(role, self.gears.get(role, Gears()))
         for role in joined.struts:
             numbers |= cylinder_numbers(role, parts[role])
         return numbers
@@ -289,12 +291,16 @@ def ground_problems(ground: Mapping[str, Any]) -> Iterator[str]:
             yield f"ground.{pin} = {quote(place)}: is where pin {other} is; give it a place of its own"
 
 
-def pressure_angle_problems(gears: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the problem of each pressure angle of 90 degrees or more."""
-    for name, pair in gears.items():
-        angle = getattr(pair, "pressure_angle", None)
+def gear_problems(joined: Topology, gears: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the problems of ratios and pressure angles."""
+    for name, ratio in joined.gears.items():
+        angle = getattr(gears.get(name), "pressure_angle", None)
+        if ratio.denominator != 1:
+            yield f"gears.{name}.ratio = {ratio}: must be a whole number, so that all repeats every turn of the crank"
         if isinstance(angle, float) and angle >= 90.0:
             yield f"gears.{name}.pressure_angle = {angle:.15g} degree: must be less than 90"
+        if angle is not None and ratio == 1:
+            yield f"gears.{name}.pressure_angle: wheels of ratio 1 have no pitch point; leave it out"
 
 
 def branch_problems(joined: Topology, branch: Mapping[str, str]) -> Iterator[str]:

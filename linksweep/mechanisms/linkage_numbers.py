@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.degrees import cos_sin_low_words
+from linksweep.base.degrees import cos_sin, cos_sin_low_words
 from linksweep.base.validate import Number
 from linksweep.engine.run import Field
-from linksweep.mechanisms.links import Cylinder, Guide, Slider, cg_parameters
+from linksweep.mechanisms.links import Cylinder, Gears, Guide, Slider, cg_parameters
 from linksweep.mechanisms.rows.crank import BRANCH_SIGN, frame_parameters
 from linksweep.physics.algebra.double_double import Pair, divide, dot, multiply, ordered_sum, two_product, two_sum
 
@@ -78,6 +78,12 @@ def slider_numbers(role: str, slider: Slider) -> Numbers:
 def slot_numbers(role: str, slider: Slider) -> Numbers:
     """Return the direction of a yoke's slot from that of its guide, and its friction."""
     return frame_parameters(f"{role}_slot", slider.slot_angle) | {f"{role}_slot_friction": slider.slot_friction}
+
+
+def gear_numbers(role: str, gears: Gears) -> Numbers:
+    """Return the direction of a wheel where the crank's angle is 0, and the tangent of the pressure angle."""
+    cos, sin = cos_sin(0.0 if gears.pressure_angle is None else gears.pressure_angle)
+    return frame_parameters(f"{role}_phase", gears.phase) | {f"{role}_pressure_slope": sin / cos}
 
 
 def cylinder_numbers(role: str, cylinder: Cylinder) -> Numbers:

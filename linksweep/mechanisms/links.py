@@ -287,8 +287,8 @@ class Gears(ByContent):
     Parameters
     ----------
     ratio : float or str, default ""
-        Turns of the wheel per turn of the crank [1], negative for the opposite sense: a whole number, or a fraction
-        such as "-3/2". Left out where the text of the linkage states it.
+        Turns of the wheel per turn of the crank [1], negative for the opposite sense: a whole number, so that all
+        repeats after one turn of the crank. Left out where the text of the linkage states it.
     phase : float or DataArray, default 0.0
         Angle of the wheel where that of the crank is 0 [degree].
     pressure_angle : float or DataArray, default None
@@ -297,8 +297,8 @@ class Gears(ByContent):
     Examples
     --------
     >>> import linksweep as ls
-    >>> ls.Gears(ratio=-1.5, phase=90.0)
-    Gears(ratio='-3/2', phase=90.0)
+    >>> ls.Gears(ratio=-2.0, phase=90.0)
+    Gears(ratio='-2', phase=90.0)
     """
 
     ratio: Any = word('"-3/2"', "")

@@ -99,7 +99,7 @@ class Machine(Mechanism):
         return (*self.unknowns(drive), *self.chain.slide_forces)
 
     def equations(self, drive: str) -> tuple[Equation, ...]:
-        return equations(self.topology, {drive: self.drives[drive]})
+        return equations(self.topology, {drive: self.drives[drive]}, self.shape.meshed)
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return (*(force_name(*pair) for pair in self.chain.joints.values()), self.drives[drive])

@@ -154,7 +154,8 @@ class Sketch:
         """Hold a cylinder at the distance of two pins, or move it over the turn."""
         length = abs(self.pins[second] - self.pins[first])
         if self.random.random() < 0.5:
-            around = self.random.uniform(0.9, 1.1, (self.n, 8))
+            phase = self.uniform(0.0, 360.0)[:, None] + np.arange(0.0, 360.0, 11.25)
+            around = 1.0 + self.uniform(0.0, 0.1)[:, None] * turn(phase).real
             length = around * (length / length_spline(around)(self.theta2))[:, None]
         self.parts[role] = {"length": length}
 

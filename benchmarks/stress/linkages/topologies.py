@@ -198,9 +198,7 @@ NEAR_A_TOGGLE = {
 }
 """Families of which a pin is near a toggle."""
 
-LATER = ("geared five-bar",)
-"""Topologies whose dyads linksweep does not have yet."""
 RUBBED = (*(name for name in FAMILIES if name.endswith("arm drives")), "block on a coupler, rod drives")
 """Families whose drive loads a slide with friction, which linksweep refuses."""
-TODAY = {name: family for name, family in FAMILIES.items() if not name.startswith(LATER) and name not in RUBBED}
+TODAY = {name: family for name, family in FAMILIES.items() if name not in RUBBED}
 """Families that linksweep computes."""

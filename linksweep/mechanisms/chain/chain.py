@@ -12,6 +12,7 @@ from linksweep.mechanisms.chain.cylinders import force_quantity
 from linksweep.mechanisms.chain.drives import Drive, friction_problems
 from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, cylinder_rows, has_moment
 from linksweep.mechanisms.chain.forces import Forces
+from linksweep.mechanisms.chain.gears import gear_rows, teeth_quantities, torque_name
 from linksweep.mechanisms.chain.limits import limits
 from linksweep.mechanisms.chain.motion import Motion, Shape
 from linksweep.mechanisms.dyads.rrr import Rows
@@ -90,11 +91,11 @@ class Chain:
 
     @property
     def unknowns(self) -> tuple[str, ...]:
-        """Forces at the pins, then normal force and moment of each slide, and the forces of struts."""
+        """Forces at pins, then normal force and moment of each slide, forces of struts, torques of gears."""
         of_pins = [part for i, j in self.topology.pins.values() for part in xy(force_name(i, j))]
         of_slides = (part for slide in self.topology.slides for part in self.slide_unknowns(slide))
-        struts = (role for role in self.topology.cylinders if role in self.topology.struts)
-        return (*of_pins, *of_slides, *(f"force_{role}" for role in struts))
+        struts = (f"force_{role}" for role in self.topology.cylinders if role in self.topology.struts)
+        return (*of_pins, *of_slides, *struts, *(torque_name(self.topology, role) for role in self.topology.gears))
 
     @property
     def slide_forces(self) -> tuple[str, ...]:
@@ -135,6 +136,7 @@ class Chain:
             *arm_rows(self.motion),
             *contact_rows(forces.contacts),
             *cylinder_rows(self.topology),
+            *gear_rows(self.motion),
             *of_limits,
             *own.rows,
             *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
@@ -146,6 +148,7 @@ class Chain:
             *(bodies.drive_quantities(own.unknown, friction) if friction else bodies.drive_quantities(own.unknown)),
             *own.quantities,
             *(force_quantity(role) for role in self.topology.cylinders if role in self.topology.struts),
+            *teeth_quantities(self.motion, self.names),
             *([FRICTION_POWER] if forces.losses and not self.motion.plain else []),
             *machine_quantities(self.bodies, self.joints, self.names, loads),
         ]

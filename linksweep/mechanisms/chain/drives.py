@@ -32,7 +32,7 @@ class Drive(NamedTuple):
 
     @property
     def is_crank(self) -> bool:
-        return self.ratio == 1.0
+        return self.unknown.name == "T12"
 
     def rows(self) -> Rows:
         """Return the rows of torque or force, and of the status where the driven part stands still."""
@@ -46,7 +46,7 @@ class Drive(NamedTuple):
 
     def limits(self) -> tuple[Limit, ...]:
         """Return the limit at which the driven part stands still and its force is unbounded."""
-        return () if self.is_crank else (Limit(self.name, (str(self.ratio),), ("drive_noise",), "pole"),)
+        return () if not isinstance(self.ratio, str) else (Limit(self.name, (self.ratio,), ("drive_noise",), "pole"),)
 
 
 def steps_that_bear(topology: Topology, roles: Collection[str]) -> Iterator[Step]:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from linksweep.engine.quantity import Row
 from linksweep.mechanisms.between_links import force_name, name_between
+from linksweep.mechanisms.chain.gears import add_gears
 from linksweep.mechanisms.chain.motion import Motion
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
@@ -73,7 +74,9 @@ def _pushed(topology: Topology, cylinders: Iterable[str]) -> Iterator[tuple[str,
                 yield role, pin, k, way
 
 
-def equations(topology: Topology, torques: Mapping[str, str]) -> tuple[Equation, ...]:
+def equations(
+    topology: Topology, torques: Mapping[str, str], meshed: frozenset[str] = frozenset()
+) -> tuple[Equation, ...]:
     """Return the three rows of each moving link; `torques` names the unknown of the driven link, or cylinder."""
     cylinders = [*topology.struts, *(role for role in torques if role in topology.cylinders)]
     rows = []
@@ -87,6 +90,7 @@ def equations(topology: Topology, torques: Mapping[str, str]) -> tuple[Equation,
         for name, pin, number, way in _pushed(topology, cylinders):
             if number == k:
                 _add_cylinder(of_link, name, pin, way)
+        add_gears(topology, meshed, of_link, k)
         rows += of_link
     return tuple(rows)
 

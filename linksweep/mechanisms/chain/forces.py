@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.between_links import name_between
-from linksweep.mechanisms.chain import cylinders, slides
+from linksweep.mechanisms.chain import cylinders, gears, slides
 from linksweep.mechanisms.chain.drives import Drive
 from linksweep.mechanisms.chain.equations import Contact
 from linksweep.mechanisms.chain.motion import Motion
@@ -30,7 +30,7 @@ class Forces:
     def __init__(self, motion: Motion, drive: Drive | None = None):
         self.motion, self.topology = motion, motion.topology
         self.rows: Rows = []
-        self.statuses: list[tuple[str, str]] = []
+        self.statuses: list[tuple[Source, Source]] = []
         self.losses: list[str] = []
         self.powers: list[str] = []
         self.contacts: list[Contact] = []
@@ -51,6 +51,7 @@ class Forces:
 
     _force_RPP = slides.force_RPP
     _force_PRP = slides.force_PRP
+    _force_Gear = gears.force_Gear
 
     # ------------------------------------------------------------------------------------------------ dyads
 

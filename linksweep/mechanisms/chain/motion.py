@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.chain import cylinders, slides
+from linksweep.mechanisms.chain import cylinders, gears, slides
 from linksweep.mechanisms.dyads import rpr, rrp, rrr
 from linksweep.mechanisms.dyads.names import (
     NOTHING,
@@ -64,6 +64,7 @@ class Shape(NamedTuple):
     goes_through : names of such steps that may be a parallelogram or a kite
     inclined : names of guides on links that may lie at an angle to their link's line of pins
     between : names of ground pins and guides whose distance from the crank's pivot may lie between two floats
+    meshed : names of wheels whose teeth push, at a pressure angle
     plain : whether the rows keep the names of the dyad's own machine; for a topology of one step
     """
 
@@ -72,6 +73,7 @@ class Shape(NamedTuple):
     goes_through: frozenset[str] = frozenset()
     inclined: frozenset[str] = frozenset()
     between: frozenset[str] = frozenset()
+    meshed: frozenset[str] = frozenset()
     plain: bool = False
 
 
@@ -97,6 +99,7 @@ class Motion:
 
     _place_RPP = slides.place_RPP
     _place_PRP = slides.place_PRP
+    _place_Gear = gears.place_Gear
 
     # ------------------------------------------------------------------------------------------------ names
 
@@ -160,14 +163,19 @@ class Motion:
         self._carry(role, {pivot, pin})
         self._work[role].append("N2")
 
-    def _link(self, role: str, frame: Frame, placed: set[str]) -> None:
+    def turn(self, side: Side, line: Vector, ratio: float) -> None:
+        """Add rows of a link that turns at a steady ratio to the crank, by the direction of its line of pins."""
+        self._link(side.role, Frame(side.pin, line, (1.0, 0.0, 0.0, 0.0)), {side.pin}, (ratio, 0.0))
+
+    def _link(self, role: str, frame: Frame, placed: set[str], turning: tuple[Source, Source] | None = None) -> None:
         """Add rows of a link that a dyad has placed: its rotation, its other pins, its work; and its body."""
         k, first = self.number(role), self.topology.links[role][0]
+        ratio, slope = turning or (f"ratio{k}", f"slope{k}")
         self.frames[role] = frame
-        self.row(planar.product, (f"omega{k}",), "omega2", f"ratio{k}")
-        self.row(crank_driven.angular_acceleration, (f"alpha{k}",), "omega2", "alpha2", f"ratio{k}", f"slope{k}")
+        self.row(planar.product, (f"omega{k}",), "omega2", ratio)
+        self.row(crank_driven.angular_acceleration, (f"alpha{k}",), "omega2", "alpha2", ratio, slope)
         self.row(planar.direction, (f"theta{k}",), *xy(f"r{k}"))
-        self._body(role, first, f"ratio{k}", f"slope{k}")
+        self._body(role, first, ratio, slope)
         self._carry(role, placed)
 
     def _body(self, role: str, pin: str, ratio: Source, slope: Source) -> None:

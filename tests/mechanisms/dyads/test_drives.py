@@ -24,7 +24,6 @@ def boom(drive="", friction=0.0, length=None, text=""):
     return ls.Scene(machine, drive=drive, loads=[ls.Load("rocker", torque=-12.0)], **MOTION)
 
 
-@pytest.mark.filterwarnings("ignore:.*the spline through its values leaves their range")
 @pytest.mark.parametrize(
     "name",
     [

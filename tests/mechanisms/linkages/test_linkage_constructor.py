@@ -55,7 +55,7 @@ def test_paths_of_numbers():
         *("guides.slide.angle", "guides.slide.friction"),
         *(f"crank.{name}" for name in ("length", "width", "thickness", "density")),
         *(f"rod.{name}" for name in ("length", "width", "thickness", "density")),
-        *(f"ram.{name}" for name in ("mass", "inertia", "cg_distance", "cg_angle", "slot_angle")),
+        *(f"ram.{name}" for name in ("mass", "inertia", "cg_distance", "cg_angle", "slot_angle", "slot_friction")),
     ]
     assert {"points.E[1]", "points.E[2]"} <= {path for path, *_ in numbers(press())}
 
