@@ -30,7 +30,7 @@ def way(name: str) -> Iterator[None]:
 
 
 def kernel_of(call: Call) -> Kernel:
-    """Return the largest kernel that a call runs, bound to its arguments: equal inputs, equal buffers, no labels."""
+    """Return the largest kernel that a call runs, for all its samples: equal inputs, equal buffers, no labels."""
     kernels: list[Kernel] = []
     compiled = run.compiled
 
@@ -43,4 +43,6 @@ def kernel_of(call: Call) -> Kernel:
 
     with mock.patch.object(run, "compiled", recording), way("compiled"):
         call()
-    return max(kernels, key=lambda kernel: len(kernel.sources[0]))
+    sources = max((kernel.sources for kernel in kernels), key=lambda sources: len(sources[0]))
+    parts = [kernel.call for kernel in kernels if kernel.sources == sources]
+    return Kernel(sources, lambda: [part() for part in parts])

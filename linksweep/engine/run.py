@@ -28,6 +28,9 @@ from linksweep.engine.trace.plan import Plan
 COMPILE_AFTER = 100_000
 """Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 0.1 s of numpy."""
 
+AT_ONCE = 2048
+"""Samples of a call without design dims that writes rows to scratch."""
+
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
 
@@ -153,7 +156,7 @@ def room_for(samples: int) -> int:
 
 def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
-    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else 1))
+    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else AT_ONCE))
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
@@ -246,10 +249,12 @@ def _execute(
 
     def work(first: int, last: int) -> None:
         scratch, working = np.empty(fused.scratch_size), np.empty(reduce.WORK)
-        kernel(
-            first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
-            block, block_at, single, single_at, scratch, grid.angles, working,
-        )  # fmt: skip
+        step = AT_ONCE if fused.surplus and not plan.loops else max(last - first, 1)
+        for start in range(first, last, step):
+            kernel(
+                start, min(start + step, last), samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
+                block, block_at, single, single_at, scratch, grid.angles, working,
+            )  # fmt: skip
 
     length = int(layout.sizes[0]) if plan.loops else samples
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD

@@ -14,7 +14,7 @@ from benchmarks.report import HEADER, machine, markdown
 from benchmarks.rivals import limit, peers
 from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
 
-CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "warm", "threads"}
+CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "linkages", "warm", "threads"}
 GOALS = {
     "unknowns": {60, 250, 1.3},
     "peaks": {200, 1.4},
@@ -25,6 +25,7 @@ GOALS = {
     "grids": set(),
     "growth": set(),
     "mechanisms": {1.0, 1.5},
+    "linkages": {80.0, 150.0, 1.0},
     "warm": {1e-3},
     "first": {1.0, 3.0},
     "threads": {1.7},

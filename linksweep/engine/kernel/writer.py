@@ -7,8 +7,8 @@ deeper loops share its result, that is kept in a row of `scratch` and read back 
 Two choices let LLVM vectorise the inner loop, and losing that costs eightfold: row views are taken before a plain loop
 over contiguous rows; and rows of `scratch`, which is flat, lie a distance apart that is a literal in the source, so
 that they provably do not overlap. Where a loop has more result rows than the compiler will check for overlap, each
-group of rows has a loop of its own, which repeats the operations that groups share: that takes less time than to write
-results to `scratch` and copy them.
+group of rows has a loop of its own, which repeats the operations that groups share: where these are few, that takes
+less time than to write all rows to `scratch` and copy them.
 
     kernel(first, last, samples, sizes, parameters, parameter_at, profiles, profile_at,
            block, block_at, single, single_at, scratch, angles, work)
@@ -35,6 +35,8 @@ ARGUMENTS = (
 INFIX = {"+", "-", "*", "/", "<"}
 COMPARISONS = 128
 """Pairs of rows, at most, whose overlap the compiler checks at run time before a vectorised loop."""
+COPY = 15
+"""Operations that take as long as to write a row to scratch and copy it."""
 DEEPEST = 16
 """Most nested design loops: Python allows 20 nested blocks, and a search has two more inside. Further dims share the
 innermost loop."""
@@ -69,7 +71,9 @@ class Writer:
         self.parameters = tuple(node for node in inputs if not self.per_sample(node))
         self.placed = frozenset(node for node in inputs if node.value in self.PLACED)
         self.profiles = tuple(node for node in inputs if self.per_sample(node) and node not in self.placed)
-        self.copied = frozenset(self.rows) & self._read_back()
+        self.surplus: frozenset[Node] = frozenset()
+        self.surplus = self._surplus()
+        self.copied = frozenset(self.rows) & self._read_back() | self.surplus
         self.scratch = {node: k for k, node in enumerate(self._kept_in_scratch())}
         self.named = {*self.rows, *self.singles, *self.scratch}
         self.uses = Counter(x for node in self.nodes for x in node.operands)
@@ -178,14 +182,29 @@ class Writer:
 
     def _groups(self, level: int) -> list[list[Node]]:
         """Return the rows that a level writes, in groups with a loop each: as many as the compiler will compare."""
-        read = len(self.profiles) + sum(self.level(node) < level for node in self._read_back())
-        most = max((n for n in range(2, COMPARISONS) if n * (n - 1) // 2 + n * read <= COMPARISONS), default=1)
+        most = self._most(level)
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         written = sorted((node for node in written if node not in self.placed), key=lambda node: node.position)
         kept, direct = ([node for node in written if (node in self.scratch) == inside] for inside in (True, False))
-        if len(direct) + len(self.copied.intersection(kept)) <= most:
+        if len(direct) + len((self.copied - self.surplus).intersection(kept)) <= most:
             return [written] if written else []
         return [group for group in (kept, *(direct[k : k + most] for k in range(0, len(direct), most))) if group]
+
+    def _most(self, level: int) -> int:
+        """Return the number of rows that a loop of a level may write, as the compiler will compare."""
+        read = len(self.profiles) + sum(self.level(node) < level for node in self._read_back())
+        return max((n for n in range(2, COMPARISONS) if n * (n - 1) // 2 + n * read <= COMPARISONS), default=1)
+
+    def _surplus(self) -> frozenset[Node]:
+        """Return the rows of loops with too many, where to copy them takes less time than to repeat operations."""
+        surplus: set[Node] = set()
+        for level in range(self.innermost + 1):
+            rows = [node for node in self.rows if self.level(node) == level]
+            most = self._most(level)
+            repeated = {*self._needed(rows[:most])} & {*self._needed(rows[most:])}
+            if sum(self.level(node) == level for node in repeated) > COPY * len(rows):
+                surplus.update(rows)
+        return frozenset(surplus)
 
     def _needed(self, rows: list[Node]) -> list[Node]:
         """Return all operations per sample on which rows depend, of every level."""

@@ -1,0 +1,71 @@
+"""Time linkages: the kernel of all their unknowns against numpy's solution of the same systems, and per operation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+import linksweep as ls
+from benchmarks.cases import GENERAL, Size, scene
+from benchmarks.rivals import peers
+from benchmarks.speed.kernel import kernel_of, way
+from benchmarks.timing import FASTER, SHARE, Call, Race, Row, race
+from linksweep.engine.trace.plan import plan
+
+FOUR_BAR = "four-bar, per operation"
+GOALS = {"watt-2": 80.0, "knuckle-press": 80.0, "jansen-leg": 150.0}
+"""Times as fast as numpy's batched solution of the same systems, by example."""
+
+
+def rows(size: Size) -> list[Row]:
+    return [row for name, goal in GOALS.items() for row in _rows(name, goal, size)]
+
+
+def _rows(name: str, goal: float, size: Size) -> list[Row]:
+    """Return the rows of an example: against its systems by numpy.linalg.solve, and against a four-bar's operations."""
+    angles = max(size.angles // 10, 1)  # more systems of equations than that would not fit into memory
+    linkage, four_bar = ls.example(name), scene(GENERAL)
+    names = linkage.mechanism.unknowns(linkage.drive)
+    sweep = partial(ls.sweep, linkage, angles, of=names, threads=1)
+    page = ls.system(linkage, np.arange(angles) * (360.0 / angles))
+    matrix, rhs = (np.ascontiguousarray(page[part].values) for part in ("matrix", "rhs"))
+    kernel, systems = f"{name}, {len(names)} unknowns", f"{name}, numpy.linalg.solve"
+    with way("compiled"):
+        calls: dict[str, Call] = {
+            kernel: kernel_of(sweep).call,
+            systems: lambda: np.linalg.solve(matrix, rhs[..., None]),
+            FOUR_BAR: kernel_of(
+                partial(ls.sweep, four_bar, angles, of=four_bar.mechanism.unknowns("crank"), threads=1)
+            ).call,
+        }
+        dense, fast = (_values(sweep(solver=solver), names, angles) for solver in ("dense", "fast"))
+        some = dense.any(axis=1)  # a slider without inertia has no moment
+        error = peers.difference(fast[some], dense[some])
+        timed = race(calls, size, angles)
+    ours, theirs = operations(linkage), operations(four_bar)
+    note = f"{ours} operations"
+    of_operations = _per_operation(timed, {kernel: ours, FOUR_BAR: theirs})
+    return [
+        timed.row(FASTER, kernel, systems, goal, error=error, note=note),
+        of_operations.row(SHARE, kernel, FOUR_BAR, 1.0, note=f"{note}, {theirs} of the four-bar"),
+    ]
+
+
+def _values(cycle: xr.Dataset, names: Iterable[str], angles: int) -> np.ndarray:
+    """Return the values of quantities at each angle; a slider's moment may depend on none."""
+    return np.stack([np.broadcast_to(cycle[name].values, angles) for name in names])
+
+
+def operations(machine: ls.Scene) -> int:
+    """Return the number of operations per angle of all unknowns."""
+    unknowns = machine.mechanism.unknowns(machine.drive)
+    return plan(machine.table, unknowns, machine.inputs.forms).operations("theta2").total()
+
+
+def _per_operation(timed: Race, counts: dict[str, int]) -> Race:
+    """Return the times of one operation."""
+    seconds = {name: [time / count for time in timed.seconds[name]] for name, count in counts.items()}
+    return Race(seconds, timed.samples)
