@@ -7,8 +7,10 @@ import matplotlib.pyplot as plt
 import pytest
 
 import linksweep as ls
+from linksweep.scene.examples import names
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+LISTED = re.search(r"\*\*Examples\.\*\* (.*?):\n", README, re.DOTALL).group(1)
 
 
 @pytest.fixture(autouse=True)
@@ -21,6 +23,17 @@ def test_python_of_the_readme_runs(block):
     exec(block, {})
     assert Path("cycle.nc").exists() == ("cycle.nc" in block)
     plt.close("all")
+
+
+@pytest.mark.parametrize("block", re.findall(r"```toml\n(.*?)```", README, re.DOTALL))
+def test_scene_files_of_the_readme_run(block):
+    Path("scene.toml").write_text(block, encoding="utf-8")
+    assert ls.peaks(ls.load_scene("scene.toml")).status == 0
+
+
+def test_the_readme_lists_all_example_linkages():
+    examples = {name for name in names() if isinstance(ls.example(name).mechanism, ls.Linkage)}
+    assert {*re.findall(r'"([a-z]+(?:-[a-z0-9]+)*)"', LISTED)} == examples
 
 
 def test_the_readme_has_the_quick_start():
