@@ -89,9 +89,9 @@ class Drawing:
     `joints` are the pairs of links (i, j) whose force Fij is plotted, by the joint's name: a pin, or a word where links
     touch otherwise. `journals` are the links that carry the pins' journals. `acts_at` is the pin where the arrow of a
     force starts that acts at no pin. `bars` are the pins of each link. `fixed` returns the pins on the ground [m],
-    `wheels` the pins at the centres of pitch circles, and their radii [m]. `moving` are the pins with positions among
-    the quantities, `centres` places on a line of the ground, by the quantity that is the distance along it.
-    `telescopes` are the ends of cylinders. `ideal` are parameters to set aside where only positions are computed.
+    `wheels` the pins at the centres of pitch circles, and their radii [m]. `moving` are the pins, and centres
+    of yokes, with positions among the quantities. `telescopes` are the ends of cylinders. `ideal` are parameters to set
+    aside where only positions are computed.
     """
 
     joints: Mapping[str, tuple[int, int]]
@@ -104,7 +104,6 @@ class Drawing:
     blocks: tuple[Block, ...] = ()
     telescopes: tuple[tuple[str, str], ...] = ()
     wheels: Callable[[Any], Sequence[tuple[str, float]]] = lambda mechanism: ()
-    centres: Mapping[str, tuple[str, Callable[[Any], Rail]]] = field(default_factory=dict)
     acts_at: Mapping[str, str] = field(default_factory=dict)
     ideal: Mapping[str, Any] = field(default_factory=dict)
 

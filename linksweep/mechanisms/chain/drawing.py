@@ -27,17 +27,17 @@ class LinkageDrawing(NamedTuple):
         """Return the linkage as plots draw it."""
         joined = self.topology
         bars = {joined.number(role): pins for role, pins in joined.links.items()}
-        slots = {joined.number(role): (role, pin) for role, (_, pin) in joined.yokes.items()}
+        slots = {joined.number(role): (f"{role}_", pin) for role, (_, pin) in joined.yokes.items()}
         frames = {joined.number(role): self._frame(role) for role in joined.links}
         frames |= {joined.number(role): self._sides(guide) for role, (_, guide) in self._slides()}
+        moving = [pin for pin in joined.members if pin not in joined.ground]
         return Drawing(
             joints=self.joints,
             journals=joined.journals,
             frames=frames,
             bars=bars | slots,
-            moving=tuple(pin for pin in joined.members if pin not in joined.ground),
+            moving=(*moving, *(f"{role}_" for role in joined.yokes)),
             fixed=lambda machine: self._fixed(),
-            centres={role: (f"x_{role}", self._rail(guide)) for role, (guide, _) in joined.yokes.items()},
             carrier=self._carrier(),
             blocks=tuple(self._blocks()),
             telescopes=tuple(joined.cylinders.values()),
@@ -49,7 +49,7 @@ class LinkageDrawing(NamedTuple):
     def _slides(self) -> Iterator[tuple[str, tuple[str, str]]]:
         """Yield each slider with its pin, of a yoke its centre, and its guide."""
         yield from self.topology.sliders.items()
-        yield from ((role, (role, guide)) for role, (guide, _) in self.topology.yokes.items())
+        yield from ((role, (f"{role}_", guide)) for role, (guide, _) in self.topology.yokes.items())
 
     def _frame(self, role: str) -> Frame:
         first, second, *_ = self.topology.links[role]

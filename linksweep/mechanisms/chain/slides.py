@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from linksweep.engine.quantity import Quantity
 from linksweep.mechanisms.dyads import prp, rpp
 from linksweep.mechanisms.dyads.names import of_force, of_link, of_pin, sliding_of
 from linksweep.mechanisms.rows.bodies import Source
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 def place_RPP(motion: Motion, step: RPP) -> None:
     """Add rows of the place of a slider with a slot."""
-    slider, k, centre = step.slider, motion.number(step.slider), f"{step.slider}_centre"
+    slider, k, centre = step.slider, motion.number(step.slider), f"{step.slider}_"
     guide = motion.guide(step.guide)
     motion.rates(centre)
     motion.slider(slider, centre, guide, motion.topology.hosts[step.guide])
@@ -33,6 +34,8 @@ def place_RPP(motion: Motion, step: RPP) -> None:
         of_force("F14", f"hold_{slider}") | of_force("F42", f"push_{slider}_{step.pin}"),
     )
     motion.slides_on(step, slider, "slider", step.guide)
+    place = f"position from {motion.topology.ground[0]} of the point where the slot of the {slider} crosses its guide"
+    motion.quantities += [Quantity(f"{centre}{axis}", "m", f"{place}, along {axis}") for axis in "xy"]
 
 
 def force_RPP(forces: Forces, step: RPP) -> None:

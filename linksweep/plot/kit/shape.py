@@ -55,7 +55,6 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
     set_aside: dict[str, Any] = dict(drawing.ideal)
     geometry = Scene(replace(scene.mechanism, **set_aside), omega2=0.0)
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
-    outputs += [name for name, _ in drawing.centres.values()]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     turn = np.arange(CURVE) * (360.0 / CURVE)
     cycle = sweep(geometry, theta2=[*turn, *angles], of=outputs)
@@ -69,9 +68,6 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
     fixed = drawing.fixed(scene.mechanism)
     places = {pin: np.repeat(place[:, None], count, axis=1) for pin, place in fixed.items()}
     places |= {pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving}
-    for name, (distance, line) in drawing.centres.items():
-        rail = line(scene.mechanism)
-        places[name] = rail.point[:, None] + rail.along[:, None] * signals.spread(cycle[distance], count)
     cg = scene.mechanism.masses()[carrier.role]
     distance, turned = point or (cg.cg_distance, cg.cg_angle)
     x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
