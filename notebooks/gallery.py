@@ -32,6 +32,7 @@ machines = {  # crank angle [°] of the picture, and what else to draw
     "stephenson-3": (60, {"link": "coupler", "point": (0.1658, -20.9)}),
     "knuckle-press": (300, {"link": "rod", "point": (0.490, 0.0)}),
     "drag-link-press": (220, {"link": "driven", "point": (0.120, 95.0)}),
+    "geared-five-bar": (200, {"link": "left", "point": (0.260, 0.0)}),
     "crank-shaper": (40, {"link": "arm", "point": (0.600, 0.0)}),
     "whitworth": (60, {"link": "arm", "point": (0.090, 0.0)}),
     "scotch-yoke": (40, {"link": "crank", "point": (0.0, 0.0)}),

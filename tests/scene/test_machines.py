@@ -10,8 +10,7 @@ import linksweep as ls
 
 TURN = np.arange(0.0, 360.0, 2.5)
 DIG = np.arange(0.0, 41.0, 5.0)  # degrees of the excavator's boom
-WAITING = {"geared-five-bar"}
-machines = pytest.mark.parametrize("name", sorted({*MACHINES} - WAITING))
+machines = pytest.mark.parametrize("name", sorted(MACHINES))
 
 
 def angles(name):
@@ -44,6 +43,24 @@ def test_pins_lie_where_compass_and_ruler_find_them(name):
     size = max(abs(place).max() for place in expected.values())
     for pin, place in expected.items():
         assert abs(cycle[f"{pin}x"] + 1j * cycle[f"{pin}y"] - place).max() < 1e-14 * size, pin
+
+
+@machines
+def test_rates_are_slopes_over_the_crank_angle(name):
+    """At constant speed: omega is the slope of theta times the crank's speed, and alpha that of omega."""
+    scene, step = ls.example(name), 0.01
+    grid = angles(name) + 1.0  # off the corners of the excavator's curves
+    links = [name.removeprefix("alpha") for name in scene.mechanism.kinematics() if name.startswith("alpha")]
+    names = [f"{rate}{k}" for k in links for rate in ("theta", "omega", "alpha")]
+    before, at, after = (ls.sweep(scene, grid + d, of=names) for d in (-step, 0.0, step))
+    for k in links:
+        turned = (after[f"theta{k}"].values - before[f"theta{k}"].values + 180.0) % 360.0 - 180.0
+        gained = after[f"omega{k}"].values - before[f"omega{k}"].values
+        for rate, gain in ((at[f"omega{k}"], np.radians(turned)), (at[f"alpha{k}"], gained)):
+            slope = scene.omega2 * gain / np.radians(2.0 * step)
+            assert abs(rate.values - slope).max() < 1e-5 * abs(scene.omega2) ** (1 + rate.name.startswith("alpha")), (
+                rate.name
+            )
 
 
 # ------------------------------------------------------------------------- the numbers of their design
@@ -138,22 +155,25 @@ def cross(place, force):
     return (place.conj() * force).imag
 
 
-def test_the_boom_cylinder_holds_all_moments_about_the_boom_s_pivot():
-    """At rest: those of five weights, of the force on the teeth, and of the earth."""
+def test_the_cylinders_of_boom_and_stick_hold_all_moments_about_their_pivots():
+    """At rest: those of the weights, of the force on the teeth, and of the earth."""
     pins = MACHINES["excavator"](DIG)
     C, K, I, J = (pins[pin] for pin in "CKIJ")  # noqa: E741
-    weights = {
-        1900.0: polar(0.0, C, 2.7, 8.0),
-        950.0: polar(C, K, 0.9, 12.0) + polar(K, J, 0.65, -85.0),  # stick and bucket weigh the same
-        45.0: 0.5 * (polar(C, K, 2.52, 3.0) + I),
-        60.0: 0.5 * (I + J),
-    }
+    weights = [
+        (1900.0, polar(0.0, C, 2.7, 8.0)),
+        (950.0, polar(C, K, 0.9, 12.0)),
+        (45.0, 0.5 * (polar(C, K, 2.52, 3.0) + I)),
+        (60.0, 0.5 * (I + J)),
+        (950.0, polar(K, J, 0.65, -85.0)),
+    ]
     teeth = 1e3 * np.array([0, 44 - 16j, 41.5 - 18.5j, 24 - 12j, 0, 0, 0, 0, 0])
     earth = -1e3j * np.array([0, 2.4, 8.4, 14.4, 18, 18, 18, 18, 18])
-    moment = sum(cross(place, -9.81j * mass) for mass, place in weights.items())
-    moment += cross(pins["T"], teeth) + cross(polar(K, J, 0.7, -85.0), earth)
-    cylinder = pins["B"] - (0.45 - 0.5j)
-    thrust = -moment / cross(pins["B"], cylinder / abs(cylinder))
-    at_rest = ls.sweep(replace(ls.example("excavator"), omega2=0.0), DIG, of=["force_c1", "length_c1"])
-    assert abs(at_rest.force_c1 / thrust - 1.0).max() < 1e-12
-    assert abs(at_rest.length_c1 - abs(cylinder)).max() < 1e-14
+    forces = [(place, -9.81j * mass) for mass, place in weights]
+    forces += [(pins["T"], teeth), (polar(K, J, 0.7, -85.0), earth)]
+    at_rest = ls.sweep(replace(ls.example("excavator"), omega2=0.0), DIG, of=["force_c1", "force_c2", "length_c1"])
+    ends = {"c1": (0.45 - 0.5j, pins["B"], 0.0, forces), "c2": (polar(0.0, C, 3.05, 19.0), pins["E"], C, forces[1:])}
+    for cylinder, (base, end, pivot, carried) in ends.items():
+        lever = cross(end - pivot, (end - base) / abs(end - base))
+        thrust = -sum(cross(place - pivot, force) for place, force in carried) / lever
+        assert abs(at_rest[f"force_{cylinder}"] - thrust).max() < 1e-12 * abs(thrust).max()
+    assert abs(at_rest.length_c1 - abs(pins["B"] - 0.45 + 0.5j)).max() < 1e-14

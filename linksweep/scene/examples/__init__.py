@@ -21,7 +21,7 @@ def example(name: str) -> Scene:
         Linkages: "watt-1", "watt-2", "stephenson-1" and "stephenson-3", six-bars that feed, stir, pull film and dwell;
         the presses "knuckle-press" and "drag-link-press"; "crank-shaper" and "whitworth", quick returns; "scotch-yoke",
         a pump; "pump-jack"; "jansen-leg" and "klann-leg", which walk; "wipers", of a car; "scissor-lift";
-        "excavator", whose arc is from 0 to 40 degrees.
+        "geared-five-bar", a press without a guide; "excavator", whose arc is from 0 to 40 degrees.
 
     Returns
     -------
