@@ -133,3 +133,19 @@ def test_a_machine_without_toggles_closes_everywhere():
     assert (limits.assembly, limits.arc_start.item(), limits.arc_end.item()) == (0, 0.0, 360.0)
     assert limits.sizes["pin"] == limits.sizes["toggle"] == 0
     assert ls.peaks(yoke, of=["T12"]).status == 0
+
+
+def test_limits_have_the_dims_of_lengths_alone():
+    ground = {"A": (0.0, 0.0), "D": (0.20, 0.0), "G": (xr.DataArray([0.42, 0.5, 0.9], dims="x"), 0.05)}
+    bars = {name: ls.Link(length, 1.0, 0.01) for name, length in LENGTHS.items()}
+    bars["output"] = ls.Link(LENGTHS["output"], xr.DataArray([0.5, 1.0], dims="mass"), 0.01)
+    text, points = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F", {"E": (0.12, -35.0)}
+    machine = ls.Linkage(text, ground=ground, points=points, branch={"C": "both", "F": "both"}, **bars)
+    scene = ls.Scene(machine, 30.0)
+    limits, peaks = ls.check(scene), ls.peaks(scene, of=["F65"])
+    assert limits.arc_start.dims == ("x", "branch_C", "arc")
+    assert limits.toggle_angle.dims == ("x", "branch_C", "pin", "toggle")
+    assert {*peaks.F65_peak.dims} == {"x", "branch_C", "branch_F", "mass"}
+    never = (limits.assembly == 2).broadcast_like(peaks.F65_peak)
+    np.testing.assert_array_equal(peaks.F65_peak.isnull(), never.transpose(*peaks.F65_peak.dims))
+    assert never.any() and not never.all()
