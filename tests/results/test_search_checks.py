@@ -138,7 +138,7 @@ def test_a_machine_without_toggles_closes_everywhere():
 def test_limits_have_the_dims_of_lengths_alone():
     ground = {"A": (0.0, 0.0), "D": (0.20, 0.0), "G": (xr.DataArray([0.42, 0.5, 0.9], dims="x"), 0.05)}
     bars = {name: ls.Link(length, 1.0, 0.01) for name, length in LENGTHS.items()}
-    bars["output"] = ls.Link(LENGTHS["output"], xr.DataArray([0.5, 1.0], dims="mass"), 0.01)
+    bars["output"] = ls.Link(LENGTHS["output"], xr.DataArray([0.5, 1.0], dims="mass"), 0.01, 0.05)
     text, points = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F", {"E": (0.12, -35.0)}
     machine = ls.Linkage(text, ground=ground, points=points, branch={"C": "both", "F": "both"}, **bars)
     scene = ls.Scene(machine, 30.0)
