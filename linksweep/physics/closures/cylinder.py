@@ -1,7 +1,6 @@
 """A telescopic cylinder between two pins P and Q: r = P→Q of length L, force positive where it pushes them apart."""
 
 from linksweep.physics.algebra.arithmetic import NOISE, Number, sqrt, where
-from linksweep.physics.algebra.planar import dot
 
 
 def span(rx: Number, ry: Number) -> tuple[Number, Number, Number]:
@@ -32,11 +31,6 @@ def extended_slope(
     """Return the derivative of that velocity: u' + (L''/L) r + 2k (L'/L)⊥r (Coriolis), k the cylinder's rotation."""
     along, coriolis = curvature / length, 2.0 * ratio * (slope / length)
     return ux_slope + along * rx - coriolis * ry, uy_slope + along * ry + coriolis * rx
-
-
-def force_along(Fx: Number, Fy: Number, rx: Number, ry: Number, length: Number) -> Number:
-    """Return the component of a force along the cylinder."""
-    return dot(Fx, Fy, rx, ry) / length
 
 
 def standing_status(ratio: Number, size: Number) -> Number:
