@@ -59,39 +59,51 @@ WITH_BRANCHES = (RRR, RRP, RPR)
 @register
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Linkage(Machine):
-    """A linkage: any planar machine of pins, slides and cylinders whose dyads close one after the other.
+    """A linkage: any planar machine of pins, slides, cylinders and gears whose dyads close one after the other.
 
     Parameters
     ----------
     links : str
-        Links by their pins, the crank first, such as "crank A-B, rod B-C, rocker D-C-E"; "ram F on slide", a slider on
-        a guide; "arm D-E past B", a link whose line slides through a block at a pin; "yoke on slide past B", a slider
-        with a slot for a pin; "c1 P~B", a cylinder; "wheel D-E : -2 crank", a second crank turned by gears.
+        Parts with their pins, the crank first, such as "crank A-B, rod B-C, rocker D-C-E"; a link's length is that from
+        its first pin to its second. Besides links, "ram F on slide", a slider on a guide or a link; "arm D-E past B",
+        a link whose line slides through a block at a pin; "yoke on slide past B", a slider with a slot for a pin;
+        "c1 P~B", a cylinder; "wheel D-E : -2 crank", a second crank turned by gears. Pins are capital letters, with
+        digits where one is not enough; names of parts are words in lower case.
     ground : dict of str to pair of float or DataArray
-        Coordinates (x, y) of each pin on the ground [m]; the first is the crank's pivot.
+        Coordinates (x, y) of each pin on the ground [m]; the first is the crank's pivot, from which results count.
     points : dict of str to pair of float or DataArray, default {}
         Third and further pins of links: distance from the link's first pin [m], angle from its line of pins [degree].
     guides : dict of str to Guide, default {}
-        Guides by name. One named like the link that carries it takes the place of that link's line of pins.
+        Guides by name, on the ground or on a link. One with the name of a link, and `of` that link, takes the place of
+        that link's line of pins.
     branch : dict of str to str, default {}
-        Assembly of each pin, or link past a pin, that a dyad finds: "open", "crossed", or "both" (adds the dimension
-        `branch_F` for a pin F); those left out are open.
+        Assembly of each pin, or link past a pin, that closes in two ways: "open", "crossed", or "both" (adds the
+        dimension `branch_F` for a pin F); those left out are open.
     gears : dict of str to Gears, default {}
-        Gears of each wheel by its name.
+        Gears of each wheel by its name; those left out have no phase, and pass on a torque alone.
     **parts : Link, Bar, Disk, Slider or Cylinder
-        Part of each name in `links`. A cylinder that follows the others may be left out.
+        Part of each name in `links`: a Link, Bar or Disk where it has two pins or more, a Slider where it slides on a
+        guide, a Cylinder. A cylinder that follows the others may be left out.
 
     Raises
     ------
     ValueError
-        One line for each parameter out of bounds, for each name that does not fit the others, and for links that close
-        only together, or not at all.
+        One line for each parameter out of bounds, for each name that does not fit the others, for a mobility other than
+        1, and for links that close only together.
 
     Notes
     -----
-    A pin that two links find is open to the left of the line between their known pins, that of the first link first; a
-    pin on a guide is open ahead of the known pin along the guide; a link past a pin is open where the pin lies ahead of
-    its first pin.
+    Dyads close one after the other, from ground and crank on. A pin at which two links meet is open to the left of the
+    line between their known pins, that of the first link first; a pin on a guide is open ahead of the known pin along
+    the guide; a link past a pin is open where the pin lies ahead of its first pin.
+
+    Links have numbers in the order of `links`: 1 ground, 2 crank, and so on; cylinders have none. Forces are `F16` of
+    the ground on link 6, else `F65` of the later link on the earlier, from ten links on `F11_3`; of a slide `F16n`
+    across, `F16t` along and the moment `T16` about the slider's pin. Where more than two links share a pin, the first
+    carries it, and the pins of the others are "C:upper", "C:lower". `linksweep.quantities` lists all names.
+
+    The position `x_ram` of a slider counts along its guide from the foot of the crank's pivot on it, on a link from the
+    foot of the link's first pin.
 
     Examples
     --------

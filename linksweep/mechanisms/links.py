@@ -214,12 +214,14 @@ class Cylinder(ByContent):
     Parameters
     ----------
     length : float, DataArray or function of theta2, default None
-        Distance of its two pins [m], which may change with theta2; None for a cylinder that follows the linkage.
+        Distance of its two pins [m], the one length that may depend on theta2; None for a cylinder that follows the
+        linkage.
 
     Notes
     -----
     A length that is stated removes a freedom, as a hydraulic cylinder that is held or moved. A cylinder that follows
-    carries no force unless it is the drive.
+    carries no force unless it is the drive. For a cylinder c1, `length_c1` [m], `rate_c1` [m/s] and `force_c1` [N],
+    positive where it pushes its pins apart, are quantities.
 
     Examples
     --------
@@ -265,7 +267,7 @@ class Guide(ByContent):
     friction : float or DataArray, default 0.0
         Coefficient of Coulomb friction between guide and slider [1].
     of : str, default "ground"
-        Link that carries the guide, by its name.
+        Link that carries the guide, by its name; "ground" for one that stands still.
 
     Examples
     --------
@@ -288,11 +290,12 @@ class Gears(ByContent):
     ----------
     ratio : float or str, default ""
         Turns of the wheel per turn of the crank [1], negative for the opposite sense: a whole number, so that all
-        repeats after one turn of the crank. Left out where the text of the linkage states it.
+        repeats after one turn of the crank. Left out where the text of the linkage states it; stated once in all.
     phase : float or DataArray, default 0.0
         Angle of the wheel where that of the crank is 0 [degree].
     pressure_angle : float or DataArray, default None
-        Pressure angle of the teeth [degree]; None for gears that pass on a torque alone, without a force at the teeth.
+        Pressure angle of the teeth, 0 to below 90 [degree]: their force acts at the pitch point, for which the ratio
+        must not be 1. None for gears that pass on a torque alone.
 
     Examples
     --------
@@ -301,7 +304,7 @@ class Gears(ByContent):
     Gears(ratio='-2', phase=90.0)
     """
 
-    ratio: Any = word('"-3/2"', "")
+    ratio: Any = word('"-2"', "")
     phase: Number = parameter("angle", 0.0)
     pressure_angle: Number = parameter("angle", None, at_least=0.0)
 

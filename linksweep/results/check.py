@@ -1,4 +1,4 @@
-"""Check a scene in closed form: Grashof class, arcs on which it can be assembled, toggles, jams, dead centres."""
+"""Check a scene: Grashof class, arcs on which it can be assembled, toggles, jams, dead centres."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linksweep.scene.scene import Scene
 
 
 def check(scene: Scene) -> xr.Dataset:
-    """Check where each design can be assembled, and how well it transmits, in closed form.
+    """Check where each design can be assembled, and how well it transmits.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def check(scene: Scene) -> xr.Dataset:
 
     Notes
     -----
-    Variables for a FourBar:
+    Closed forms, but for a Linkage. Variables for a FourBar:
 
     - `grashof`: by the shortest link, crank_rocker, double_crank, double_rocker, rocker_crank; triple_rocker (no link
       turns fully); change_point (shortest + longest equals the other two, but for rounding)
@@ -55,7 +55,7 @@ def check(scene: Scene) -> xr.Dataset:
     [degree] and `time_ratio` [1] of a rocker that swings; with drive="cylinder" `slide_at_dead_centre` [m], its least
     and greatest size where the block stands still; with other drives `jam_angle` (side) and `friction_to_jam`.
 
-    For a Linkage, by the exact search for peaks:
+    For a Linkage, by the exact search for peaks (jams and dead centres of its drive are in the `status` of a sweep):
 
     - `assembly`, `arc_start`, `arc_end` as above, of any number of arcs
     - `toggle_angle` (pin, toggle) [degree]: theta2 at which the links that find this pin lie in one line, or a rod
@@ -63,8 +63,8 @@ def check(scene: Scene) -> xr.Dataset:
     - `transmission_angle_min`, `transmission_angle_max` (pin) [degree]: extreme acute transmission angles on those
       arcs; `transmission_angle_min_at`, `transmission_angle_max_at` (pin) [degree]: their theta2
 
-    With another drive than the crank, `dead_centre_angle` (dead_centre) [degree], where the driving link stands still
-    and cannot drive, labelled by branch if it differs between branches.
+    Of these machines but a Linkage, with another drive than the crank, `dead_centre_angle` (dead_centre) [degree],
+    where the driving link stands still and cannot drive, labelled by branch if it differs between branches.
 
     For a scene with both alpha2 and an omega2 that changes with theta2:
 

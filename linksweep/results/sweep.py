@@ -66,9 +66,9 @@ def sweep(
     outputs : str or iterable of str, default None
         Another name of `of`.
     solver : {"fast", "superposed", "dense"}, default "fast"
-        "fast": the 9×9 eliminated by hand. "superposed": along a design dim of masses, loads, speeds … over one
-        geometry a few cycles are added up, which is faster and rounds a little differently. "dense": the full 9×9 by
-        LAPACK with partial pivoting, as a check.
+        "fast": the square system eliminated by hand, dyad by dyad. "superposed": along a design dim of masses, loads,
+        speeds … over one geometry a few cycles are added up, which is faster and rounds a little differently. "dense":
+        the full system of `linksweep.system`, 9×9 for a four-bar, by LAPACK with partial pivoting, as a check.
     threads : int, default None
         Largest number of threads; None for all cores. Results do not depend on it.
 
@@ -77,7 +77,8 @@ def sweep(
     Dataset
         Over (design dims…, theta2); each variable has only the dims that it depends on, with unit and sign in its
         attributes. `status` states for each sample whether it is ok; where it is not 0 (ok), values are NaN. For a
-        linkage, `status_at`, where requested, states which pin or link past a pin fails first.
+        linkage, `status_at`, where requested, states what fails first: 0 for nothing, else the number of a pin, or of a
+        link past a pin, in the `flag_meanings` of its attributes.
 
     Raises
     ------

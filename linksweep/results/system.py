@@ -47,8 +47,9 @@ def system(
     theta : float or array_like, default None
         Position or positions of a car in a loop [degree].
     form : {"reduced", "document"}, default "reduced"
-        "reduced": nine equations. "document": a slider-crank's with T14 and its row, as document 3 prints them: nine
-        without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one form.
+        "reduced": three equations of each moving link. "document": a slider-crank's with T14 and its row, as document 3
+        prints them: nine without friction, F14x left out; ten with it, or with a slide_angle. Other machines have one
+        form.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -80,6 +81,8 @@ def system(
     - Inverted slider-crank: the same equations with the slide's normal force F43n and moment T43; with
       drive="cylinder" cylinder_force stands on block and rocker in place of a torque. The loop: document 3's 2×2,
       example 17-4.
+    - Linkage: three equations of each link, in the order of its text; the unknowns are the forces at its pins, normal
+      force and moment of each slide (no moment of a block without mass), and those of the drive.
 
     Examples
     --------

@@ -54,7 +54,7 @@ class Scene(ByContent):
     Parameters
     ----------
     mechanism : Mechanism
-        FourBar, SliderCrank, InvertedSliderCrank or LoopTrack.
+        FourBar, SliderCrank, InvertedSliderCrank, Linkage or LoopTrack.
     omega2 : float, DataArray or function, default None
         Angular velocity of the crank [rad/s], positive counter-clockwise. Required where there is a crank.
     alpha2 : float, DataArray or function, default None
@@ -65,7 +65,8 @@ class Scene(ByContent):
         Any number of Load, GasPressure, Spring, Damper, TorsionSpring and TorsionDamper.
     drive : str, default ""
         Driven part: "crank" (unknown T12; taken where none is stated), "coupler" (T13), "rocker" (T14), or the
-        "cylinder" of an inverted slider-crank (cylinder_force).
+        "cylinder" of an inverted slider-crank (cylinder_force). Of a linkage, the name of its crank, of another link on
+        a ground pin (T16 for link 6), or of a cylinder without a length of its own (force_c1).
     speed : float or DataArray, default None
         Speed of the car in a loop [m/s]: at every position, or with profile="energy" at the bottom. Required there.
     thrust : float or DataArray, default None

@@ -265,9 +265,9 @@ LINK = "a link is written by two pins or more, each a capital letter that digits
         ("arm past B", "a link past a pin is written as arm D-E past B"),
         ("c1 P~", "a cylinder is written as c1 P~B"),
         ("c1 P~Q~R", "a cylinder is written as c1 P~B"),
-        ("wheel D-E :", "a wheel is written as wheel D-E : -3/2 crank"),
-        ("wheel D-E : 1.5 crank", "a wheel is written as wheel D-E : -3/2 crank"),
-        ("wheel D-E : 1/0 crank", "a wheel is written as wheel D-E : -3/2 crank"),
+        ("wheel D-E :", "a wheel is written as wheel D-E : -2 crank"),
+        ("wheel D-E : 1.5 crank", "a wheel is written as wheel D-E : -2 crank"),
+        ("wheel D-E : 1/0 crank", "a wheel is written as wheel D-E : -2 crank"),
     ],
 )
 def test_a_part_that_cannot_be_read_is_quoted(part, sentence):
@@ -342,7 +342,7 @@ TAKEN = "has a meaning of its own in linksweep or Python: give the link another 
         ),
         (
             "crank A-B, wheel D-E : 0 crank, rod B-C, arm E-C",
-            'gears.wheel.ratio = "0": must be a whole number or a fraction such as -3/2, and not 0',
+            'gears.wheel.ratio = "0": must be a whole number such as -2, and not 0',
         ),
     ],
 )
@@ -357,7 +357,7 @@ def test_gears_that_do_not_fit():
         "gears.wheel.ratio is stated twice: state it once, in links or in gears",
     ]
     assert problems(links.replace("2 crank", "crank"), ratios=(("wheel", "1.5"),)) == [
-        'gears.wheel.ratio = "1.5": must be a whole number or a fraction such as -3/2, and not 0'
+        'gears.wheel.ratio = "1.5": must be a whole number such as -2, and not 0'
     ]
 
 
