@@ -13,7 +13,7 @@ from linksweep.base.validate import Number, is_lazy
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import four_bar_limits as limits
 from linksweep.mechanisms.limits.finding import Checks

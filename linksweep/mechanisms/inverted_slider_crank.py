@@ -14,7 +14,7 @@ from linksweep.base.validate import Number
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import inverted_slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks

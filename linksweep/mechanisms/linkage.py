@@ -15,7 +15,7 @@ from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
 from linksweep.mechanisms.chain.drawing import LinkageDrawing
-from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,

@@ -12,7 +12,7 @@ from linksweep.engine.quantity import Table
 from linksweep.mechanisms.between_links import force_name
 from linksweep.mechanisms.chain.chain import Chain, Own, chain, table
 from linksweep.mechanisms.chain.equations import equations
-from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.mechanism import Mechanism
 from linksweep.mechanisms.rows.bodies import Body, Equation
 from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER

@@ -15,7 +15,7 @@ from linksweep.base.validate import Number
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.motion import Shape
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits

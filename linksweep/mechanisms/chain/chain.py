@@ -14,7 +14,8 @@ from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, cylinde
 from linksweep.mechanisms.chain.forces import Forces
 from linksweep.mechanisms.chain.gears import gear_rows, teeth_quantities, torque_name
 from linksweep.mechanisms.chain.limits import limits
-from linksweep.mechanisms.chain.motion import Motion, Shape
+from linksweep.mechanisms.chain.motion import Motion
+from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows import bodies
 from linksweep.mechanisms.rows.bodies import Source, xy

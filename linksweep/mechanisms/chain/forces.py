@@ -12,15 +12,15 @@ from collections.abc import Callable
 
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.between_links import name_between
-from linksweep.mechanisms.chain import cylinders, gears, slides
+from linksweep.mechanisms.chain import cylinders, gears, lines, slides
 from linksweep.mechanisms.chain.drives import Drive
 from linksweep.mechanisms.chain.equations import Contact
 from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.dyads import rrp, rrr
 from linksweep.mechanisms.dyads.names import Slide
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows.bodies import Source, xy
-from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side
+from linksweep.mechanisms.topology import GROUND, RRP, RRR, Side
 from linksweep.physics.algebra import planar
 
 
@@ -51,6 +51,7 @@ class Forces:
 
     _force_RPP = slides.force_RPP
     _force_PRP = slides.force_PRP
+    _force_RPR = lines.force_RPR
     _force_Gear = gears.force_Gear
 
     # ------------------------------------------------------------------------------------------------ dyads
@@ -65,7 +66,7 @@ class Forces:
             if side.role in self.topology.struts:
                 cylinders.force_strut(self, side, step.pin, f"push_{side.role}_{step.pin}")
         self.push(coupler)
-        self._release(rocker)
+        self.release(rocker)
 
     def _force_RRP(self, step: RRP) -> None:
         self.act_about(step.link)
@@ -77,18 +78,6 @@ class Forces:
             cylinders.force_strut(self, step.link, step.pin, f"push_{step.link.role}_{step.pin}")
         self.push(step.link)
         self.slide(step.slider, step.guide, f"hold_{step.slider}", step.name, rrp.CONTACT)
-
-    def _force_RPR(self, step: RPR) -> None:
-        slider, host = step.block or step.link.role, step.block or self.topology.members[step.pin][0]
-        self.act_about(step.link)
-        if step.block:
-            self.act(step.block)
-        self.solve(step.name, rpr.forces(), "jam_status")
-        self.rub(step.name, "ratio_slide")
-        self.push(Side(slider, step.pin))
-        self._release(step.link)
-        slide = rpr.CONTACT if step.block else rpr.CONTACT._replace(moment="")
-        self.between(step.link.role, host, f"line_force_{slider}", step.name, slide)
 
     def _crank(self) -> None:
         role = self.topology.crank
@@ -144,7 +133,7 @@ class Forces:
         self.pushes[side.pin][side.role] = push
         self.hang(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
 
-    def _release(self, side: Side) -> None:
+    def release(self, side: Side) -> None:
         """Make the force on a pin of the force of the pin, and hang it."""
         self.opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
         self.push(side)

@@ -1,24 +1,20 @@
-"""Rows of a machine made of a crank and dyads: motion from the crank on, forces from the last dyad back to the crank.
+"""Motion of a machine made of a crank and dyads, from the crank on.
 
-A dyad closes between pins and guides that have their places, and places the other pins of its links. Its forces follow
-from all that acts on its two links, the dyads beyond included: what these exert on their hosts is hung on them. No
-system of equations larger than a dyad's is solved.
+A dyad closes between pins and guides that have their places, and places the other pins of its links.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.chain import cylinders, gears, slides
-from linksweep.mechanisms.dyads import rpr, rrp, rrr
+from linksweep.mechanisms.chain import cylinders, gears, lines, slides
+from linksweep.mechanisms.chain.shape import ORIGIN, Arm, Frame, Shape
+from linksweep.mechanisms.dyads import rrp, rrr
 from linksweep.mechanisms.dyads.names import (
-    NOTHING,
     Names,
     Vector,
-    block_sliding_of,
     direction_of,
     frame_of,
     full,
@@ -30,51 +26,10 @@ from linksweep.mechanisms.dyads.names import (
 )
 from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.mechanisms.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
-from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step, Topology
+from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
-
-ORIGIN = (0.0, 0.0, 0.0, 0.0)
-
-
-class Frame(NamedTuple):
-    """The place of a link: a pin that has its place, and a vector in ground axes and in its own, with low words."""
-
-    pin: str
-    vector: Vector
-    own: Vector
-
-
-class Arm(NamedTuple):
-    """A link of a dyad from its known pin to the pin that is found: stem of the vector, and its length."""
-
-    stem: str
-    length: str
-    length_lo: Source
-
-
-class Shape(NamedTuple):
-    """All that decides the rows of a machine's motion.
-
-    Parameters
-    ----------
-    topology : links and steps
-    turned : names of steps on crank and ground whose frame may lie at an angle to x
-    goes_through : names of such steps that may be a parallelogram or a kite
-    inclined : names of guides on links that may lie at an angle to their link's line of pins
-    between : names of ground pins and guides whose distance from the crank's pivot may lie between two floats
-    meshed : names of wheels whose teeth push, at a pressure angle
-    plain : whether the rows keep the names of the dyad's own machine; for a topology of one step
-    """
-
-    topology: Topology
-    turned: frozenset[str] = frozenset()
-    goes_through: frozenset[str] = frozenset()
-    inclined: frozenset[str] = frozenset()
-    between: frozenset[str] = frozenset()
-    meshed: frozenset[str] = frozenset()
-    plain: bool = False
 
 
 class Motion:
@@ -99,6 +54,7 @@ class Motion:
 
     _place_RPP = slides.place_RPP
     _place_PRP = slides.place_PRP
+    _place_RPR = lines.place_RPR
     _place_Gear = gears.place_Gear
 
     # ------------------------------------------------------------------------------------------------ names
@@ -165,9 +121,9 @@ class Motion:
 
     def turn(self, side: Side, line: Vector, ratio: float) -> None:
         """Add rows of a link that turns at a steady ratio to the crank, by the direction of its line of pins."""
-        self._link(side.role, Frame(side.pin, line, (1.0, 0.0, 0.0, 0.0)), {side.pin}, (ratio, 0.0))
+        self.link(side.role, Frame(side.pin, line, (1.0, 0.0, 0.0, 0.0)), {side.pin}, (ratio, 0.0))
 
-    def _link(self, role: str, frame: Frame, placed: set[str], turning: tuple[Source, Source] | None = None) -> None:
+    def link(self, role: str, frame: Frame, placed: set[str], turning: tuple[Source, Source] | None = None) -> None:
         """Add rows of a link that a dyad has placed: its rotation, its other pins, its work; and its body."""
         k, first = self.number(role), self.topology.links[role][0]
         ratio, slope = turning or (f"ratio{k}", f"slope{k}")
@@ -296,7 +252,7 @@ class Motion:
     def _side_link(self, side: Side, pin: str) -> None:
         """Add rows of a link from a known pin to the pin that its dyad finds; a strut is no body."""
         if side.role not in self.topology.struts:
-            self._link(side.role, self._frame(side, pin), {side.pin, pin})
+            self.link(side.role, self._frame(side, pin), {side.pin, pin})
 
     def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
         """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
@@ -428,53 +384,3 @@ class Motion:
         self.row(pins.turned_with_low_words, turned, *full(f"quotient_{guide}_"), *frame.vector)
         self.certain |= dict.fromkeys(turned, 1.0)
         return numbers | dict(zip(words, turned, strict=True))
-
-    def _place_RPR(self, step: RPR) -> None:
-        link, block, k = step.link, step.block, self.number(step.link.role)
-        special, slider = self.on_crank_and_ground(step), step.block or step.link.role
-        line, exact, pushed = xy(f"line{k}"), full(f"exact_line{k}"), f"push_{slider}_{step.pin}"
-        numbers = {} if self.plain else self._offset(step) | {"friction": f"{step.guide}_friction"}
-        self._link(link.role, Frame(link.pin, exact, direction_of(step.guide)), {link.pin})
-        self._line_of_pins(step, line)
-        if block:
-            self.slider(block, step.pin, {"guide_cos": line[0], "guide_sin": line[1]}, link.role)
-        self.close(
-            step,
-            rpr.on_crank_and_ground(step.name in self.shape.turned) if special else rpr.between_pins(),
-            rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN,
-            rpr.FOUND,
-            {} if self.plain else frame_of("ground", link.pin),
-            numbers | self.pin("B", step.pin) | self.pin("D", link.pin) | of_link(4, k),
-            self.load(4, k, f"L{k}_{link.pin}"),
-            self.load(3, self.number(block), f"L{self.number(block)}") if block else NOTHING,
-            dict(zip(full("line_"), exact, strict=True)),
-            {"r3x": line[0], "r3y": line[1]},
-            {} if self.plain else block_sliding_of(slider),
-            of_force("F43", f"line_force_{slider}"),
-            of_force("F32", pushed),
-            of_force("F14", f"hold_{link.role}"),
-        )
-        self.measure(step, f"acute angle between the line {link.pin}-{step.pin} and the normal of the {link.role}")
-        motion = ("slide", "slide_velocity", "slide_acceleration")
-        self.slides_of(step, slider, motion, f"{link.role}'s line", f"the foot of {link.pin} on it")
-
-    def _line_of_pins(self, step: RPR, line: Vector) -> None:
-        """Add rows of a link's axes from the direction of its guide."""
-        role, k = step.link.role, self.number(step.link.role)
-        if step.guide not in self.shape.inclined:
-            self.row(planar.along, xy(f"r{k}"), f"{role}_length", *line)
-            return
-        second = self.topology.links[role][1]
-        self.row(pins.quotient, full(f"quotient{k}_{second}"), *self.own(role, second), *direction_of(step.guide))
-        self.row(pins.turned, xy(f"r{k}"), *xy(f"quotient{k}_{second}"), *line)
-        self.certain |= dict.fromkeys(xy(f"quotient{k}_{second}"), f"{role}_length")
-
-    def _offset(self, step: RPR) -> dict[str, Source]:
-        """Return the names of the guide's offset from the known pin of its link."""
-        offset = (f"{step.guide}_offset", f"{step.guide}_offset_lo")
-        own = self.own(step.link.role, step.link.pin)
-        if own != ORIGIN:
-            from_pin = (f"offset_{step.name}", f"offset_{step.name}_lo")
-            self.row(pins.offset_from, from_pin, *offset, *direction_of(step.guide), *own)
-            offset = from_pin
-        return dict(zip(("offset", "offset_lo"), offset, strict=True))
