@@ -1,0 +1,43 @@
+"""Random linkages of every topology of the stress test, swept for every quantity without compiling."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from long import long_but
+
+import linksweep as ls
+from benchmarks.speed.kernel import way
+from benchmarks.stress.linkages.scene import scene_of
+from benchmarks.stress.linkages.scenes import drawn
+from benchmarks.stress.linkages.topologies import TODAY
+from linksweep.scene.parameters import replaced
+
+FIRST = ("pins in other orders", "Whitworth", "shaper with two slides", "held cylinder")
+random_linkages = pytest.mark.parametrize("name", long_but(TODAY, *FIRST))
+unwarned = pytest.mark.filterwarnings("ignore:held.length")
+
+
+def random_case(name: str, designs: int = 2) -> tuple[ls.Scene, np.ndarray]:
+    """Return linkages along "design" with loads, and the crank angle at which they are away from toggles."""
+    linkages = drawn(TODAY[name], np.random.default_rng([len(name), 7]), designs).assembly.linkages
+    return scene_of(linkages), np.array([linkages.theta2])
+
+
+def swept(scene: ls.Scene, theta2, names=()) -> xr.Dataset:
+    """Return all quantities but the condition number, which LAPACK computes; by position along theta2."""
+    every = [name for name in scene.table.quantity if name not in ("cond", "theta2")]
+    with way("interpreted"):
+        return ls.sweep(scene, theta2, of=names or every).drop_vars("theta2")
+
+
+def changed(scene: ls.Scene, change) -> ls.Scene:
+    """Return a scene with every number changed by its path and kind."""
+    numbers = {path: change(path, value, kind) for path, (value, kind) in scene.numbers.items() if value is not None}
+    return replaced(scene, numbers)
+
+
+def assert_equal(result: xr.Dataset, expected: xr.Dataset) -> None:
+    """Equal values, where one may depend on fewer dims."""
+    assert set(result.data_vars) == set(expected.data_vars)
+    for name in expected.data_vars:
+        np.testing.assert_array_equal(*xr.broadcast(result[name], expected[name]), err_msg=str(name))
