@@ -10,7 +10,7 @@ import linksweep as ls
 from linksweep.scene.examples import names
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-LISTED = re.search(r"\*\*Examples\.\*\* (.*?):\n", README, re.DOTALL).group(1)
+LISTED = re.search(r"\*\*Examples\*\* (.*?):\n", README, re.DOTALL).group(1)
 
 
 @pytest.fixture(autouse=True)

@@ -98,7 +98,7 @@ def gear_rows(motion: Motion) -> Rows:
 def teeth_quantities(motion: Motion, names: Mapping[int, str]) -> list[Quantity]:
     """Return the quantities of the forces that teeth pass on."""
     numbers = [motion.number(role) for role in motion.topology.gears if role in motion.shape.meshed]
-    return [quantity for k in numbers for quantity in pin_force_quantities(k, 2, "of the teeth", names)]
+    return [quantity for k in numbers for quantity in pin_force_quantities(k, 2, "the teeth", names)]
 
 
 def add_gears(topology: Topology, meshed: frozenset[str], rows: list[Equation], k: int) -> None:

@@ -208,11 +208,11 @@ def pin_force_rows(i: int, j: int) -> list[Row | Total]:
     ]
 
 
-def pin_force_quantities(i: int, j: int, pin: str, links: Mapping[int, str]) -> list[Quantity]:
-    """Return the force of link i on link j, and its reaction, as quantities."""
+def pin_force_quantities(i: int, j: int, at: str, links: Mapping[int, str]) -> list[Quantity]:
+    """Return the force of link i on link j at a place such as "pin B", and its reaction, as quantities."""
     quantities = []
     for a, b in ((i, j), (j, i)):
-        name, place = force_name(a, b), f"of link {a} ({links[a]}) on link {b} ({links[b]}) at pin {pin}"
+        name, place = force_name(a, b), f"of link {a} ({links[a]}) on link {b} ({links[b]}) at {at}"
         quantities += [
             Quantity(f"{name}x", "N", f"force {place}, component along x (positive to the right)"),
             Quantity(f"{name}y", "N", f"force {place}, component along y (positive upwards)"),
