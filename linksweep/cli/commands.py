@@ -23,10 +23,10 @@ from linksweep.analysis.pins.bearings import FRAMES, bearings
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
+from linksweep.chains.between_links import force_name
 from linksweep.cli import summaries
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import load_scene
-from linksweep.mechanisms.between_links import force_name
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels

@@ -10,7 +10,7 @@ import numpy as np
 
 from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import Number
-from linksweep.mechanisms.between_links import force_name, is_pin, pair_of
+from linksweep.chains.between_links import force_name, is_pin, pair_of
 
 Points = dict[str, np.ndarray]
 

@@ -10,21 +10,21 @@ import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number, is_lazy
+from linksweep.chains.chain import Own
+from linksweep.chains.rows import bodies
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment, on_crank
-from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import four_bar_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
-from linksweep.mechanisms.rows import bodies
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
-from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.strokes import Stroke, rocker_stroke
-from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rrr, freudenstein

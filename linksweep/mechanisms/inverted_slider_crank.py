@@ -11,21 +11,21 @@ import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
+from linksweep.chains.chain import Own
+from linksweep.chains.rows.bodies import Equation, Source, arm_rows, drive_torque, newton_euler_equations
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment
-from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import inverted_slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import reach_problems, register
-from linksweep.mechanisms.rows.bodies import Equation, Source, arm_rows, drive_torque, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
-from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.mechanisms.strokes import Stroke, block_stroke
-from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import inverted_slider_crank

@@ -14,9 +14,11 @@ from linksweep.base.fields import POLAR_POINT, PairField, declared, field_proble
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
-from linksweep.mechanisms.chain.drawing import LinkageDrawing
-from linksweep.mechanisms.chain.shape import Shape
+from linksweep.chains.rows.crank import BRANCH, turned
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Topology, topology
 from linksweep.mechanisms.drawing import Drawing
+from linksweep.mechanisms.linkage_drawing import LinkageDrawing
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
@@ -43,8 +45,6 @@ from linksweep.mechanisms.links import (
 )
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
-from linksweep.mechanisms.rows.crank import BRANCH, turned
-from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Topology, topology
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
 NONE = record(GROUND_PIN, {})

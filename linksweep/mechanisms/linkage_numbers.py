@@ -13,9 +13,9 @@ import numpy as np
 
 from linksweep.base.degrees import cos_sin, cos_sin_low_words
 from linksweep.base.validate import Number
+from linksweep.chains.rows.crank import BRANCH_SIGN, frame_parameters
 from linksweep.engine.run import Field
 from linksweep.mechanisms.links import Cylinder, Gears, Guide, Slider, cg_parameters
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, frame_parameters
 from linksweep.physics.algebra.double_double import Pair, divide, dot, multiply, ordered_sum, two_product, two_sum
 
 Numbers = dict[str, Any]

@@ -9,14 +9,14 @@ from typing import Any, ClassVar
 
 from linksweep.base.fields import parameter
 from linksweep.base.validate import Number
+from linksweep.chains.rows.bodies import Equation
+from linksweep.chains.rows.crank import OverDesigns, between_rows, straight_rows
+from linksweep.chains.rows.load_forms import Form
 from linksweep.engine.quantity import Quantity, Row, Table, Total
 from linksweep.mechanisms.drawing import Track
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.limits.loop_track_limits import events, lap
 from linksweep.mechanisms.mechanism import Mechanism, register
-from linksweep.mechanisms.rows.bodies import Equation
-from linksweep.mechanisms.rows.crank import OverDesigns, between_rows, straight_rows
-from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.physics import loop_track
 from linksweep.physics.algebra import planar
 

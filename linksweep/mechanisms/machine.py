@@ -8,17 +8,17 @@ from functools import cached_property
 from typing import ClassVar
 
 from linksweep.base.validate import refuse
+from linksweep.chains.between_links import force_name
+from linksweep.chains.chain import Chain, Own, chain, table
+from linksweep.chains.equations import equations
+from linksweep.chains.rows.bodies import Body, Equation
+from linksweep.chains.rows.crank import STATUS_OF_SLIDER
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.rows.pins import Journals, Pins
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import GROUND, Topology
 from linksweep.engine.quantity import Table
-from linksweep.mechanisms.between_links import force_name
-from linksweep.mechanisms.chain.chain import Chain, Own, chain, table
-from linksweep.mechanisms.chain.equations import equations
-from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.mechanism import Mechanism
-from linksweep.mechanisms.rows.bodies import Body, Equation
-from linksweep.mechanisms.rows.crank import STATUS_OF_SLIDER
-from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals, Pins
-from linksweep.mechanisms.topology import GROUND, Topology
 
 
 @dataclass(frozen=True, eq=False, repr=False)

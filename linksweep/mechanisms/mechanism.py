@@ -13,6 +13,10 @@ import numpy as np
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
 from linksweep.base.validate import Number, refuse
+from linksweep.chains.rows.bodies import Body, Equation
+from linksweep.chains.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.rows.pins import Journals, Pins
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Field
 from linksweep.mechanisms.balance import MassDistribution, distribution
@@ -20,10 +24,6 @@ from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import links_of, with_distribution
-from linksweep.mechanisms.rows.bodies import Body, Equation
-from linksweep.mechanisms.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
-from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals, Pins
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.physics.closures.freudenstein import PositionEquation
 

@@ -12,10 +12,15 @@ import numpy as np
 from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
+from linksweep.chains.chain import Own
+from linksweep.chains.rows.bodies import Equation, drive_torque, newton_euler_equations
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, in_range, turned
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.rows.pins import Journals
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
-from linksweep.mechanisms.chain.chain import Own
-from linksweep.mechanisms.chain.shape import Shape
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits
@@ -23,12 +28,7 @@ from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import reach_problems, register
-from linksweep.mechanisms.rows.bodies import Equation, drive_torque, newton_euler_equations
-from linksweep.mechanisms.rows.crank import BRANCH, BRANCH_SIGN, between_rows, in_range, turned
-from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.pins import Journals
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
-from linksweep.mechanisms.topology import Topology, topology_of
 from linksweep.physics import advantage, coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import slider_crank

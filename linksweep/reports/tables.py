@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.between_links import is_pin
+from linksweep.chains.between_links import is_pin
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
 

@@ -10,8 +10,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.chains.between_links import force_name
 from linksweep.engine.run import Field, Grid
-from linksweep.mechanisms.between_links import force_name
 from linksweep.results.compute import (
     angles_of,
     blank,

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from linksweep.base.conversion import to_float64
 from linksweep.base.validate import choice_problems, count_problems, refuse
+from linksweep.chains.rows.bodies import Equation
 from linksweep.engine.run import Field, Grid
-from linksweep.mechanisms.rows.bodies import Equation
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
 from linksweep.results.dataset import index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory

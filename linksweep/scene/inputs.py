@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from linksweep.chains.rows.crank import OverDesigns
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
-from linksweep.mechanisms.rows.crank import OverDesigns
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.grid import NAMES as GRID_ROWS
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from linksweep.mechanisms.between_links import force_name, is_pin, name_between, pair_of, reaction
+from linksweep.chains.between_links import force_name, is_pin, name_between, pair_of, reaction
 from linksweep.plot.kit.designs import in_words
 from linksweep.reports import markup
 

@@ -13,7 +13,7 @@ from linksweep.base.checked_number import array_unit_problems, checked_number
 from linksweep.base.conversion import all_to_float64, to_float64
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
-from linksweep.mechanisms.between_links import pair_of
+from linksweep.chains.between_links import pair_of
 from linksweep.results.compute import require
 from linksweep.results.dataset import with_units
 from linksweep.results.over_time import mean_over_time

@@ -13,7 +13,7 @@ from linksweep.analysis.pins.bearing_life import UNBOUNDED, rotation_under_load
 from linksweep.analysis.pins.main_bearings import main_bearings
 from linksweep.base.memory import require_memory
 from linksweep.base.validate import count_problems, quote, refuse
-from linksweep.mechanisms.between_links import force_name
+from linksweep.chains.between_links import force_name
 from linksweep.results.compute import angles_missing, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dataset import joined, with_units

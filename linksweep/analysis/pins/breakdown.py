@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import count_problems, refuse
-from linksweep.mechanisms.between_links import pair_of
+from linksweep.chains.between_links import pair_of
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined

@@ -20,7 +20,7 @@ import xarray as xr
 
 from linksweep.analysis.pins.bearing import Bearing, checked_pins
 from linksweep.base.validate import Number, count_problems, refuse
-from linksweep.mechanisms.between_links import force_name
+from linksweep.chains.between_links import force_name
 from linksweep.physics.bearing import friction_circle
 from linksweep.results.dataset import flags, joined, with_units
 from linksweep.results.sweep import sweep

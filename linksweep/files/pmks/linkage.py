@@ -6,13 +6,13 @@ import math
 from typing import Any
 
 from linksweep.base.validate import refuse
+from linksweep.chains.topology import RPR, RRP, RRR, Step, Topology, topology
 from linksweep.files.pmks.axes import Axes, along, polar
 from linksweep.files.pmks.drawing import Point
 from linksweep.files.pmks.machines import Machine
 from linksweep.files.pmks.words import Words
 from linksweep.mechanisms.linkage import Linkage
 from linksweep.mechanisms.links import Cylinder, Guide, Link, Slider
-from linksweep.mechanisms.topology import RPR, RRP, RRR, Step, Topology, topology
 
 
 def words_of(machine: Machine) -> Words:

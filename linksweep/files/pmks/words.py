@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from keyword import iskeyword
 
+from linksweep.chains.topology.problems import RESERVED
 from linksweep.files.pmks.axes import Axes, Polar, polar
 from linksweep.files.pmks.drawing import Body, Joint, Point
 from linksweep.files.pmks.machines import Machine
-from linksweep.mechanisms.topology.problems import RESERVED
 
 BESIDE = 1e-3
 """Distance of a cylinder's pin from its line, relative to its length, that a drawing's rounding explains."""

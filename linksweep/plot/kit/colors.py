@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linksweep.mechanisms.between_links import pair_of
+from linksweep.chains.between_links import pair_of
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"

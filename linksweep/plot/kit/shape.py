@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.degrees import cos_sin
-from linksweep.mechanisms.between_links import is_pin
+from linksweep.chains.between_links import is_pin
 from linksweep.mechanisms.drawing import Drawing, Frame
 from linksweep.plot.kit import signals
 from linksweep.results.sweep import sweep

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.mechanisms.between_links import pair_of, reaction
+from linksweep.chains.between_links import pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
 

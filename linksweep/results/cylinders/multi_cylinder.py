@@ -19,8 +19,8 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Rule, is_array, name_problems, number_problems, quote, refuse
+from linksweep.chains.between_links import force_name
 from linksweep.engine.quantity import Quantity
-from linksweep.mechanisms.between_links import force_name
 from linksweep.mechanisms.capabilities import lack
 from linksweep.results.compute import either, requested
 from linksweep.results.cylinders.cylinder_sums import (

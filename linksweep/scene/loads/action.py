@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems
 from linksweep.base.validate import Number
+from linksweep.chains.rows.load_forms import Form
 from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.rows.load_forms import Form
 from linksweep.scene.revolution import Revolution
 
 Kind = TypeVar("Kind", bound="type[Action]")

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from linksweep.base.validate import choice_problems
-from linksweep.mechanisms.rows.bodies import Source
-from linksweep.mechanisms.rows.load_forms import Form
+from linksweep.chains.rows.bodies import Source
+from linksweep.chains.rows.load_forms import Form
 
 GROUND = "ground"
 Pair = tuple[Source, Source]

@@ -14,10 +14,10 @@ from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems
 from linksweep.base.frozen import with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
+from linksweep.chains.rows.bodies import Body
+from linksweep.chains.rows.load_forms import Acting, Form
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.rows.bodies import Body
-from linksweep.mechanisms.rows.load_forms import Acting, Form
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.physics.algebra import planar
 from linksweep.scene.curves.over_position import KINDS as POSITION_KINDS

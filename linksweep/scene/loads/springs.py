@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, FieldKind, ListField, NumberField, field_problems, of_kind, parameter
 from linksweep.base.validate import Number, Rule
+from linksweep.chains.rows.bodies import Body, Source, xy
+from linksweep.chains.rows.load_forms import Acting
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.rows.bodies import Body, Source, xy
-from linksweep.mechanisms.rows.load_forms import Acting
 from linksweep.physics import springs
 from linksweep.physics.algebra import planar
 from linksweep.scene.loads.action import Action, register

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import field_problems, parameter, word
 from linksweep.base.validate import Number
+from linksweep.chains.rows.bodies import Body
+from linksweep.chains.rows.load_forms import Acting
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms import Mechanism
-from linksweep.mechanisms.rows.bodies import Body
-from linksweep.mechanisms.rows.load_forms import Acting
 from linksweep.physics import springs
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import degrees

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from linksweep.mechanisms.topology import GROUND, PRP, RPP, RPR, RRP, RRR, Gear, Side, topology
+from linksweep.chains.topology import GROUND, PRP, RPP, RPR, RRP, RRR, Gear, Side, topology
 
 SLIDE = (("slide", GROUND),)
 FOUR_BAR = "crank A-B, rod B-C, rocker D-C"

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from linksweep.chains.rows.bodies import Body
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.rows.bodies import Body
 
 
 class Acting(NamedTuple):

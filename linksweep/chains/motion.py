@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 
-from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.chain import cylinders, gears, lines, slides
-from linksweep.mechanisms.chain.shape import ORIGIN, Arm, Frame, Shape
-from linksweep.mechanisms.dyads import rrp, rrr
-from linksweep.mechanisms.dyads.names import (
+from linksweep.chains import cylinders, gears, lines, slides
+from linksweep.chains.dyads import rrp, rrr
+from linksweep.chains.dyads.names import (
     Names,
     Vector,
     direction_of,
@@ -24,9 +22,11 @@ from linksweep.mechanisms.dyads.names import (
     of_pin,
     sliding_of,
 )
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
-from linksweep.mechanisms.topology import GROUND, RPR, RRP, RRR, Side, Step
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.rows.bodies import CRANK, Body, Source, crank_pin_rows, xy
+from linksweep.chains.shape import ORIGIN, Arm, Frame, Shape
+from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Side, Step
+from linksweep.engine.quantity import Quantity, Row
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.rows.bodies import Source
+from linksweep.chains.topology import GROUND, PRP, RPP, RPR, RRP, RRR, Step, Topology
 from linksweep.engine.quantity import Limit, Quantity, Row
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows.bodies import Source
-from linksweep.mechanisms.topology import GROUND, PRP, RPP, RPR, RRP, RRR, Step, Topology
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import NOISE

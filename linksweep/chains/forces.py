@@ -10,17 +10,17 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 
+from linksweep.chains import cylinders, gears, lines, slides
+from linksweep.chains.between_links import name_between
+from linksweep.chains.drives import Drive
+from linksweep.chains.dyads import rrp, rrr
+from linksweep.chains.dyads.names import Slide
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.equations import Contact
+from linksweep.chains.motion import Motion
+from linksweep.chains.rows.bodies import Source, xy
+from linksweep.chains.topology import GROUND, RRP, RRR, Side
 from linksweep.engine.quantity import Row, Total
-from linksweep.mechanisms.between_links import name_between
-from linksweep.mechanisms.chain import cylinders, gears, lines, slides
-from linksweep.mechanisms.chain.drives import Drive
-from linksweep.mechanisms.chain.equations import Contact
-from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.dyads import rrp, rrr
-from linksweep.mechanisms.dyads.names import Slide
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows.bodies import Source, xy
-from linksweep.mechanisms.topology import GROUND, RRP, RRR, Side
 from linksweep.physics.algebra import planar
 
 

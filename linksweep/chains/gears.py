@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.dyads.names import Names, full
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.rows.bodies import Equation, Source, pin_force_quantities, pin_force_rows, xy
+from linksweep.chains.topology import Gear, Topology
 from linksweep.engine.quantity import Quantity, Row
-from linksweep.mechanisms.between_links import force_name, name_between
-from linksweep.mechanisms.dyads.names import Names, full
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows.bodies import Equation, Source, pin_force_quantities, pin_force_rows, xy
-from linksweep.mechanisms.topology import Gear, Topology
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import gears, pins
 
 if TYPE_CHECKING:
-    from linksweep.mechanisms.chain.forces import Forces
-    from linksweep.mechanisms.chain.motion import Motion
+    from linksweep.chains.forces import Forces
+    from linksweep.chains.motion import Motion
 
 Vector = tuple[Source, ...]
 

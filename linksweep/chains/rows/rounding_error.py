@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from linksweep.chains.between_links import force_name
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.engine.trace import rounding
 from linksweep.engine.trace.graph import Node
-from linksweep.mechanisms.between_links import force_name
 
 EXACT = {"omega2", "alpha2", "gravity_x", "gravity_y", "offset", "friction", "branch_sign", "slider_mass", "block_mass"}
 """Inputs that reach the physics unrounded, as do lengths; others, such as cosines, have been rounded."""

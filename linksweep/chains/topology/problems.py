@@ -9,8 +9,8 @@ from itertools import combinations
 from keyword import iskeyword
 
 from linksweep.base.validate import did_you_mean
-from linksweep.mechanisms.topology.text import RATIO, Part
-from linksweep.mechanisms.topology.topology import GROUND, Topology
+from linksweep.chains.topology.text import RATIO, Part
+from linksweep.chains.topology.topology import GROUND, Topology
 
 RESERVED = {
     *(GROUND, "links", "points", "guides", "branch", "gears", "self", "type"),

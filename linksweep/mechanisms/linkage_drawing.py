@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.chains.topology import GROUND, Topology
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Points, Rail, direction
 from linksweep.mechanisms.links import Guide
-from linksweep.mechanisms.topology import GROUND, Topology
 
 Wheels = list[tuple[str, float]]
 

@@ -6,10 +6,10 @@ of B along the slot from C. The guide's force on the slider has a moment about C
 
 from __future__ import annotations
 
+from linksweep.chains.dyads.names import Slide, full
+from linksweep.chains.dyads.rrp import GUIDE, rates, slider_rows
+from linksweep.chains.dyads.rrr import Rows
 from linksweep.engine.quantity import Limit, Row
-from linksweep.mechanisms.dyads.names import Slide, full
-from linksweep.mechanisms.dyads.rrp import GUIDE, rates, slider_rows
-from linksweep.mechanisms.dyads.rrr import Rows
 from linksweep.physics import coulomb
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rpp, moving_guide, pins, slider_crank

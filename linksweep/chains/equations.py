@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.gears import add_gears
+from linksweep.chains.motion import Motion
+from linksweep.chains.rows.bodies import Equation, Source, newton_euler_equations, xy
+from linksweep.chains.topology import Topology
 from linksweep.engine.quantity import Row
-from linksweep.mechanisms.between_links import force_name, name_between
-from linksweep.mechanisms.chain.gears import add_gears
-from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows.bodies import Equation, Source, newton_euler_equations, xy
-from linksweep.mechanisms.topology import Topology
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import inverted_slider_crank
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from linksweep.mechanisms.dyads.names import Vector
-from linksweep.mechanisms.rows.bodies import Source
-from linksweep.mechanisms.topology import Topology
+from linksweep.chains.dyads.names import Vector
+from linksweep.chains.rows.bodies import Source
+from linksweep.chains.topology import Topology
 
 ORIGIN = (0.0, 0.0, 0.0, 0.0)
 

@@ -5,10 +5,10 @@ O and P are the origins of the guides' axes. Each guide's force on its slider ha
 
 from __future__ import annotations
 
+from linksweep.chains.dyads.names import Slide, full
+from linksweep.chains.dyads.rrp import GUIDE, rates, slider_rows
+from linksweep.chains.dyads.rrr import Certain, Rows
 from linksweep.engine.quantity import Limit, Row
-from linksweep.mechanisms.dyads.names import Slide, full
-from linksweep.mechanisms.dyads.rrp import GUIDE, rates, slider_rows
-from linksweep.mechanisms.dyads.rrr import Certain, Rows
 from linksweep.physics import coulomb
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_prp, dyad_rpp, moving_guide, pins, slider_crank

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
-from linksweep.mechanisms.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
+from linksweep.chains.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
 
 GROUND = "ground"
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linksweep.chains.rows.bodies import Source, xy
+from linksweep.chains.topology import Side
 from linksweep.engine.quantity import Quantity
-from linksweep.mechanisms.rows.bodies import Source, xy
-from linksweep.mechanisms.topology import Side
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import cylinder
 
 if TYPE_CHECKING:
-    from linksweep.mechanisms.chain.forces import Forces
-    from linksweep.mechanisms.chain.motion import Motion
+    from linksweep.chains.forces import Forces
+    from linksweep.chains.motion import Motion
 
 
 def place_cylinder(motion: Motion, role: str) -> None:

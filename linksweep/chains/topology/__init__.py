@@ -9,8 +9,8 @@ import re
 from fractions import Fraction
 from functools import lru_cache
 
-from linksweep.mechanisms.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
-from linksweep.mechanisms.topology.problems import (
+from linksweep.chains.topology.dyads import PRP, RPP, RPR, RRP, RRR, Gear, Side, Step
+from linksweep.chains.topology.problems import (
     closure_problems,
     crank_problems,
     gear_problems,
@@ -19,8 +19,8 @@ from linksweep.mechanisms.topology.problems import (
     part_problems,
     pin_problems,
 )
-from linksweep.mechanisms.topology.text import RATIO, Part, read
-from linksweep.mechanisms.topology.topology import GROUND, Topology
+from linksweep.chains.topology.text import RATIO, Part, read
+from linksweep.chains.topology.topology import GROUND, Topology
 
 __all__ = ["GROUND", "PRP", "RPP", "RPR", "RRP", "RRR", "Gear", "Side", "Step", "Topology", "topology", "topology_of"]
 

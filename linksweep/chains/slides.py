@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from linksweep.chains.dyads import prp, rpp
+from linksweep.chains.dyads.names import of_force, of_link, of_pin, sliding_of
+from linksweep.chains.rows.bodies import Source
+from linksweep.chains.topology import PRP, RPP, Side
 from linksweep.engine.quantity import Quantity
-from linksweep.mechanisms.dyads import prp, rpp
-from linksweep.mechanisms.dyads.names import of_force, of_link, of_pin, sliding_of
-from linksweep.mechanisms.rows.bodies import Source
-from linksweep.mechanisms.topology import PRP, RPP, Side
 
 if TYPE_CHECKING:
-    from linksweep.mechanisms.chain.forces import Forces
-    from linksweep.mechanisms.chain.motion import Motion
+    from linksweep.chains.forces import Forces
+    from linksweep.chains.motion import Motion
 
 
 def place_RPP(motion: Motion, step: RPP) -> None:

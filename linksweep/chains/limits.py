@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from linksweep.chains.dyads import prp, rpp, rpr, rrp, rrr
+from linksweep.chains.dyads.names import Names
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.motion import Motion
+from linksweep.chains.topology import PRP, RPP, RPR, RRP, RRR, Step
 from linksweep.engine.quantity import Limit
-from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.dyads import prp, rpp, rpr, rrp, rrr
-from linksweep.mechanisms.dyads.names import Names
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.topology import PRP, RPP, RPR, RRP, RRR, Step
 
 TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE, PRP: prp.TOGGLE}
 """Limit of each dyad that does not close everywhere, in its own names."""

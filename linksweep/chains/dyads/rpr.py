@@ -4,10 +4,10 @@ rocker 4 about the known pin D, whose line passes B; `offset` is the line's from
 
 from __future__ import annotations
 
+from linksweep.chains.dyads.names import Slide, full
+from linksweep.chains.dyads.rrr import Certain, Rows
+from linksweep.chains.rows.crank import near_toggle_rows, straight_rows
 from linksweep.engine.quantity import Limit, Row
-from linksweep.mechanisms.dyads.names import Slide, full
-from linksweep.mechanisms.dyads.rrr import Certain, Rows
-from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rpr, inverted_slider_crank, moving_guide, pins

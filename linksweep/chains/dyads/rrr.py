@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from linksweep.chains.dyads.names import full
+from linksweep.chains.rows.bodies import Source
+from linksweep.chains.rows.crank import near_toggle_rows, straight_rows
 from linksweep.engine.quantity import Limit, Row, Total
-from linksweep.mechanisms.dyads.names import full
-from linksweep.mechanisms.rows.bodies import Source
-from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle, dyad_rrr, four_bar, pins

@@ -6,22 +6,22 @@ from collections.abc import Collection
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.cylinders import force_quantity
+from linksweep.chains.drives import Drive, friction_problems
+from linksweep.chains.dyads.rrr import Rows
+from linksweep.chains.equations import arm_rows, contact_rows, cylinder_rows, has_moment
+from linksweep.chains.forces import Forces
+from linksweep.chains.gears import gear_rows, teeth_quantities, torque_name
+from linksweep.chains.limits import limits
+from linksweep.chains.motion import Motion
+from linksweep.chains.rows import bodies
+from linksweep.chains.rows.bodies import Source, xy
+from linksweep.chains.rows.load_forms import Form
+from linksweep.chains.rows.whole_machine import machine_quantities, machine_rows, power_rows
+from linksweep.chains.shape import Shape
+from linksweep.chains.topology import GROUND
 from linksweep.engine.quantity import Quantity, Row, Table, Total
-from linksweep.mechanisms.between_links import force_name, name_between
-from linksweep.mechanisms.chain.cylinders import force_quantity
-from linksweep.mechanisms.chain.drives import Drive, friction_problems
-from linksweep.mechanisms.chain.equations import arm_rows, contact_rows, cylinder_rows, has_moment
-from linksweep.mechanisms.chain.forces import Forces
-from linksweep.mechanisms.chain.gears import gear_rows, teeth_quantities, torque_name
-from linksweep.mechanisms.chain.limits import limits
-from linksweep.mechanisms.chain.motion import Motion
-from linksweep.mechanisms.chain.shape import Shape
-from linksweep.mechanisms.dyads.rrr import Rows
-from linksweep.mechanisms.rows import bodies
-from linksweep.mechanisms.rows.bodies import Source, xy
-from linksweep.mechanisms.rows.load_forms import Form
-from linksweep.mechanisms.rows.whole_machine import machine_quantities, machine_rows, power_rows
-from linksweep.mechanisms.topology import GROUND
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import chain as chains
 from linksweep.physics.closures import crank_angle

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from linksweep.chains.between_links import force_name, pair_of
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.between_links import force_name, pair_of
 from linksweep.physics import crank_driven, inertia, reduced_inertia, shaking
 from linksweep.physics.algebra import planar
 

@@ -5,10 +5,10 @@ The guide is on the ground or on a link that has its place: O is the origin of i
 
 from __future__ import annotations
 
+from linksweep.chains.dyads.names import Slide, full
+from linksweep.chains.dyads.rrr import Certain, Rows
+from linksweep.chains.rows.crank import near_toggle_rows, straight_rows
 from linksweep.engine.quantity import Limit, Row
-from linksweep.mechanisms.dyads.names import Slide, full
-from linksweep.mechanisms.dyads.rrr import Certain, Rows
-from linksweep.mechanisms.rows.crank import near_toggle_rows, straight_rows
 from linksweep.physics import coulomb, crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import dyad_rrp, moving_guide, pins, slider_crank

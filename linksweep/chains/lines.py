@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linksweep.mechanisms.chain.shape import ORIGIN, Frame
-from linksweep.mechanisms.dyads import rpr
-from linksweep.mechanisms.dyads.names import (
+from linksweep.chains.dyads import rpr
+from linksweep.chains.dyads.names import (
     NOTHING,
     Vector,
     block_sliding_of,
@@ -16,14 +15,15 @@ from linksweep.mechanisms.dyads.names import (
     of_force,
     of_link,
 )
-from linksweep.mechanisms.rows.bodies import Source, xy
-from linksweep.mechanisms.topology import RPR, Side
+from linksweep.chains.rows.bodies import Source, xy
+from linksweep.chains.shape import ORIGIN, Frame
+from linksweep.chains.topology import RPR, Side
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import pins
 
 if TYPE_CHECKING:
-    from linksweep.mechanisms.chain.forces import Forces
-    from linksweep.mechanisms.chain.motion import Motion
+    from linksweep.chains.forces import Forces
+    from linksweep.chains.motion import Motion
 
 
 def place_RPR(motion: Motion, step: RPR) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from linksweep.chains.rows import rounding_error
+from linksweep.chains.rows.bodies import Body, motion_quantities, pin_force_quantities, pin_force_rows
+from linksweep.chains.rows.load_forms import Form, action_powers, action_quantities, action_rows
+from linksweep.chains.rows.pins import Pins, pin_quantities, pin_rows
 from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.rows import rounding_error
-from linksweep.mechanisms.rows.bodies import Body, motion_quantities, pin_force_quantities, pin_force_rows
-from linksweep.mechanisms.rows.load_forms import Form, action_powers, action_quantities, action_rows
-from linksweep.mechanisms.rows.pins import Pins, pin_quantities, pin_rows
 from linksweep.physics import power, reduced_inertia
 from linksweep.physics.algebra import planar
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from linksweep.chains.rows.bodies import Source
 from linksweep.engine.quantity import Row, Total
-from linksweep.mechanisms.rows.bodies import Source
 
 OF_THE_CRANK = {
     *("cos2", "cos2_lo", "sin2", "sin2_lo", "omega2", "alpha2", "gravity_x", "gravity_y", "r2x", "r2y"),

@@ -1,1 +1,0 @@
-"""Rows of a machine made of a crank and dyads: its motion, its forces, its square system of equations."""
