@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from linksweep.chains import cylinders, gears, lines, slides
 from linksweep.chains.between_links import name_between
-from linksweep.chains.drives import Drive
+from linksweep.chains.drives import Drive, steps_that_bear
 from linksweep.chains.dyads import rrp, rrr
 from linksweep.chains.dyads.names import Slide
 from linksweep.chains.dyads.rrr import Rows
@@ -37,8 +37,10 @@ class Forces:
         self.work: list[str] = []
         self.hung: dict[str, list[tuple[str, str]]] = defaultdict(list)
         self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
+        self.frictionless = frozenset[str]()  # friction that depended on the drive, whose work it enters, is refused
         if drive and not drive.is_crank:
             self._drive(drive)
+            self.frictionless = frozenset(step.name for step in steps_that_bear(self.topology, drive.roles))
         for step in reversed(self.topology.steps):
             getattr(self, f"_force_{type(step).__name__}")(step)
         self._crank()
@@ -105,9 +107,10 @@ class Forces:
     def rub(self, name: str, ratio: str, friction: str = "friction_force", power: str = "friction_power") -> None:
         """Add the work of a slide's friction, and the power that it loses."""
         names = self.motion.names[name]
-        self.row(planar.product, (f"work_of_{names[friction]}",), names[ratio], names[friction])
-        self.work.append(f"work_of_{names[friction]}")
         self.losses.append(str(names[power]))
+        if name not in self.frictionless:
+            self.row(planar.product, (f"work_of_{names[friction]}",), names[ratio], names[friction])
+            self.work.append(f"work_of_{names[friction]}")
 
     def act(self, role: str) -> None:
         """Add up all that acts on a link: force E, and moment L about its first pin; nothing acts on a strut."""
