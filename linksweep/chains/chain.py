@@ -187,7 +187,7 @@ class Chain:
         if self.motion.plain:
             return []
         i, j = self.topology.slides[slide]
-        force, place = force_name(i, j), f"of link {i} ({self.names[i]}) on link {j} ({self.names[j]}) at {slide}"
+        force, place = force_name(i, j), f"of link {i} ({self.names[i]}) on link {j} ({self.names[j]}) at the {slide}"
         moment = Quantity(name_between("T", i, j), "N m", f"moment {place}, about the slider's pin, counter-clockwise")
         return [
             Quantity(f"{force}n", "N", f"force {place}, component across the guide, positive to its left"),

@@ -40,7 +40,8 @@ def machine_quantities(bodies: Bodies, joints: Pins, links: Mapping[int, str], l
     for body in bodies:
         quantities += motion_quantities(body)
     for joint, (i, j) in joints.items():
-        quantities += pin_force_quantities(i, j, f"pin {joint}", links)
+        is_pin = joint[0].isupper()
+        quantities += pin_force_quantities(i, j, f"pin {joint}" if is_pin else f"the {joint}", links)
     return quantities + pin_quantities(joints, links) + action_quantities(loads)
 
 
