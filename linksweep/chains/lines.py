@@ -40,7 +40,7 @@ def place_RPR(motion: Motion, step: RPR) -> None:
         step,
         rpr.on_crank_and_ground(step.name in motion.shape.turned) if special else rpr.between_pins(),
         rpr.CERTAIN_ON_CRANK if special else rpr.CERTAIN,
-        rpr.FOUND,
+        rpr.CERTAIN_BEYOND,
         {} if motion.plain else frame_of("ground", link.pin),
         numbers | motion.pin("B", step.pin) | motion.pin("D", link.pin) | of_link(4, k),
         motion.load(4, k, f"L{k}_{link.pin}"),

@@ -187,7 +187,7 @@ class Motion:
             self.row(crank_driven.angular_acceleration, (f"a{pin}{axis}",), "omega2", "alpha2", u, f"{u}_slope")
 
     def _arm(self, side: Side, pin: str) -> Arm:
-        """Return a dyad's link from its known pin to the pin that is found, and add rows that make its axes of it."""
+        """Return a dyad's link from its known pin to the pin that it places, and add rows that make its axes of it."""
         if side.role in self.topology.struts:
             return Arm(f"r_{side.role}", f"{side.role}_length", 0.0)
         role, k = side.role, self.number(side.role)
@@ -207,7 +207,7 @@ class Motion:
         return Arm(f"s{k}", f"{role}_arm", f"{role}_arm_lo")
 
     def _frame(self, side: Side, pin: str) -> Frame:
-        """Return how a dyad places its link: from the known pin to the pin that is found."""
+        """Return how a dyad places its link: from its known pin to the pin where the dyad closes."""
         k = self.number(side.role)
         self.row(pins.between, full(f"placed{k}"), *self.place(pin), *self.place(side.pin))
         own = full(f"own_frame{k}")
@@ -219,7 +219,7 @@ class Motion:
         step: Step,
         rows: Rows,
         certain: Mapping[str, Source],
-        of_found_pin: Mapping[str, Source],
+        certain_beyond: Mapping[str, Source],
         *listed: Mapping[str, Source],
     ) -> None:
         """Add the rows of a dyad under their names in this machine."""
@@ -227,7 +227,7 @@ class Motion:
         branch = {} if self.plain else {"branch_sign": f"branch_{step.name}"}
         self.names[step.name] = names = Names("" if self.plain else f"_{step.name}", crank, branch, *listed)
         self.rows += names.placed(rows)
-        for numbers in [certain] if self.plain else [certain, of_found_pin]:
+        for numbers in [certain] if self.plain else [certain, certain_beyond]:
             self.certain |= {str(names[name]): names.of(unit) for name, unit in numbers.items()}
 
     def measure(self, step: Step, words: str) -> None:
@@ -309,7 +309,7 @@ class Motion:
             step,
             rows if special else rrr.between_pins(),
             rrr.CERTAIN_ON_CRANK if special else rrr.CERTAIN,
-            rrr.FOUND,
+            rrr.CERTAIN_BEYOND,
             self._swapped(step) if swapped else {},
             {} if self.plain else frame_of("ground", rocker.pin),
             self.pin("B", coupler.pin) | self.pin("D", rocker.pin) | of_pin("C", X),
@@ -336,7 +336,7 @@ class Motion:
             step,
             rrp.on_crank_and_ground(step.name in self.shape.turned) if special else rrp.between_pin_and_guide(),
             rrp.CERTAIN_ON_CRANK if special else rrp.CERTAIN,
-            rrp.FOUND,
+            rrp.CERTAIN_BEYOND,
             self.on_guide(step.guide, guide),
             self.pin("B", rod.pin) | of_pin("C", X),
             self._side(3, "rod", rod, arm) | of_link(4, k) | self.load(4, k, f"L{k}"),

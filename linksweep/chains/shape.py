@@ -20,7 +20,7 @@ class Frame(NamedTuple):
 
 
 class Arm(NamedTuple):
-    """A link of a dyad from its known pin to the pin that is found: stem of the vector, and its length."""
+    """A link of a dyad from its known pin to the pin that it places: stem of the vector, and its length."""
 
     stem: str
     length: str

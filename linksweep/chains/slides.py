@@ -63,7 +63,7 @@ def place_PRP(motion: Motion, step: PRP) -> None:
         step,
         prp.between_guides(),
         prp.CERTAIN,
-        prp.FOUND,
+        prp.CERTAIN_BEYOND,
         motion.on_guide(step.first_guide, guides[0]),
         second_of(motion.on_guide(step.second_guide, guides[1], "P")),
         of_pin("C", X) | sliding_of("slider", first) | sliding_of("second", second),

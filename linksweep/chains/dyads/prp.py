@@ -21,7 +21,7 @@ CERTAIN: Certain = {
     "gap": "size",
     "second_gap": "size",
 }
-FOUND: Certain = {"Cx_lo": "size", "Cy_lo": "size"}
+CERTAIN_BEYOND: Certain = {"Cx_lo": "size", "Cy_lo": "size"}
 TOGGLE = Limit("C", ("low",), ("low_noise",))
 """Limit of the dyad's motion: where the guides are parallel."""
 WEDGED = Limit("C", ("grip",), ("low_noise",), "pole")

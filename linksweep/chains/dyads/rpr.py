@@ -14,7 +14,7 @@ from linksweep.physics.closures import dyad_rpr, inverted_slider_crank, moving_g
 
 CERTAIN_ON_CRANK: Certain = dict.fromkeys(("psi_cos", "psi_cos_lo", "psi_sin", "slide_cosine", "psi_versine"), 1.0)
 CERTAIN: Certain = {"slide_squared": "reach"}
-FOUND: Certain = dict.fromkeys(full("line_"), 1.0)
+CERTAIN_BEYOND: Certain = dict.fromkeys(full("line_"), 1.0)
 TOGGLE = Limit("rocker", ("slide_squared",), ("noise",))
 """Limit of the dyad's motion."""
 SLIDE = Limit("rocker", ("grip",), ("noise",), "pole"), Limit("rocker", ("slide_leverage",), ("noise",), "jump")

@@ -18,7 +18,7 @@ CERTAIN_ON_CRANK: Certain = {
     **dict.fromkeys(("low", "high"), "crank_length"),
 }
 CERTAIN: Certain = {"low": "rod_length", "high": "rod_length", "rod_across": "rod_length"}
-FOUND: Certain = {"Cx_lo": "rod_length", "Cy_lo": "rod_length"}
+CERTAIN_BEYOND: Certain = {"Cx_lo": "rod_length", "Cy_lo": "rod_length"}
 TOGGLE = Limit("C", ("low", "high"), ("low_noise", "high_noise"))
 """Limit of the dyad's motion."""
 SLIDE = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")

@@ -21,8 +21,8 @@ CERTAIN_ON_CRANK: Certain = {
 """Names of the numbers made in double-double on crank and ground, with their errors in those of a cosine."""
 CERTAIN: Certain = {"low": "reach", "high": "reach"}
 """Likewise between any two pins."""
-FOUND: Certain = {"Cx_lo": "coupler_length", "Cy_lo": "coupler_length"}
-"""Likewise of the pin that is found."""
+CERTAIN_BEYOND: Certain = {"Cx_lo": "coupler_length", "Cy_lo": "coupler_length"}
+"""Likewise of the pin on which dyads beyond may close."""
 CLOSED = (
     *("r3x", "r3y", "r4x", "r4y", "inverse_r4_cross_r3"),
     *("along3", "along4", "across", "inverse_2ff", "half_inverse_root"),
