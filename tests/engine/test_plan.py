@@ -7,7 +7,9 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.engine.quantity import Row, Table
 from linksweep.engine.trace.plan import Plan, plan
+from linksweep.physics.algebra import planar
 
 KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
@@ -203,3 +205,9 @@ def test_all_unknown_names_are_named_at_once():
 def test_torque_of_another_drive_is_no_output():
     with pytest.raises(ValueError, match="T13"):
         ls.sweep(scene(), of="T13")
+
+
+def test_a_table_that_makes_a_name_of_itself_is_refused():
+    circle = (Row(planar.opposite, ("a",), ("b",)), Row(planar.opposite, ("b",), ("a",)))
+    with pytest.raises(ValueError, match="makes a of itself"):
+        plan(Table("theta2", circle), ("a",), ())

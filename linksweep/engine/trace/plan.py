@@ -87,7 +87,10 @@ InputForms = tuple[tuple[str, tuple[str, ...] | float], ...]
 
 @lru_cache(maxsize=256)
 def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
-    """Trace `request` through `table`, starting from `inputs`; KeyError for a name that no row makes."""
+    """Trace `request` through `table`, starting from `inputs`.
+
+    Raises KeyError for a name that no row makes, and ValueError for one that is made of itself.
+    """
     graph = Graph()
     values: dict[str, Node] = {
         name: graph.constant(form) if isinstance(form, float) else graph.input(name, form) for name, form in inputs
@@ -103,7 +106,7 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
 
 def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_by: dict[str, range]) -> None:
     """Trace the row that makes a name, after the rows that make its inputs: a chain of links may be a long way."""
-    waiting = [name]
+    waiting, opened = [name], set[str]()
     while waiting:
         if waiting[-1] in values:
             waiting.pop()
@@ -111,6 +114,9 @@ def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_
         row: Row | Total = table.maker[waiting[-1]]
         missing = [source for source in row.wiring if isinstance(source, str) and source not in values]
         if missing:
+            if waiting[-1] in opened:
+                raise ValueError(f"the table makes {waiting[-1]} of itself")
+            opened.add(waiting[-1])
             waiting.extend(reversed(missing))
             continue
         before = len(graph.nodes)
