@@ -83,7 +83,7 @@ def _sampled(scene: Scene) -> Scene:
 
 def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
     """Return a row of the table; a slider or a block has its numbers in the mechanism itself."""
-    link = getattr(mechanism, role, None)
+    link = mechanism.parts.get(role)
     owner, prefix = (mechanism, f"{role}_") if link is None else (link, "")
     values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
     sizes = ("" if value is None else quantity(value, kind) for kind, value in values.items())

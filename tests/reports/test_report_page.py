@@ -367,3 +367,9 @@ def test_command_line(undrawn, capsys):
     assert main(["report", "car <1>.toml", "-o", "report.pdf"]) == 2
     assert capsys.readouterr().err.startswith("linksweep: report.pdf: its ending must be .html or .htm")
     assert sorted(path.name for path in Path().iterdir()) == ["car <1>.toml", "half.html", "report.html"]
+
+
+def test_a_link_may_have_the_name_of_a_method_of_the_machine():
+    with undrawn_figures():
+        report = Page(page(ls.example("drag-link-press")))
+    assert [text for text, _ in report.rows("Machine")["4 driven"]][:2] == ["115\u202fmm", "60\u202fkg"]

@@ -151,7 +151,9 @@ def _held_twice(topology: Topology) -> Iterator[str]:
 def _loose(topology: Topology) -> Iterator[str]:
     for role in (role for role in topology.waiting if role in topology.roles):
         if topology.freedoms([role], [other for other in (GROUND, *topology.roles) if other != role]) > 0:
-            yield f"links: {role} hangs loose: hold it by another link, or leave it out"
+            alone = [pin for pin in topology.pins_of(role) if topology.members[pin] == (role,)]
+            end = f"its pin {' or '.join(alone)}" if alone else "it"
+            yield f"links: {role} hangs loose: hold {end} by another link or on the ground, or leave {role} out"
 
 
 def _inseparable(topology: Topology, roles: list[str]) -> list[str]:

@@ -203,7 +203,10 @@ def test_stephenson_2_closes_by_no_dyads_from_either_crank(links, ground, names)
     assert problems(links, ground, hosts) == [line]
 
 
-LOOSE = "hangs loose: hold it by another link, or leave it out"
+def loose(role: str, end: str) -> str:
+    return f"links: {role} hangs loose: hold {end} by another link or on the ground, or leave {role} out"
+
+
 HELD = "is held by one joint too many: leave out one of its pins or slides, or the link"
 STUCK = "links: no degree of freedom: nothing can move; one link less, or one pin less on a link"
 FREE = "links: 2 degrees of freedom: one more crank, or one link less"
@@ -212,7 +215,7 @@ FREE = "links: 2 degrees of freedom: one more crank, or one link less"
 @pytest.mark.parametrize(
     ("links", "lines"),
     [
-        (f"{FOUR_BAR}, bar C-E", [FREE, f"links: bar {LOOSE}"]),
+        (f"{FOUR_BAR}, bar C-E", [FREE, loose("bar", "its pin E")]),
         (f"{FOUR_BAR}, rod2 B-C", [STUCK, f"links: rod2 {HELD}"]),
         (f"{FOUR_BAR}, bar B-D", [STUCK, f"links: bar {HELD}"]),
         (
@@ -224,12 +227,15 @@ FREE = "links: 2 degrees of freedom: one more crank, or one link less"
             f"{FOUR_BAR}, plate B-D-E, bar C-E",
             [f"links: 2 constraints too many: {STUCK.partition('freedom: ')[2]}", f"links: plate {HELD}"],
         ),
-        (f"{FOUR_BAR}, bar B-D, rod2 C-E", [f"links: bar {HELD}", f"links: rod2 {LOOSE}"]),
+        (f"{FOUR_BAR}, bar B-D, rod2 C-E", [f"links: bar {HELD}", loose("rod2", "its pin E")]),
         (
             "crank A-B, b B-C, c C-E, d D-E",
             [FREE, "links: b, c, d can move while the crank stands: hold one by another link"],
         ),
-        (f"{FOUR_BAR}, bar P-Q", ["links: 4 degrees of freedom: 3 more cranks, or fewer links", f"links: bar {LOOSE}"]),
+        (
+            f"{FOUR_BAR}, bar P-Q",
+            ["links: 4 degrees of freedom: 3 more cranks, or fewer links", loose("bar", "its pin P or Q")],
+        ),
     ],
 )
 def test_wrong_mobility(links, lines):
@@ -386,6 +392,6 @@ def test_all_problems_are_stated_at_once():
         'links: "sliide", on which ram slides, is neither a guide nor a link; did you mean "slide"?',
         "guides.slide: nothing slides on it: leave it out",
         "links: 6 degrees of freedom: 5 more cranks, or fewer links",
-        f"links: bar {LOOSE}",
-        f"links: ram {LOOSE}",
+        loose("bar", "its pin E"),
+        loose("ram", "its pin F"),
     ]
