@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
@@ -18,9 +18,10 @@ from linksweep.chains.shape import Shape
 from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment, on_crank
-from linksweep.mechanisms.drawing import Drawing, Frame, ground_pins
+from linksweep.mechanisms.drawing import Drawing, ground_pins
 from linksweep.mechanisms.limits import four_bar_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.linkage_drawing import drawing_of
 from linksweep.mechanisms.links import LINK, AnyLink, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
@@ -80,18 +81,7 @@ class FourBar(Machine):
     position_equation: ClassVar[PositionEquation | None] = freudenstein.POSITION_EQUATION
     topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Four-bar"
-    drawing: ClassVar[Drawing] = Drawing(
-        joints=TOPOLOGY.pins,
-        journals=TOPOLOGY.journals,
-        frames={
-            2: Frame("crank, A→B", "theta2"),
-            3: Frame("coupler, B→C", "theta3"),
-            4: Frame("rocker, D→C", "theta4"),
-        },
-        bars={2: ("A", "B"), 3: ("B", "C"), 4: ("D", "C")},
-        moving=("B", "C"),
-        fixed=ground_pins,
-    )
+    drawing: ClassVar[Drawing] = replace(drawing_of(TOPOLOGY), fixed=ground_pins)
 
     def lengths(self) -> dict[str, Number]:
         """Return the lengths of the four links.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, NamedTuple
 
@@ -22,6 +22,7 @@ from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, ground_pins
 from linksweep.mechanisms.limits import inverted_slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.linkage_drawing import drawing_of
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import reach_problems, register
@@ -150,16 +151,15 @@ class InvertedSliderCrank(Machine):
     drives: ClassVar[dict[str, str]] = {word: drive.unknown.name for word, drive in DRIVES.items()}
     topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Inverted slider-crank"
-    drawing: ClassVar[Drawing] = Drawing(
+    drawing: ClassVar[Drawing] = replace(
+        drawing_of(TOPOLOGY),
         joints={"A": (1, 2), "B": (3, 2), "slide": (4, 3), "D": (1, 4)},
-        journals=TOPOLOGY.journals,
         frames={2: Frame("crank, A→B", "theta2"), 3: ROCKER, 4: ROCKER},
         bars={2: ("A", "B")},
         moving=("B",),
         fixed=ground_pins,
         carrier=Carrier("rocker", 4, "D"),
         blocks=(Block(3, "B", ROCKER, on=(4, "D")),),
-        acts_at={"slide": "B"},
         ideal={"friction": 0.0},
     )
 
@@ -262,10 +262,6 @@ class InvertedSliderCrank(Machine):
         a, d, e = self.lengths()
         near, far = (np.where(abs(e) < reach, 0.0, np.nan) for reach in (abs(d - a), d + a))
         return self.ground_angle + near, self.ground_angle + 180.0 + far
-
-    def kinks(self) -> tuple[str, ...]:
-        """Return the normal force: friction has a kink where it changes sides."""
-        return ("F43n",) if np.any(self.friction) else ()
 
     def always_ok(self, drive: str) -> bool:
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""

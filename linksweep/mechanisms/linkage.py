@@ -201,7 +201,7 @@ class Linkage(Machine):
     @cached_property
     def drawing(self) -> Drawing:  # type: ignore[override]
         """Linkage as plots draw it."""
-        return LinkageDrawing(self.topology, self.ground, self.guides, self.chain.joints).drawing()
+        return LinkageDrawing(self.topology, self.ground, self.guides).drawing()
 
     @property
     def sliders(self) -> tuple[str, ...]:  # type: ignore[override]

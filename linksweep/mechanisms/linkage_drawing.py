@@ -16,12 +16,11 @@ Wheels = list[tuple[str, float]]
 
 
 class LinkageDrawing(NamedTuple):
-    """Topology of a linkage, with the coordinates of its ground pins, its guides and its joints by name."""
+    """Topology of a linkage, with the coordinates of its ground pins, and its guides."""
 
     topology: Topology
     ground: Mapping[str, Any]
     guides: Mapping[str, Guide]
-    joints: Mapping[str, tuple[int, int]]
 
     def drawing(self) -> Drawing:
         """Return the linkage as plots draw it."""
@@ -32,7 +31,7 @@ class LinkageDrawing(NamedTuple):
         frames |= {joined.number(role): self._sides(guide) for role, (_, guide) in self._slides()}
         moving = [pin for pin in joined.members if pin not in joined.ground]
         return Drawing(
-            joints=self.joints,
+            joints={**joined.pins, **joined.slides},
             journals=joined.journals,
             frames=frames,
             bars=bars | slots,
@@ -113,3 +112,8 @@ class LinkageDrawing(NamedTuple):
             radius = distance / abs(1.0 - float(ratio)) if ratio != 1 else np.nan
             wheels += [(pivot, radius * abs(float(ratio))), (centre, radius)]
         return wheels
+
+
+def drawing_of(topology: Topology) -> Drawing:
+    """Return all that a drawing takes from the topology alone, its first pin at A, and no parameter set aside."""
+    return replace(LinkageDrawing(topology, {"A": (0.0, 0.0)}, {}).drawing(), ideal={})

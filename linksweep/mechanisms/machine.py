@@ -87,7 +87,7 @@ class Machine(Mechanism):
 
     def kinks(self) -> tuple[str, ...]:
         """Return the normal forces of slides, with which friction changes sides."""
-        return tuple(f"{force_name(*pair)}n" for pair in self.topology.slides.values()) if self.rubbing else ()
+        return tuple(f"{force_name(*pair)}n" for pair in self.topology.slides.values()) if self.rubs else ()
 
     def kinematics(self) -> tuple[str, ...]:
         return self.chain.kinematics

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
@@ -22,9 +22,10 @@ from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms.balance import first_moment, on_crank
 from linksweep.mechanisms.cylinder import PistonCylinder
-from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail, direction
+from linksweep.mechanisms.drawing import Block, Drawing, Frame, Rail, direction
 from linksweep.mechanisms.limits import slider_crank_limits as limits
 from linksweep.mechanisms.limits.finding import Checks
+from linksweep.mechanisms.linkage_drawing import drawing_of
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import reach_problems, register
@@ -38,7 +39,6 @@ DRIVES = {"crank": "T12", "coupler": "T13"}
 DRIVEN = {"crank": "omega2", "coupler": "omega3"}
 JOURNALS = {"A": 2, "B": 2, "C": 4}
 """As in engines: the crank carries crankshaft and crankpin, the piston the gudgeon pin; the rod has both its bushes."""
-JOINTS = {**TOPOLOGY.pins, **TOPOLOGY.slides}
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
 SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0}
@@ -117,15 +117,11 @@ class SliderCrank(Machine):
     balances_partly: ClassVar[bool] = True
     topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Slider-crank"
-    drawing: ClassVar[Drawing] = Drawing(
-        joints=JOINTS,
+    drawing: ClassVar[Drawing] = replace(
+        drawing_of(TOPOLOGY),
         journals=JOURNALS,
-        frames={2: Frame("crank, A→B", "theta2"), 3: Frame("rod, B→C", "theta3"), 4: GUIDE},
-        bars={2: ("A", "B"), 3: ("B", "C")},
-        moving=("B", "C"),
-        carrier=Carrier("rod", 3, "B"),
+        frames={**drawing_of(TOPOLOGY).frames, 4: GUIDE},
         blocks=(Block(4, "C", GUIDE, _guide),),
-        acts_at={"guide": "C"},
         ideal={"friction": 0.0},
     )
 

@@ -35,11 +35,6 @@ def rocker_balance(F43x: Number, F43y: Number, Q4x: Number, Q4y: Number) -> tupl
     return F43x - Q4x, F43y - Q4y
 
 
-def crank_balance(F32x: Number, F32y: Number, Q2x: Number, Q2y: Number) -> tuple[Number, Number]:
-    """Return F12, from F12 + F32 + Q2 = 0."""
-    return -F32x - Q2x, -F32y - Q2y
-
-
 def moment_on_crank(N2: Number, Q3x: Number, Q3y: Number, r2x: Number, r2y: Number) -> Number:
     """Return r2 × F43 where all torques on the crank are known: its moments about A, with F32 = F43 + Q3."""
     return -N2 - cross(r2x, r2y, Q3x, Q3y)

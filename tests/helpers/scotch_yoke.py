@@ -143,6 +143,11 @@ def work_on_crank(N2, Q4x, ratio_yoke):
     return N2 + ratio_yoke * Q4x
 
 
+def crank_balance(F42x, F42y, Q2x, Q2y):
+    """Return F12, from F12 + F42 + Q2 = 0."""
+    return -F42x - Q2x, -F42y - Q2y
+
+
 def moment_of_guide(N4, Q4x, r2y):
     """T14, from T14 + N4 + r2y·Q4x = 0 about C: the pin presses with −Q4x at the height r2y."""
     return -N4 - r2y * Q4x
@@ -164,7 +169,7 @@ def table(loads):
         Row(crank_driven.angular_acceleration, ("a_yoke",), ("omega2", "alpha2", "ratio_yoke", "slope_yoke")),
         Row(planar.vector_sum, ("F42x", "F42y"), (0.0, 0.0, "Q4x", 0.0)),
         Row(planar.difference, ("F14x", "F14y"), (0.0, 0.0, 0.0, "Q4y")),
-        Row(crank_driven.crank_balance, ("F12x", "F12y"), ("F42x", "F42y", "Q2x", "Q2y")),
+        Row(crank_balance, ("F12x", "F12y"), ("F42x", "F42y", "Q2x", "Q2y")),
         Row(moment_of_guide, ("T14",)),
         Row(work_on_crank, ("work",)),
         Row(planar.opposite, ("T12",), ("work",)),

@@ -137,21 +137,6 @@ def crank_pin_rows() -> list[Row | Total]:
     ]
 
 
-def on_crank_pin(number: int, role: str, ratio: Source, slope: Source) -> Body:
-    """Return a link whose first pin is the crank's pin B."""
-    return Body(
-        number,
-        role,
-        ("vBx", "vBy"),
-        ("aBx", "aBy"),
-        pin_position=("r2x", "r2y"),
-        ratio=ratio,
-        slope=slope,
-        pin_ratio=("uBx", "uBy"),
-        pin_slope=("uBx_slope", "uBy_slope"),
-    )
-
-
 @dataclass(frozen=True)
 class Equation:
     """A row of the textbook's square system: the coefficient of each unknown (a number, or ± a quantity), and the name

@@ -129,11 +129,6 @@ def cylinder_force(line_force: Number, friction_force: Number) -> Number:
     return line_force - friction_force
 
 
-def work_with_friction(work_of_loads: Number, ratio_slide: Number, friction_force: Number) -> Number:
-    """Return the virtual work of loads, weights, inertia forces and friction on the block, per radian of the crank."""
-    return work_of_loads + ratio_slide * friction_force
-
-
 def contact_direction(F43n: Number, direction: Number, r3x: Number, r3y: Number) -> tuple[Number, Number]:
     """Return the force on the block per unit normal force, with its friction: n − μ·sign(s')·sign(F43n)·u."""
     k = opposing(F43n, direction)
