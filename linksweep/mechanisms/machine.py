@@ -69,9 +69,6 @@ class Machine(Mechanism):
     def defaults(self) -> dict[str, str]:  # type: ignore[override]
         return {"drive": self.topology.crank}
 
-    def choices(self) -> dict[str, dict[str, str]]:
-        return {"drive": self.drives}
-
     def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         """Return a drive, and the rows of the machine's own."""
         return self.chain.own(drive, loads)

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linksweep.base.degrees import cos_sin_low_words
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
+from linksweep.chains.equations import equations
 from linksweep.chains.rows.bodies import Equation, drive_torque, newton_euler_equations
-from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, in_range, turned
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.rows.pins import Journals
 from linksweep.chains.shape import Shape
@@ -131,15 +131,11 @@ class SliderCrank(Machine):
         return reach_problems(e, a, b, "crank + rod")
 
     def parameters(self) -> dict[str, Any]:
-        guide_cos, guide_sin, cos_lo, sin_lo = cos_sin_low_words(self.slide_angle)
         numbers: dict[str, Any] = {
             "offset": self.offset,
             "friction": self.friction,
             "slider_mass": self.slider_mass,
-            "guide_cos": guide_cos,
-            "guide_sin": guide_sin,
-            "guide_cos_lo": cos_lo,
-            "guide_sin_lo": sin_lo,
+            **frame_parameters("guide", self.slide_angle),
             "branch_sign": self.branch_sign,
             **cg_parameters("slider", self.slider_cg_distance, self.slider_cg_angle),
         }
@@ -178,12 +174,9 @@ class SliderCrank(Machine):
 
     def _newton_euler(self, drive: str) -> tuple[Equation, ...]:
         """Return the three rows of each link; the guide's moment T14 is about C."""
-        torque = {drive: self.drives[drive]}.get
-        return (
-            *newton_euler_equations(2, {"F12": (1.0, "R12"), "F32": (1.0, "R32")}, torque("crank")),
-            *newton_euler_equations(3, {"F32": (-1.0, "R23"), "F43": (1.0, "R43")}, torque("coupler")),
-            *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"),
-        )
+        driven = "rod" if drive == "coupler" else drive
+        crank_and_rod = equations(TOPOLOGY, {driven: self.drives[drive]})[:6]
+        return (*crank_and_rod, *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"))
 
     @property
     def _lengths(self) -> tuple[Number, Number, Number]:
