@@ -100,7 +100,9 @@ def check_lines(ds: xr.Dataset) -> list[str]:
         lines = ((str(name).replace("_", " "), _summary(ds[name])) for name in others)
     else:
         lines = (*(_of_a_batch(ds) if ds.arc_start.ndim > 1 else _of_one(ds)), *_of_acceleration(ds))
-    return [f"{title + ':':<26}{text}" for title, text in (*lines, *_of_splines(ds))]
+    lines = (*lines, *_of_splines(ds))
+    width = max(26, *(len(f"{title}: ") for title, _ in lines))
+    return [f"{title + ':':<{width}}{text}" for title, text in lines]
 
 
 def _of_splines(ds: xr.Dataset) -> Iterator[tuple[str, str]]:

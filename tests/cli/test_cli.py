@@ -204,6 +204,14 @@ def test_check_of_a_rocker_prints_its_limits(capsys):
     assert text["at theta2 from"] == f"{mirrored:.4f}° to {stretched + 360.0:.4f}°"
 
 
+def test_check_of_a_linkage_keeps_titles_and_values_apart(capsys):
+    ls.save(ls.example("watt-2"), "watt.toml")
+    assert main(["check", "watt.toml"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert all(re.fullmatch(r"[a-z ]+: +\S.*", line) for line in lines)
+    assert len({re.search(r": +", line).end() for line in lines}) == 1
+
+
 def test_check_counts_the_designs_of_a_batch(capsys):
     assert main(["check", scene_file("batch.toml", *BATCH)]) == 0
     assert capsys.readouterr().out.splitlines() == [
