@@ -66,7 +66,7 @@ def force_strut(forces: Forces, side: Side, pin: str, push: str) -> None:
 
 
 def drive_by_cylinder(forces: Forces, role: str) -> None:
-    """Add rows of the force of a driving cylinder on its pins, and hang it."""
+    """Add rows of the force of a driving cylinder on its pins, and apply it to their links."""
     P, Q = forces.topology.cylinders[role]
     forces.row(planar.along, xy(f"push_{role}_{Q}"), f"force_{role}", *xy(f"axis_{role}"))
     forces.opposite(f"push_{role}_{P}", f"push_{role}_{Q}")

@@ -1,7 +1,7 @@
 """Drives of a machine of dyads other than the crank: any link on a ground pin, and any cylinder that follows.
 
-Torque or force follow from the virtual work of all that acts on the links. It is hung on the driven links before their
-dyads' forces are computed; the torque that the crank then needs is zero.
+Torque or force follow from the virtual work of all that acts on the links. It is applied to the driven links before
+their dyads' forces are computed; the torque that the crank then needs is zero.
 """
 
 from __future__ import annotations

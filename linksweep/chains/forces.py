@@ -1,8 +1,8 @@
 """Forces of a machine made of a crank and dyads, from the last dyad back to the crank.
 
 The forces of a dyad follow from all that acts on its two links, the dyads beyond included: what these exert on their
-hosts is hung on them. No system of equations larger than a dyad's is solved. In the names of rows, `push_rod_B` is the
-force of the rod on pin B, and `hold_ram` the force of the guide, or of a pin, on the ram.
+hosts is applied to them. No system of equations larger than a dyad's is solved. In the names of rows, `push_rod_B` is
+the force of the rod on pin B, and `hold_ram` the force of the guide, or of a pin, on the ram.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Forces:
         self.powers: list[str] = []
         self.contacts: list[Contact] = []
         self.work: list[str] = []
-        self.hung: dict[str, list[tuple[str, str]]] = defaultdict(list)
+        self.applied: dict[str, list[tuple[str, str]]] = defaultdict(list)
         self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
         self.frictionless = frozenset[str]()  # friction that depended on the drive, whose work it enters, is refused
         if drive and not drive.is_crank:
@@ -90,11 +90,11 @@ class Forces:
         self.push(Side(role, pivot))
 
     def _drive(self, drive: Drive) -> None:
-        """Hang the torque or force of the drive."""
+        """Apply the torque or force of the drive to its links."""
         if drive.name in self.topology.cylinders:
             cylinders.drive_by_cylinder(self, drive.name)
         else:
-            self.hung[drive.name].append(("", drive.unknown.name))
+            self.applied[drive.name].append(("", drive.unknown.name))
 
     # ------------------------------------------------------------------------------------------------ actions
 
@@ -118,9 +118,9 @@ class Forces:
             return
         k = self.motion.number(role)
         for axis in "xy":
-            terms = (f"{force}{axis}" for force, _ in self.hung[role] if force)
+            terms = (f"{force}{axis}" for force, _ in self.applied[role] if force)
             self.rows.append(Total(f"E{k}{axis}", (f"Q{k}{axis}", *terms)))
-        self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.hung[role]))))
+        self.rows.append(Total(f"L{k}", (f"N{k}", *(moment for _, moment in self.applied[role]))))
 
     def act_about(self, side: Side) -> None:
         """Add up all that acts on a link, also its moment about a known pin."""
@@ -131,13 +131,13 @@ class Forces:
         self.row(planar.moment_about, (f"L{k}_{side.pin}",), f"L{k}", *arm, *xy(f"E{k}"))
 
     def push(self, side: Side) -> None:
-        """Hang a link's force on a pin, push_rod_B, on the link that supports the pin."""
+        """Apply the force of a link on a pin, push_rod_B, to the link that supports the pin."""
         push, host = f"push_{side.role}_{side.pin}", self.topology.support[side.pin]
         self.pushes[side.pin][side.role] = push
-        self.hang(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
+        self.apply(host, push, self.motion.arm(host, side.pin) if host != GROUND else (0.0, 0.0))
 
     def release(self, side: Side) -> None:
-        """Make the force on a pin of the force of the pin, and hang it."""
+        """Reverse the force of a pin on a link, and apply it to the link that supports the pin."""
         self.opposite(f"push_{side.role}_{side.pin}", f"hold_{side.role}")
         self.push(side)
 
@@ -145,16 +145,16 @@ class Forces:
         for axis in "xy":
             self.row(planar.opposite, (f"{stem}{axis}",), f"{of}{axis}")
 
-    def hang(self, host: str, force: str, arm: tuple[Source, Source], *moments: str) -> None:
-        """Let a force act on a link at an arm from its first pin, and further moments."""
+    def apply(self, host: str, force: str, arm: tuple[Source, Source], *moments: str) -> None:
+        """Apply a force to a link, at an arm from its first pin, and further moments."""
         if host == GROUND:
             return
         self.row(planar.cross, (f"moment_{force}",), *arm, *xy(force))
         self.rows.append(Total(f"moments_{force}", (f"moment_{force}", *moments)))
-        self.hung[host].append((force, f"moments_{force}"))
+        self.applied[host].append((force, f"moments_{force}"))
 
     def meet(self, one: str, other: str, pin: str) -> None:
-        """Name the force at the pin of a dyad, push_other_pin, also as that of the other link."""
+        """State the force between two links at a dyad's pin as a push of either: push_rod_C, push_rocker_C."""
         if self.topology.support[pin] == other:
             self.opposite(f"push_{one}_{pin}", f"push_{other}_{pin}")
             self.pushes[pin][one] = f"push_{one}_{pin}"
@@ -164,12 +164,12 @@ class Forces:
     def slide(
         self, slider: str, guide: str, hold: str, name: str, slide: Slide, arm: tuple[str, str] = ("OCx", "OCy")
     ) -> None:
-        """Hang the force of a slider on its guide, with the moment about its pin, at an arm from the guide's origin."""
+        """Apply a slider's force to its guide, at an arm from the guide's origin, with the moment about its pin."""
         host, names, react = self.topology.hosts[guide], self.motion.names[name], f"push_{slider}_{guide}"
         if host != GROUND:
             self.opposite(react, hold)
             self.row(planar.opposite, (f"react_{slider}",), names[slide.moment])
-            self.hang(host, react, (names[arm[0]], names[arm[1]]), f"react_{slider}")
+            self.apply(host, react, (names[arm[0]], names[arm[1]]), f"react_{slider}")
         self.between(host, slider, hold, name, slide)
 
     # ------------------------------------------------------------------------------------------------ joints

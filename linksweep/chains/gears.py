@@ -68,11 +68,11 @@ def force_Gear(forces: Forces, step: Gear) -> None:
         forces.row(gears.mesh_direction, xy(mesh), torque, *d, float(step.ratio), f"{role}_pressure_slope")
         forces.row(planar.along, xy(force), torque, *xy(mesh))
         forces.row(planar.difference, push, *xy(f"E{k}"), *xy(force))
-        forces.hung[topology.crank].append((force, torque))
+        forces.applied[topology.crank].append((force, torque))
     else:
         for axis, out in zip("xy", push, strict=True):
             forces.row(planar.identity, (out,), f"E{k}{axis}")
-        forces.hung[topology.crank].append(("", torque))
+        forces.applied[topology.crank].append(("", torque))
     forces.push(step.link)
 
 

@@ -39,7 +39,7 @@ class MassDistribution(NamedTuple):
         return self.mass, first * cos, first * sin, self.inertia + first * self.cg_distance
 
     def first_moment(self) -> Any:
-        """Return h of the module's equations."""
+        """Return the first moment about the first pin, h = m·(xG + i·yG) [kg m]."""
         _, x, y, _ = self.moments()
         return x + 1j * y
 
@@ -55,6 +55,6 @@ def first_moment(link: Any) -> Any:
 
 
 def on_crank(crank: Any, coupler: Any) -> Any:
-    """Return the coefficient of e^{iθ2} in the module's equations."""
+    """Return the first moment that turns with the crank, h2 + m3·a − h3·a/b [kg m]."""
     a, b = crank.length, coupler.length
     return first_moment(crank) + coupler.mass * a - first_moment(coupler) * (a / b)

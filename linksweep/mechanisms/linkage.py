@@ -154,7 +154,7 @@ class Linkage(Machine):
 
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
-        """Who is joined to whom, and the order in which the dyads close."""
+        """Links, pins and slides, and the order in which the dyads close."""
         joined, problems = self._topology_and_problems
         if joined is None or problems:
             raise ValueError("\n".join(problems))

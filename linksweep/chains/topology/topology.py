@@ -1,4 +1,4 @@
-"""Who is joined to whom in a linkage, and the order in which its dyads close."""
+"""Links, pins and slides of a linkage, and the order in which its dyads close."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ GROUND = "ground"
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Who is joined to whom.
+    """Links, pins and slides of a linkage.
 
     names : links, sliders and cylinders in the order of the text; the first is the crank
     ground : pins on the ground; the first is the crank's pivot
