@@ -20,7 +20,8 @@ SOUND = {"whole", "everywhere"}
 """Meanings of a flag that all is well: such a flag has a verdict."""
 KNOWN = {
     *("grashof", "rocker_motion", "assembly", "arc_start", "arc_end", "toggle_angle", "dead_centre_angle", "overshoot"),
-    *("transmission_angle_min", "swing", "time_ratio", "reversal_angle", "jam_angle", "friction_to_jam"),
+    *(f"transmission_angle_{end}{at}" for end in ("min", "max") for at in ("", "_at")),
+    *("swing", "time_ratio", "reversal_angle", "jam_angle", "friction_to_jam"),
     *("alpha2_difference", "alpha2_difference_at", "slide_at_dead_centre"),
 }
 """Findings that have a row of their own here, or in the table of the geometry."""
@@ -74,6 +75,8 @@ def _checks(results: Results) -> Iterator[Check]:
         if name in findings:
             yield _special(title, findings[name], results)
     yield from _transmission(results)
+    if "pin" in findings.coords and results.part is None:
+        yield from _transmission_of_pins(results)
     if "friction_to_jam" in findings:
         yield from _friction(results)
     if "alpha2_difference" in findings:
@@ -110,6 +113,17 @@ def _transmission(results: Results) -> Iterator[Check]:
     text = joined(ends[0], " to ", ends[1]) if most - least > 1e-9 else angle(least)
     sound = least >= LEAST_TRANSMISSION
     yield Check("transmission angle", joined(text, "" if sound else f", below {LEAST_TRANSMISSION:g}°"), sound)
+
+
+def _transmission_of_pins(results: Results) -> Iterator[Check]:
+    """Yield the least transmission angle of each pin of a linkage that its crank drives."""
+    if results.scene.drive != results.scene.mechanism.roles[0]:
+        return
+    least, at = (results.check[f"transmission_angle_min{end}"] for end in ("", "_at"))
+    for pin, value, where in zip(least.pin.values, least.values, at.values, strict=True):
+        if np.isfinite(value):
+            text = joined(angle(float(value)), " at ", angle(float(where)))
+            yield Check(f"least transmission angle of {pin}", text, float(value) >= LEAST_TRANSMISSION)
 
 
 def _friction(results: Results) -> Iterator[Check]:

@@ -373,3 +373,6 @@ def test_a_link_may_have_the_name_of_a_method_of_the_machine():
     with undrawn_figures():
         report = Page(page(ls.example("drag-link-press")))
     assert [text for text, _ in report.rows("Machine")["4 driven"]][:2] == ["115\u202fmm", "60\u202fkg"]
+    least = report.rows("Checks")["least transmission angle of C"][0][1][0]
+    assert least == pytest.approx(float(ls.check(ls.example("drag-link-press")).transmission_angle_min.sel(pin="C")))
+    assert "transmission angle max" not in report.rows("Checks")
