@@ -173,6 +173,8 @@ class Chain:
         if drive and standing:
             place = [k for k, step in enumerate(self.topology.steps, 1) if drive.name in step.roles]
             closures.append(((*place, 1)[0], "drive_status"))
+        if not closures + jams:  # a crank alone
+            return [Row(planar.identity, ("status",), (0.0,))]
         for n, (k, one) in reversed([*enumerate([*closures, *jams])]):
             out = ("status", "status_at") if n == 0 else (f"status_from_{n}", f"status_at_from_{n}")
             rows.append(Row(chains.first_failure, out, (one, float(k), status, at)))

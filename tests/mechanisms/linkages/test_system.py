@@ -63,3 +63,13 @@ def test_the_torque_stands_in_the_moments_of_the_driven_link(linkages):
         number = 2 + mechanism.roles.index(role)
         with_torque = [row.label for row in mechanism.equations(role) if torque in row.coefficients]
         assert with_torque == [f"sum M on {number} about G{number}"]
+
+
+def test_a_crank_alone_bears_its_centrifugal_force_and_its_weight():
+    crank = ls.Link(0.1, mass=2.0, inertia=0.01, cg_distance=0.05)
+    machine = ls.Linkage("crank A-B", ground={"A": (0.0, 0.0)}, crank=crank)
+    scene = ls.Scene(machine, omega2=10.0, gravity=(0.0, -9.81))
+    cycle = ls.sweep(scene, [0.0, 60.0, 90.0])
+    np.testing.assert_allclose(cycle.T12, 2.0 * 9.81 * 0.05 * np.array([1.0, 0.5, 0.0]), rtol=1e-15, atol=1e-15)
+    assert (cycle.status == 0).all()
+    np.testing.assert_allclose(ls.peaks(scene).F12_peak, 2.0 * (0.05 * 10.0**2 + 9.81), rtol=1e-12)
