@@ -28,7 +28,8 @@ def mirrored(scene: ls.Scene) -> ls.Scene:
     """Return the scene in a mirror that lies along x; a pin of two links then is on the other side of their line."""
 
     def number(path, value, kind):
-        return -value if TURNED.fullmatch(path) or TURNED_END.fullmatch(path) else value
+        turns = TURNED.fullmatch(path) or TURNED_END.fullmatch(path)
+        return -value if turns and not path.endswith("pressure_angle") else value
 
     other, machine = changed(scene, number), scene.mechanism
     of_two_links = [step.name for step in machine.topology.steps if type(step).__name__ == "RRR"]
@@ -162,6 +163,9 @@ def turned(scene: ls.Scene, angle: float) -> ls.Scene:
         if guide.of == "ground":
             vectors.append([f"guides.{name}.through[1]", f"guides.{name}.through[2]"])
             numbers[f"guides.{name}.angle"] = guide.angle + angle
+    for wheel, ratio in scene.mechanism.topology.gears.items():  # whose angle is the ratio times theta2, and the phase
+        if f"gears.{wheel}.phase" in numbers:
+            numbers[f"gears.{wheel}.phase"] = numbers[f"gears.{wheel}.phase"] + angle * (1.0 - float(ratio))
     for k, load in enumerate(scene.loads, 1):
         if isinstance(load, ls.Load) and load.frame == "ground" and load.force is not None:
             vectors.append([f"loads[{k}].force[1]", f"loads[{k}].force[2]"])
