@@ -19,7 +19,7 @@ CAPABILITIES = {
 
 
 COMPUTED = ("cylinder", "stroke_findings", "balancing_moments")
-"""Those of them that are computed from numbers: the class decides whether a machine has them."""
+"""Attributes of `CAPABILITIES` that are computed from numbers: the class decides whether a machine has them."""
 
 
 def offers(machine: Mechanism | type[Mechanism], capability: str) -> bool:

@@ -50,7 +50,7 @@ def crank_problems(crank: Part, ground: tuple[str, ...]) -> list[str]:
     if len(crank.pins) < 2 or crank.past or crank.mate:
         return [f"links: {crank.role} stands first: begin with the crank, a link such as crank A-B"]
     if not ground:
-        return [f"ground: no pin is given: begin with that of the crank, {crank.pins[0]}"]
+        return [f"ground: has no pin: begin with the pivot of the crank, {crank.pins[0]}"]
     if crank.pins[0] == ground[0]:
         return []
     return [

@@ -380,7 +380,7 @@ def test_guides_that_do_not_fit():
 
 
 def test_a_ground_without_pins():
-    assert problems(FOUR_BAR, "") == ["ground: no pin is given: begin with that of the crank, A"]
+    assert problems(FOUR_BAR, "") == ["ground: has no pin: begin with the pivot of the crank, A"]
 
 
 def test_all_problems_are_stated_at_once():
