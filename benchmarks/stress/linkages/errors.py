@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +12,10 @@ import xarray as xr
 
 import linksweep as ls
 from benchmarks.stress.decimals import Array, exactly, fifty_digits
-from benchmarks.stress.linkages.multibody import Solution
+from benchmarks.stress.linkages.multibody import Solution, solve
 from benchmarks.stress.linkages.results import Results, named
 from benchmarks.stress.linkages.scene import scene_of
+from benchmarks.stress.linkages.scenes import chosen
 
 KINDS = {
     "force": r"F\d.*|force_.*",
@@ -28,6 +30,8 @@ KINDS = {
 """Kinds of results by their names."""
 LEAST = 1e-17
 """Bound that every machine has."""
+LARGE = 2e-12
+"""Error of forces above which the effect of a last digit of the lengths is computed, to compare."""
 OF_THE_SCENE = {"theta2", "omega2", "alpha2"}
 """Results of the reference that are parameters."""
 
@@ -37,7 +41,9 @@ class Errors(NamedTuple):
     the results of the reference that linksweep does not have.
 
     Each number's error is relative to the largest of its kind in the machine: forces and torques to the largest force,
-    and it times the longest length. `over_bound` is the largest force's over `bound`, which is `error_bound`.
+    and it times the longest length. `over_bound` is the largest force's over `bound`, which is `error_bound`;
+    `over_digit`, where it is above `LARGE`, over the change of the exact forces when the lengths of all links change by
+    their last digit.
     """
 
     designs: int
@@ -45,6 +51,7 @@ class Errors(NamedTuple):
     torque: Array
     motion: Array
     over_bound: Array
+    over_digit: Array
     bound: Array
     power: Array
     wrong: int
@@ -67,7 +74,25 @@ def errors_of(solution: Solution) -> Errors:
     wrong = int((status != solution.status).sum() + none.sum())
     missing = frozenset(exact.keys() - {*names} - OF_THE_SCENE)
     over_bound = force / np.maximum(bound, LEAST)
-    return Errors(len(ok), force, torque, motion, over_bound, bound, np.abs(power), wrong, missing)
+    over_digit = np.zeros_like(force)
+    large = force > LARGE
+    if large.any():
+        over_digit[large] = force[large] / effect_of_a_digit(solution, np.flatnonzero(ok)[large])
+    return Errors(len(ok), force, torque, motion, over_bound, over_digit, bound, np.abs(power), wrong, missing)
+
+
+def effect_of_a_digit(solution: Solution, designs: Array) -> Array:
+    """Return the change of the exact forces, relative to the largest, when each length changes by its last digit: the
+    sum of the changes that each length causes alone."""
+    linkages = chosen(solution.assembly.linkages, designs)
+    exact = named(solve(linkages))
+    change = np.zeros(len(designs))
+    for role, part in linkages.parts.items():
+        if "length" in part:
+            longer = {**part, "length": np.nextafter(part["length"], np.inf)}
+            changed = named(solve(replace(linkages, parts={**linkages.parts, role: longer})))
+            change += _largest({name: _difference(changed[name], exact[name]) for name in exact}, {"force"})
+    return change / _scales(exact)["force"]
 
 
 def kind(name: str) -> str:
@@ -84,6 +109,11 @@ def _error(name: str, values: Array, exact: Results) -> Array:
     with fifty_digits():
         error = abs(exactly(values) - exact[name]).astype(float)
     return np.radians(np.minimum(error, np.abs(360.0 - error))) if kind(name) == "angle" else error
+
+
+def _difference(first: Array, second: Array) -> Array:
+    with fifty_digits():
+        return abs(first - second).astype(float)
 
 
 def _largest(errors: Mapping[str, Array], kinds: set[str]) -> Array:
