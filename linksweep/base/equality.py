@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from linksweep.base.fields import converted_fields, declared, has_fields
-from linksweep.base.frozen import normalise
+from linksweep.base.frozen import field_values, normalise
 from linksweep.base.validate import is_array
 
 
@@ -22,6 +22,10 @@ class ByContent:
 
     def __hash__(self) -> int:
         return hash(content(self))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the fields alone for copies and pickles, without results cached in the object."""
+        return field_values(self)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(self._own_words())})"

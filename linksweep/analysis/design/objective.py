@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -191,7 +192,8 @@ def objective(
     if not isinstance(target, str) and not callable(target):
         refuse([f"{path} = {quote(target)}: must be a name, or a function of the Dataset of peaks"])
     names = _names(scene, target, constraint, None if of is None else list(of))
-    ready = Objective(scene, ranges, _measure(target, path), constraint, names, options)
+    measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
+    ready = Objective(scene, ranges, measure, constraint, names, options)
     _try(ready, target, path)
     return ready
 
@@ -203,9 +205,9 @@ def _try(ready: Objective, target: Any, path: str) -> None:
     ready(np.array(ready.bounds))
 
 
-def _measure(target: Any, path: str) -> Measure:
-    sign = 1.0 if path == "minimize" else -1.0
-    return lambda results: sign * (results[target] if isinstance(target, str) else target(results))
+def _measured(target: str | Measure, sign: float, results: xr.Dataset) -> Any:
+    """Return the value of a target that is minimized. A function of the module, so that an objective is pickled."""
+    return sign * (results[target] if isinstance(target, str) else target(results))
 
 
 def _names(scene: Scene, target: Any, constraint: Measure | None, of: list[str] | None) -> list[str] | None:
