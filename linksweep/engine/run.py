@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.base.memory import require_memory
+from linksweep.base.product_low import product_low
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
@@ -45,6 +46,7 @@ OPERATORS = {
     "sqrt": np.sqrt,
     "atan2": np.arctan2,
     "where": np.where,
+    "product_low": product_low,
 }
 """Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
 

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
+from linksweep.base.product_low import product_low
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
 from linksweep.engine.peaks import find_peaks
@@ -24,7 +25,7 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | {"sqrt": np.sqrt, "math": math}
+        namespace = vars(reduce) | {"sqrt": np.sqrt, "math": math, "product_low": product_low}
         exec(source, namespace)
         return namespace["kernel"]
 

@@ -18,6 +18,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
+from linksweep.engine.kernel import fma
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -39,8 +40,10 @@ IMPORTS = "import math\nfrom math import atan2, sqrt\n\n\n"
 @cache
 def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now."""
-    helpers = compiled_functions(helpers_source)
-    kernel = _jitted(IMPORTS + kernel_source, helpers, f"{signature} {helpers_source}")["kernel"]
+    exact = {"product_low": fma.product_low()} if fma.has_fma() else compiled_functions(fma.DEKKER)
+    helpers = {**compiled_functions(helpers_source), **exact}
+    context = f"{signature} {helpers_source} {fma.SOURCE}"
+    kernel = _jitted(IMPORTS + kernel_source, helpers, context)["kernel"]
     kernel.compile(signature)
     kernel.disable_compile()
     return kernel

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base.product_low import product_low
 from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled, compiled_functions
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.search_kernel import STORED, SearchWriter
@@ -70,7 +71,7 @@ class Searcher:
 
     @cached_property
     def in_python(self) -> Callable:
-        namespace = vars(search) | {"sqrt": np.sqrt, "atan2": math.atan2}
+        namespace = vars(search) | {"sqrt": np.sqrt, "atan2": math.atan2, "product_low": product_low}
         exec(self.writer.source, namespace)
         return namespace["kernel"]
 

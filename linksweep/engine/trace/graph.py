@@ -1,15 +1,16 @@
 """Trace physics functions into a graph of single operations.
 
-A function called with traced values records each + - * / and square root once (equal operations are shared) and leaves
-out trivial operations: 0·x, 0 + x, 1·x. That changes no bit of any result: each remaining operation is rounded as IEEE
-prescribes, never contracted or reordered, so every path that evaluates the graph returns equal bits.
+A function called with traced values records each + - * /, square root and low word of a product once (equal operations
+are shared) and leaves out trivial operations: 0·x, 0 + x, 1·x. That changes no bit of any result: each remaining
+operation is rounded as IEEE prescribes, never contracted or reordered, so every path that evaluates the graph returns
+equal bits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-COMMUTATIVE = {"+", "*"}
+COMMUTATIVE = {"+", "*", "product_low"}
 FOLDABLE: dict[str, Callable[..., float]] = {
     "<": lambda x, y: float(x < y),
     "abs": abs,
@@ -69,6 +70,9 @@ class Node:
 
     def atan2(self, x):
         return self.graph.operation("atan2", self, self.graph.node(x))
+
+    def product_low(self, y):
+        return self.graph.product_low(self, self.graph.node(y))
 
     def where(self, x, y):
         x, y = self.graph.node(x), self.graph.node(y)
@@ -147,6 +151,16 @@ class Graph:
         if y.operator == "negate":
             return self.negate(self.multiply(x, y.operands[0]))
         return self.operation("*", x, y)
+
+    def product_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded product misses of x·y."""
+        if any(z.is_constant(value) for z in (x, y) for value in (0.0, 1.0)):
+            return self.constant(0.0)
+        if x.operator == "negate":
+            return self.negate(self.product_low(x.operands[0], y))
+        if y.operator == "negate":
+            return self.negate(self.product_low(x, y.operands[0]))
+        return self.operation("product_low", x, y)
 
     def divide(self, x: Node, y: Node) -> Node:
         if x.is_constant(0.0) or y.is_constant(1.0):

@@ -6,6 +6,7 @@ Each operation passes on the errors of its operands and adds its own, half a uni
     z = x·y      |δz| ≤ |x|δy + (|y| + δy)δx + u|z|
     z = x/y      |δz| ≤ (δx + |z|δy)/(|y| − δy) + u|z|
     z = √x       |δz| ≤ δx/z + u|z|
+    low word z of a product    |δz| ≤ |z|, as the exact product is one word
 
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3.) The bound holds for these very
 numbers, not on average, and costs about three times the operations of the result itself, only when requested. Exact
@@ -68,6 +69,8 @@ def _propagated(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> No
         return zero
     if z.operator == "input":
         return zero if exact(z.value) else INPUT * abs(z)
+    if z.operator == "product_low":
+        return abs(z)
     if z.operator in ("negate", "abs"):
         return errors[0]
     if z.operator == "where":

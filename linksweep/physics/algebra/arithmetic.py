@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+from linksweep.base import product_low as dekker
+
 Number = Any
 """A float, or a stand-in for one: a traced value, a numpy array, a 50-digit number."""
 
@@ -16,6 +18,12 @@ def sqrt(x: Number) -> Number:
 
 def atan2(y: Number, x: Number) -> Number:
     return math.atan2(y, x) if isinstance(y, float) else y.atan2(x)
+
+
+def product_low(x: Number, y: Number) -> Number:
+    """Return what the rounded product x·y misses of the exact one."""
+    x, y = (y, x) if isinstance(x, float) else (x, y)
+    return x.product_low(y) if hasattr(x, "product_low") else dekker.product_low(x, y)
 
 
 def where(condition: Number, x: Number, y: Number) -> Number:

@@ -1,17 +1,14 @@
 """Double-double arithmetic: a number as the unevaluated sum of a high and a low word, precise to twice the digits.
 
-Each operation is exact under IEEE rounding, provided nothing overflows or underflows and nothing is contracted or
-reordered (Dekker 1971; Knuth, TAOCP 2, 4.2.2). Where high words cancel in a difference, the low words hold the
+Sums and products of two floats are exact under IEEE rounding, provided nothing overflows or underflows and nothing is
+contracted or reordered (Knuth, TAOCP 2, 4.2.2). Where high words cancel in a difference, the low words hold the
 remaining digits.
 """
 
-from linksweep.physics.algebra.arithmetic import Number
+from linksweep.physics.algebra.arithmetic import Number, product_low
 
 Pair = tuple[Number, Number]
 """A double-double (high, low); high is the sum rounded to a float."""
-
-SPLITTER = 2.0**27 + 1.0
-"""Dekker's constant: multiplying by it splits 53 bits into 26 and 26."""
 
 
 def two_sum(x: Number, y: Number) -> Pair:
@@ -27,18 +24,9 @@ def ordered_sum(x: Number, y: Number) -> Pair:
     return high, y - (high - x)
 
 
-def split(x: Number) -> Pair:
-    """Return x as the sum of two numbers of 26 bits each; products of such numbers are exact."""
-    scaled = SPLITTER * x
-    high = scaled - (scaled - x)
-    return high, x - high
-
-
 def two_product(x: Number, y: Number) -> Pair:
     """Return x·y exactly."""
-    high = x * y
-    (x_high, x_low), (y_high, y_low) = split(x), split(y)
-    return high, x_low * y_low - (((high - x_high * y_high) - x_low * y_high) - x_high * y_low)
+    return x * y, product_low(x, y)
 
 
 def add(p: Pair, q: Pair) -> Pair:

@@ -168,7 +168,6 @@ def test_sums_and_products_of_two_numbers_are_exact():
             assert pairs.two_product(x, y)[0] == x * y
             if abs(x) >= abs(y) or x == 0.0:
                 assert exactly(pairs.ordered_sum(x, y)) == Fraction(x) + Fraction(y)
-        assert exactly(pairs.split(x)) == Fraction(x)
 
 
 def test_pairs_keep_twice_the_digits():
