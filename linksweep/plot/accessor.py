@@ -1,4 +1,7 @@
-"""Add the accessor `.linksweep` to Datasets: plots, tables, and the scene of their results."""
+"""The accessor `.linksweep` of Datasets: plots, tables, and the scene of their results.
+
+`linksweep/__init__.py` registers it.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,6 @@ from functools import wraps
 from inspect import Parameter, cleandoc, signature
 from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
 from linksweep import plot
 from linksweep.files import table
 from linksweep.files.netcdf import scene_of
@@ -18,12 +19,12 @@ from linksweep.scene.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 FIRST_PARAMETER = re.compile(r"(?<=Parameters\n----------\n)\S.*\n(?: {4}.*\n)*")
 NO_PARAMETERS = re.compile(r"Parameters\n----------\n\n")
 
 
-@xr.register_dataset_accessor("linksweep")
 class Cycle:
     """A Dataset of linksweep with its plots and tables, as ``ds.linksweep``.
 

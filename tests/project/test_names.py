@@ -1,5 +1,6 @@
 """Public names, version, types and data files of the package."""
 
+import ast
 import importlib
 import re
 import tomllib
@@ -32,6 +33,13 @@ def test_every_public_name_is_documented_and_none_is_a_folder():
     assert [name for name in ls.__all__ if not getattr(ls, name).__doc__] == []
 
 
+def test_a_star_import_takes_the_names_that_type_checkers_know():
+    stub = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8"))
+    (stated,) = (ast.literal_eval(line.value) for line in stub.body if isinstance(line, ast.Assign))
+    exec("from linksweep import *", names := {})
+    assert stated == sorted(ls.__all__) == sorted(names.keys() - {"__builtins__"})
+
+
 def test_plot_is_a_module():
     assert importlib.import_module("linksweep.plot") is ls.plot
 
@@ -52,7 +60,7 @@ def test_an_unknown_name_is_an_attribute_error():
 
 
 def test_a_wheel_has_every_data_file():
-    """Each file that is no Python must be named in pyproject.toml: py.typed, the examples, the page of reports."""
+    """Each file that is no module must be named in pyproject.toml: py.typed, the stub, the examples, pages."""
     patterns = declared()["tool"]["setuptools"]["package-data"]["linksweep"]
     shipped = {path for pattern in patterns for path in PACKAGE.glob(pattern)}
     data = {path for path in PACKAGE.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}

@@ -1,0 +1,113 @@
+"""Public names, and the modules that define them: `linksweep/__init__.py` imports each when it is first used."""
+
+from linksweep import plot
+from linksweep.analysis.balance.best_counterweights import best_counterweights
+from linksweep.analysis.balance.compare import compare
+from linksweep.analysis.balance.counterweights import Counterweight, counterweights, with_counterweights
+from linksweep.analysis.balance.orders import orders
+from linksweep.analysis.balance.regressor import regressor
+from linksweep.analysis.balance.shaking import shaking_moment
+from linksweep.analysis.design.geometry import coupler_curve, geometry
+from linksweep.analysis.design.objective import objective
+from linksweep.analysis.design.pareto import pareto
+from linksweep.analysis.drive.duty import duty
+from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.analysis.drive.motor import Motor, motor_load
+from linksweep.analysis.pins.bearing import Bearing
+from linksweep.analysis.pins.bearings import bearings, load_spectrum
+from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.analysis.pins.pin_friction import pin_friction
+from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
+from linksweep.files.netcdf import load_scene, save
+from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
+from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
+from linksweep.mechanisms.links import Bar, Cylinder, Disk, Gears, Guide, Link, Slider
+from linksweep.reports.page import report
+from linksweep.results.check import check
+from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.peaks import peaks
+from linksweep.results.position_equation import position_equation
+from linksweep.results.quantities import QuantityTable, quantities
+from linksweep.results.sweep import sweep
+from linksweep.results.system import system
+from linksweep.scene.curves.interpolation import OvershootWarning
+from linksweep.scene.designs.distributions import Normal, Tolerance
+from linksweep.scene.designs.sampling import sample
+from linksweep.scene.examples import example
+from linksweep.scene.loads.air_cycle import DieselCycle, OttoCycle
+from linksweep.scene.loads.kinds import Damper, GasPressure, Load, Spring, TorsionDamper, TorsionSpring
+from linksweep.scene.scene import Scene
+from linksweep.studies.checked import open_study
+from linksweep.studies.scene_at import scene_at
+from linksweep.studies.study import study
+
+__version__: str
+
+__all__ = [
+    "Bar",
+    "Bearing",
+    "Counterweight",
+    "Cylinder",
+    "Damper",
+    "DieselCycle",
+    "Disk",
+    "FourBar",
+    "GasPressure",
+    "Gears",
+    "Guide",
+    "InvertedSliderCrank",
+    "Link",
+    "Linkage",
+    "Load",
+    "LoopTrack",
+    "Motor",
+    "MultiCylinder",
+    "Normal",
+    "NotCarriedOverWarning",
+    "OttoCycle",
+    "OvershootWarning",
+    "QuantityTable",
+    "Scene",
+    "Slider",
+    "SliderCrank",
+    "Spring",
+    "Tolerance",
+    "TorsionDamper",
+    "TorsionSpring",
+    "bearings",
+    "best_counterweights",
+    "breakdown",
+    "check",
+    "compare",
+    "counterweights",
+    "coupler_curve",
+    "duty",
+    "example",
+    "flywheel",
+    "from_pmks",
+    "geometry",
+    "load_scene",
+    "load_spectrum",
+    "motor_load",
+    "objective",
+    "open_study",
+    "orders",
+    "pareto",
+    "peaks",
+    "pin_friction",
+    "plot",
+    "position_equation",
+    "quantities",
+    "regressor",
+    "report",
+    "sample",
+    "save",
+    "scene_at",
+    "shaking_moment",
+    "speed_limit",
+    "speed_separation",
+    "study",
+    "sweep",
+    "system",
+    "with_counterweights",
+]
