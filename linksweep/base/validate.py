@@ -218,11 +218,17 @@ def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
+    near = closest(word, known)
+    return f'; did you mean "{near}"?' if near else ""
+
+
+def closest(word: Any, known: Iterable[str]) -> str:
+    """Return the known name that a misspelt word most likely means; empty where none is close."""
     spelled = {name.lower(): name for name in known}
     word = str(word).lower()
     close = difflib.get_close_matches(word, spelled, n=1, cutoff=0.6)
     close += [name for name in spelled if f"{name}_".startswith(f"{word}_") or word.startswith(f"{name}_")]
-    return f'; did you mean "{spelled[close[0]]}"?' if close else ""
+    return spelled[close[0]] if close else ""
 
 
 def refuse(problems: list[str]) -> None:

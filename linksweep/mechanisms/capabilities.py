@@ -8,7 +8,7 @@ CAPABILITIES = {
     "bodies": "links:",
     "pins": "pins:",
     "drives": "crank:",
-    "cylinder": "cylinder:",
+    "engine_cylinder": "cylinder:",
     "position_equation": "position equation in document 2 (ME 470):",
     "stroke_findings": "closed form of its stroke or swing; take ls.peaks of its position, or",
     "drawing": "drawing of links (plot.loop draws a track):",
@@ -18,7 +18,7 @@ CAPABILITIES = {
 """Attributes that `Mechanism` leaves empty and a machine may offer: its name in words, and another way to results."""
 
 
-COMPUTED = ("cylinder", "stroke_findings", "balancing_moments")
+COMPUTED = ("engine_cylinder", "stroke_findings", "balancing_moments")
 """Attributes of `CAPABILITIES` that are computed from numbers: the class decides whether a machine has them."""
 
 

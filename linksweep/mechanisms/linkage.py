@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
@@ -13,10 +14,10 @@ from linksweep.base.equality import ByContent
 from linksweep.base.fields import POLAR_POINT, PairField, declared, field_problems, of_kind, word
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
-from linksweep.base.validate import Number, Rule, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
-from linksweep.chains.rows.crank import BRANCH, turned
+from linksweep.base.validate import Number, Rule, closest, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, turned
 from linksweep.chains.shape import Shape
-from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Topology, topology
+from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Topology, taken, topology
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.mechanisms.linkage_drawing import LinkageDrawing
 from linksweep.mechanisms.linkage_numbers import (
@@ -48,8 +49,6 @@ from linksweep.mechanisms.mechanism import register
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
 NONE = record(GROUND_PIN, {})
-RESERVED = frozenset(("parts", "mechanism", "speed", "thrust", "profile"))
-"""Words of a scene that no link may have for a name, besides those that the topology refuses."""
 CLASSES = {AnyLink: "a Link, Bar or Disk", Slider: "a Slider", Cylinder: "a Cylinder"}
 """Classes of parts, and their names in words."""
 WITH_BRANCHES = (RRR, RRP, RPR)
@@ -83,7 +82,8 @@ class Linkage(Machine):
         Gears of each wheel by its name; those left out have no phase, and pass on a torque alone.
     **parts : Link, Bar, Disk, Slider or Cylinder
         Part of each name in `links`: a Link, Bar or Disk where it has two pins or more, a Slider where it slides on a
-        guide, a Cylinder. A cylinder that follows the others may be left out.
+        guide, a Cylinder. A cylinder that follows the others may be left out. Each is an attribute, so that a part has
+        no name of another attribute of the class, such as drawing, nor one of results, such as power.
 
     Raises
     ------
@@ -135,9 +135,10 @@ class Linkage(Machine):
         gears: Mapping[str, Any] = NONE,
         **parts: Any,
     ) -> None:
-        named_parts = {**parts.pop("parts", {}), **parts}  # a copy passes on the field of its original
+        if isinstance(parts.get("parts"), Mapping):  # a copy passes on the field of its original
+            parts = {**parts.pop("parts"), **parts}
         normalise(self, links=links, ground=ground, points=points, guides=guides, branch=branch, gears=gears)
-        normalise(self, parts=named_parts)
+        normalise(self, parts=parts)
         self.__post_init__()
 
     def __post_init__(self) -> None:
@@ -171,18 +172,26 @@ class Linkage(Machine):
 
     def _problems(self) -> list[str]:
         """Return the problems of all parameters, and those of names that do not fit each other."""
-        problems = field_problems(self)
         if not isinstance(self.links, str):
-            return [f'links = {quote(self.links)}: must be a text, as "crank A-B, rod B-C, rocker D-C"', *problems]
-        if not all(isinstance(getattr(self, kind.name), Record) for kind in declared(self)[1:]):
-            return problems
+            return [
+                f'links = {quote(self.links)}: must be a text, as "crank A-B, rod B-C, rocker D-C"',
+                *field_problems(self),
+            ]
+        names, fields = taken(self.links, RESERVED), [kind.name for kind in declared(self)[1:]]
+        misspelt = misspelt_fields(self.links, self.parts, fields)
+        problems = [line for line in field_problems(self) if _first_word(line) not in {**names, **misspelt}]
+        unread = {name for name in fields if name in names or not isinstance(getattr(self, name), Record)}
+        if misspelt or unread - {"branch"}:  # what depends on them is not known
+            return [*names.values(), *misspelt.values(), *problems]
         joined, of_text = self._topology_and_problems
         problems += of_text
         if joined is None:
             return problems
-        problems += [*part_problems(joined, self.parts), *point_problems(joined, self.points)]
+        problems += [*part_problems(joined, self.parts, names), *point_problems(joined, self.points)]
         problems += [*ground_problems(self.ground), *gear_problems(joined, self.gears)]
-        return problems if of_text else [*problems, *branch_problems(joined, self.branch)]
+        if of_text:
+            return problems
+        return [*(line for line in problems if not line.startswith("branch = ")), *branch_problems(joined, self.branch)]
 
     @cached_property
     def shape(self) -> Shape:
@@ -270,12 +279,19 @@ class Linkage(Machine):
         return numbers
 
 
-def part_problems(joined: Topology, parts: Mapping[str, Any]) -> Iterator[str]:
+def misspelt_fields(links: str, parts: Mapping[str, Any], fields: Iterable[str]) -> dict[str, str]:
+    """Return the problem of each part that no text names, and whose name is nearly that of a parameter."""
+    words = re.findall(r"\w+", links)
+    meant = {name: closest(name, [*words, *fields]) for name in parts if name not in words}
+    return {name: f'{name}: is no parameter; did you mean "{near}"?' for name, near in meant.items() if near in fields}
+
+
+def part_problems(joined: Topology, parts: Mapping[str, Any], taken: Collection[str]) -> Iterator[str]:
     """Yield the problems of parts that are missing, of the wrong class, or that no text names."""
     expected: dict[str, Any] = dict.fromkeys(joined.links, AnyLink) | dict.fromkeys(joined.cylinders, Cylinder)
     expected |= dict.fromkeys((*joined.sliders, *joined.yokes), Slider)
     for role, kind in expected.items():
-        if role not in parts and kind is not Cylinder:
+        if role not in parts and kind is not Cylinder and role not in taken:
             yield f"{role}: missing; give {role} = {CLASSES[kind]}"
         elif isinstance(part := parts.get(role), AnyPart) and not isinstance(part, kind):
             yield f"{role} = {quote(part)}: must be {CLASSES[kind]}, as it stands in links"
@@ -315,12 +331,25 @@ def gear_problems(joined: Topology, gears: Mapping[str, Any]) -> Iterator[str]:
             yield f"gears.{name}.pressure_angle: wheels of ratio 1 have no pitch point; leave it out"
 
 
-def branch_problems(joined: Topology, branch: Mapping[str, str]) -> Iterator[str]:
+def branch_problems(joined: Topology, branch: Any) -> Iterator[str]:
     """Yield the problem of each branch that is of no pin, or link past a pin, with two assemblies."""
     known = [step.name for step in joined.steps if isinstance(step, WITH_BRANCHES)]
-    for name in branch:
-        yield from (
-            name_problems(f"branch.{name}", name, known)
-            if known
-            else [f"branch.{name}: no pin of this linkage has two assemblies; leave it out"]
-        )
+    if not known:
+        yield from ["branch: no pin of this linkage has two assemblies; leave it out"] if branch else []
+    elif not isinstance(branch, Mapping):
+        word = branch if branch in (*BRANCH_SIGN, "both") else "crossed"
+        pins = ", ".join(f'"{name}": "{word}"' for name in known)
+        yield f"branch = {quote(branch)}: must be stated by pin, all or some, as branch={{{pins}}}"
+    else:
+        for name in branch:
+            yield from name_problems(f"branch.{name}", name, known)
+
+
+def _first_word(problem: str) -> str:
+    """Return the first word of a problem: the parameter of which it is."""
+    return re.findall(r"\w*", problem)[0]
+
+
+RESERVED = frozenset(name for name in dir(Linkage) if not name.startswith("_"))
+RESERVED |= {"mechanism", "speed", "thrust", "profile"}
+"""Attributes of a linkage and words of a scene, that no part may have for a name, besides those of the topology."""

@@ -118,7 +118,7 @@ class LoopTrack(Mechanism):
             Equation("sum F along t over m", {"a_tangential": 1.0}, "raw_a_tangential"),
         )
 
-    def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
+    def driven_numbers(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Return the function of the positions at which the car leaves the track or stalls."""
         return ((events, self._numbers(motion)),)
 

@@ -159,7 +159,7 @@ class Mechanism(ByContent, ABC):
         """Return remarks on parameters of the motion, by name, for a report. `parameters` are a scene's."""
         return {}
 
-    def driven(self, motion: Mapping[str, Number]) -> OverDesigns:
+    def driven_numbers(self, motion: Mapping[str, Number]) -> OverDesigns:
         """Return functions that derive further numbers of the physics from the design and its motion."""
         return ()
 
@@ -208,7 +208,7 @@ class Mechanism(ByContent, ABC):
         return any(np.any(coefficient) for coefficient in self.frictions.values())
 
     @property
-    def cylinder(self) -> PistonCylinder:
+    def engine_cylinder(self) -> PistonCylinder:
         """The cylinder in which gas presses on the link "slider". For one branch only."""
         raise NotImplementedError
 

@@ -226,7 +226,7 @@ class SliderCrank(Machine):
         return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
-    def cylinder(self) -> PistonCylinder:
+    def engine_cylinder(self) -> PistonCylinder:
         """The cylinder in which the slider is the piston, its head where the rod reaches farthest."""
         return PistonCylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
 

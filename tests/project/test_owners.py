@@ -29,7 +29,7 @@ def test_no_machine_is_named(room):
 
 OFFERED = {
     "FourBar": {"bodies", "pins", "drives", "position_equation", "drawing", "stroke_findings", "balancing_moments"},
-    "SliderCrank": {"bodies", "pins", "drives", "cylinder", "drawing", "stroke_findings", "balancing_moments"},
+    "SliderCrank": {"bodies", "pins", "drives", "engine_cylinder", "drawing", "stroke_findings", "balancing_moments"},
     "InvertedSliderCrank": {"bodies", "pins", "drives", "drawing", "stroke_findings", "balancing_moments"},
     "LoopTrack": {"track"},
 }

@@ -16,13 +16,29 @@ from linksweep.chains.topology.problems import (
     gear_problems,
     guide_problems,
     mobility_problems,
+    name_problems,
     part_problems,
     pin_problems,
+    taken_names,
 )
 from linksweep.chains.topology.text import RATIO, Part, read
 from linksweep.chains.topology.topology import GROUND, Topology
 
-__all__ = ["GROUND", "PRP", "RPP", "RPR", "RRP", "RRR", "Gear", "Side", "Step", "Topology", "topology", "topology_of"]
+__all__ = [
+    "GROUND",
+    "PRP",
+    "RPP",
+    "RPR",
+    "RRP",
+    "RRR",
+    "Gear",
+    "Side",
+    "Step",
+    "Topology",
+    "taken",
+    "topology",
+    "topology_of",
+]
 
 Names = tuple[tuple[str, str], ...]
 
@@ -49,21 +65,26 @@ def topology(
 
     Returns
     -------
-    topology : None where a part of the text has no form, or two parts have one name
+    topology : None where a part of the text has no form, or its name is another part's, or the ground's
     problems : all at once, each a sentence that states what to change; () for a machine that closes dyad by dyad
     """
     parts, unread = read(links)
-    problems = [*unread, *part_problems(parts, reserved)]
-    if unread or len({part.role for part in parts}) < len(parts):
-        return None, tuple(problems)
+    roles = [part.role for part in parts]
+    if unread or len({*roles, GROUND}) <= len(roles):
+        return None, (*unread, *part_problems(parts), *name_problems(parts, reserved))
     machine = _joined(parts, ground, dict(hosts), dict(ratios), struts).closed()
-    problems += [
-        *pin_problems(parts, machine),
-        *guide_problems(parts, machine, dict(hosts)),
-        *gear_problems(parts, machine, dict(ratios)),
-    ]
-    from_crank = crank_problems(parts[0], ground) or [*mobility_problems(machine), *closure_problems(machine)]
+    of_pins = [*part_problems(parts), *pin_problems(parts, machine)]
+    of_joints = [*guide_problems(parts, machine, dict(hosts)), *gear_problems(parts, machine, dict(ratios))]
+    problems = [*name_problems(parts, reserved), *of_pins, *of_joints]
+    from_crank = crank_problems(parts[0], ground)
+    if not from_crank and not of_pins:  # else links are held in another way than is meant
+        from_crank = [*mobility_problems(machine), *([] if of_joints else closure_problems(machine))]
     return machine, (*problems, *from_crank)
+
+
+def taken(links: str, reserved: frozenset[str]) -> dict[str, str]:
+    """Return a problem of each part of a text that has a reserved name."""
+    return taken_names(read(links)[0], reserved)
 
 
 def topology_of(links: str, ground: tuple[str, ...], hosts: Names = ()) -> Topology:
@@ -81,6 +102,8 @@ def _joined(
     past = {part.role: part.past for part in parts if part.past and part.pins}
     cylinders = {part.role: (part.ends[0], part.ends[1]) for part in parts if part.ends}
     lines = {*past, *(part.guide for part in parts if part.guide in links)}
+    undeclared = {part.guide: GROUND for part in parts if part.guide}  # so that its other problems are known
+    declared = {name: host if host in links else GROUND for name, host in hosts.items()}
     return Topology(
         names=tuple(part.role for part in parts),
         ground=ground,
@@ -91,7 +114,7 @@ def _joined(
         cylinders=cylinders,
         struts=struts & {*cylinders},
         gears={part.role: _ratio(part.ratio or ratios.get(part.role, "")) for part in parts if part.mate},
-        hosts={**{name: name for name in lines}, **hosts},
+        hosts={**undeclared, **{name: name for name in lines}, **declared},
     )
 
 

@@ -8,8 +8,8 @@ from fractions import Fraction
 from itertools import combinations
 from keyword import iskeyword
 
-from linksweep.base.validate import did_you_mean
-from linksweep.chains.topology.text import RATIO, Part
+from linksweep.base.validate import closest, did_you_mean
+from linksweep.chains.topology.text import PIN, RATIO, Part
 from linksweep.chains.topology.topology import GROUND, Topology
 
 RESERVED = {
@@ -28,8 +28,26 @@ def repeated(names: Iterable[str]) -> list[str]:
     return [name for name in dict.fromkeys(names) if names.count(name) > 1]
 
 
-def part_problems(parts: list[Part], reserved: Collection[str]) -> Iterator[str]:
-    """Return the problems of each part's own names, and of names that two parts have."""
+def taken_names(parts: list[Part], reserved: Collection[str]) -> dict[str, str]:
+    """Return a problem of each part whose name is a word of Python or of results, or one of those `reserved`."""
+    sentence = 'links: "{}" has a meaning of its own in linksweep or Python: give the part another name'
+    roles = dict.fromkeys(part.role for part in parts)
+    taken = [role for role in roles if role in RESERVED | {*reserved} or iskeyword(role) or QUANTITY.fullmatch(role)]
+    return {role: sentence.format(role) for role in taken}
+
+
+def name_problems(parts: list[Part], reserved: Collection[str]) -> Iterator[str]:
+    """Yield the problems of names that mean something else; the parts themselves are understood."""
+    yield from taken_names(parts, reserved).values()
+    named = (name for part in parts for name in (part.role, part.guide) if not QUANTITY.fullmatch(name))
+    for name in (name for name in named if re.fullmatch(PIN, name)):
+        yield f'links: "{name}" reads as a pin: give parts and guides names in lower case, such as rod or slide'
+    for pin in sorted({pin for part in parts for pin in part.pins if re.fullmatch("[FGRT][0-9]+", pin)}):
+        yield f"links: pin {pin} has the name of a quantity: name it by a letter, or by one such as P and a number"
+
+
+def part_problems(parts: list[Part]) -> Iterator[str]:
+    """Yield the problem of each name that two parts have, and those of a part's own pins."""
     for name in repeated(part.role for part in parts):
         yield f'links: "{name}" is named twice: give each link, slider and cylinder its own name'
     for part in parts:
@@ -37,12 +55,6 @@ def part_problems(parts: list[Part], reserved: Collection[str]) -> Iterator[str]
             yield f"links: {part.role} names pin {pin} twice: name each pin of a link once"
         if part.past in part.pins and part.past:
             yield f"links: {part.role} passes its own pin {part.past}: name a pin of another link"
-        if part.role in RESERVED | {*reserved} or iskeyword(part.role) or QUANTITY.fullmatch(part.role):
-            yield f'links: "{part.role}" has a meaning of its own in linksweep or Python: give the link another name'
-        for name in filter(str.isupper, (part.role, part.guide)):
-            yield f'links: "{name}" reads as a pin: give links and guides names in lower case, such as rod or slide'
-    for pin in sorted({pin for part in parts for pin in part.pins if re.fullmatch("[FGRT][0-9]+", pin)}):
-        yield f"links: pin {pin} has the name of a quantity: name it by a letter, or by one such as P and a number"
 
 
 def crank_problems(crank: Part, ground: tuple[str, ...]) -> list[str]:
@@ -78,12 +90,16 @@ def pin_problems(parts: list[Part], topology: Topology) -> Iterator[str]:
 
 def guide_problems(parts: list[Part], topology: Topology, hosts: Mapping[str, str]) -> Iterator[str]:
     """Return the problems of guides that are unknown, unused, or on a link that can't carry them."""
-    used = {part.guide for part in parts if part.guide} | {part.role for part in parts if part.past and part.pins}
     known = [*hosts, *topology.links]
+    meant = {part.guide: closest(part.guide, known) for part in parts if part.guide and part.guide not in known}
+    used = {part.guide for part in parts if part.guide} | {part.role for part in parts if part.past and part.pins}
+    used |= {*meant.values()}
     for part in parts:
-        if part.guide and part.guide not in known:
-            advice = did_you_mean(part.guide, known) or "; declare it in guides, by an ls.Guide"
-            yield f'links: "{part.guide}", on which {part.role} slides, is neither a guide nor a link{advice}'
+        if part.guide in meant:
+            advice = "declare it in guides, by an ls.Guide"
+            if near := meant[part.guide]:
+                advice = f'did you mean "{near}"?' + ("" if near in hosts else f" Else {advice}")
+            yield f'links: "{part.guide}", on which {part.role} slides, is neither a guide nor a link; {advice}'
         if part.pins and part.guide and part.pins[0] in topology.links.get(topology.hosts.get(part.guide, ""), ()):
             yield f"links: {part.role} slides on {topology.hosts[part.guide]} and is pinned to it: name another pin"
     for guide, host in hosts.items():

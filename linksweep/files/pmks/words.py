@@ -12,12 +12,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from keyword import iskeyword
 
-from linksweep.chains.topology.problems import RESERVED
+from linksweep.chains.topology import taken
 from linksweep.files.pmks.axes import Axes, Polar, polar
 from linksweep.files.pmks.drawing import Body, Joint, Point
 from linksweep.files.pmks.machines import Machine
+from linksweep.mechanisms.linkage import RESERVED
 
 BESIDE = 1e-3
 """Distance of a cylinder's pin from its line, relative to its length, that a drawing's rounding explains."""
@@ -192,4 +192,4 @@ class Words:
 def _role(title: str) -> str:
     """Return a title as a role: small letters, digits and underscores, beginning with a letter."""
     role = re.sub(r"\W+", "_", title.strip()).lower()
-    return role if role.isidentifier() and not iskeyword(role) and role not in RESERVED else f"link_{role}"
+    return role if role.isidentifier() and not taken(f"{role} A-B", RESERVED) else f"link_{role}"

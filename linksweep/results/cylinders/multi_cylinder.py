@@ -261,7 +261,7 @@ def one_cylinder(machine: Scene | MultiCylinder) -> Scene:
 def _engine_problems(engine: Any) -> list[str]:
     if not isinstance(engine, Scene):
         return [f"engine is a {type(engine).__name__}: must be a Scene"]
-    if missing := lack(engine.mechanism, "cylinder"):
+    if missing := lack(engine.mechanism, "engine_cylinder"):
         return [f"engine is of {missing}"]
     over_angle = {*engine.functions, *(path for path, array in engine.arrays.items() if "theta2" in array.dims)}
     moving = [word for word in ("omega2", "alpha2") if word in over_angle]

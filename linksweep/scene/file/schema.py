@@ -14,7 +14,7 @@ from linksweep.base.units import KINDS, as_toml, quantity
 from linksweep.base.validate import choice_problems
 from linksweep.scene.file.axis import design_axis
 from linksweep.scene.file.csv_table import csv_column
-from linksweep.scene.file.errors import Log, Where
+from linksweep.scene.file.errors import UNREAD, Log, Where
 
 INSTEAD = 'give it as a DataArray, with interpolation="step" where it jumps'
 """Advice for a function that no samples represent."""
@@ -138,6 +138,7 @@ def build(cls: Any, raw: dict[str, Any], where: Where, log: Log) -> Any:
     words = {key: read(kind, raw[key], (*where, key), log) for key, kind in kinds.items() if key in raw}
     for field, kind in inline.items():
         words[field] = read(kind, {name: raw[name] for name in names if name in raw}, where, log)
+    words |= {key: UNREAD for key in kinds if key not in raw and (*where, key) in log.misplaced}  # not its default
     for key in [key for key in _required(cls, words) if key not in raw]:
         words[key] = log.missing((*where, key), advice(kinds[key], (*where, key)))
     try:

@@ -96,10 +96,10 @@ class Cycle(ByContent):
         DataArray
             Pressure [Pa] over the design dims and theta2.
         """
-        missing = lack(engine, "cylinder")
+        missing = lack(engine, "engine_cylinder")
         refuse([f"engine is {missing}"] if missing else [])
         angles = np.asarray(all_to_float64(theta2, "angle"), dtype=float)
-        pressure = pressure_over(self, engine.cylinder, angles, turning)
+        pressure = pressure_over(self, engine.engine_cylinder, angles, turning)
         labels: dict[Any, xr.Variable] = {}
         for array in [*(number for owner in (self, engine) for _, number, _ in numbers(owner)), turning]:
             if isinstance(array, xr.DataArray):

@@ -105,13 +105,13 @@ class GasPressure(ChangingLoad):
 
     def misfits(self, path: str, mechanism: Mechanism) -> list[str]:
         """Return why this mechanism cannot take the load, which is valid in itself."""
-        if not mechanism.sliders or (self.cycle and lack(mechanism, "cylinder")):
-            return [f"{path} is a GasPressure on {lack(mechanism, 'cylinder')}, or a Load"]
+        if not mechanism.sliders or (self.cycle and lack(mechanism, "engine_cylinder")):
+            return [f"{path} is a GasPressure on {lack(mechanism, 'engine_cylinder')}, or a Load"]
         if problems := choice_problems(f"{path}.link", self.link, mechanism.sliders):
             return problems
         if "branch" in mechanism.both_branches:
             return [f'{path} is a GasPressure, whose cylinder has one head: give branch="open" or "crossed"']
-        turns = mechanism.cylinder.turns_fully if self.cycle else True
+        turns = mechanism.engine_cylinder.turns_fully if self.cycle else True
         if not hasattr(turns, "dims") and not turns:
             return [
                 f"{path}.pressure is a cycle, which takes full turns of the crank: rod.length must be greater than "
@@ -125,13 +125,13 @@ class GasPressure(ChangingLoad):
         if self.cycle is None:
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
-        cylinder = revolution.mechanism.cylinder
+        cylinder = revolution.mechanism.engine_cylinder
         pressure = pressure_over(self.cycle, cylinder, revolution.grid.angles, revolution.turning)
         return with_sound(self, crankcase=crankcase, in_cylinder=pressure)
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return dead centres, where a cycle's pressure jumps, breaks, and where arrays jump or bend [degree]."""
-        dead_centres = mechanism.cylinder.dead_centres() if self.cycle else ()
+        dead_centres = mechanism.engine_cylinder.dead_centres() if self.cycle else ()
         return (*dead_centres, *super().jumps(mechanism))
 
     def parameters(self, name: str, machine: Mapping[str, Any]) -> dict[str, Number]:

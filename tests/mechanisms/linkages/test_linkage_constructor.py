@@ -13,6 +13,7 @@ from refusals import refusal
 
 import linksweep as ls
 from linksweep.base.fields import numbers
+from linksweep.scene.examples import names
 from linksweep.scene.parameters import bare, replaced
 
 STEEL = {"width": 0.02, "thickness": 0.02, "density": 7750}
@@ -117,6 +118,39 @@ def test_signature_names_every_field():
 def test_what_does_not_fit_is_refused(changes, problem):
     lines = refusal(press, **changes)
     assert any(line.startswith(problem) for line in lines), lines
+
+
+def test_a_branch_is_stated_by_pin():
+    sentence = "branch = 'both': must be stated by pin, all or some, as branch={}"
+    assert refusal(press, branch="both") == [sentence.format('{"C": "both", "F": "both"}')]
+    assert refusal(pump, branch="both") == [sentence.format('{"C": "both"}')]
+    assert refusal(pump, branch=1) == ['branch = 1: must be stated by pin, all or some, as branch={"C": "crossed"}']
+    assert refusal(pump, branch="both", guides={}) == [
+        "branch = 'both': must be a dict of words by name",
+        'links: "slide", on which ram slides, is neither a guide nor a link; declare it in guides, by an ls.Guide',
+    ]
+
+
+@pytest.mark.parametrize("value", [ls.Guide(), {"slide": ls.Guide()}])
+def test_a_misspelt_parameter_is_the_only_problem(value):
+    assert refusal(pump, guides={}, guide=value) == ['guide: is no parameter; did you mean "guides"?']
+
+
+ATTRIBUTES = [name for name in dir(ls.Linkage) if not name.startswith("_")]
+
+
+@pytest.mark.parametrize("name", ["ground", "type", "speed", "status", "T12", *ATTRIBUTES])
+def test_a_name_that_is_a_word_of_the_package_is_the_only_problem(name):
+    lines = refusal(press, links=TEXT.replace("rod E-F", f"{name} E-F"), rod=None, **{name: PARTS["rod"]})
+    assert lines == [f'links: "{name}" has a meaning of its own in linksweep or Python: give the part another name']
+
+
+def test_every_part_is_an_attribute():
+    for machine in (ls.example(name).mechanism for name in names()):
+        parts = machine.parts if isinstance(machine, ls.Linkage) else {}
+        assert all(getattr(machine, role) is part for role, part in parts.items())
+    machine = press(links=TEXT.replace("rod E-F", "cylinder E-F"), rod=None, cylinder=PARTS["rod"])
+    assert machine.cylinder is PARTS["rod"]
 
 
 def test_point_of_a_pin_that_is_no_third_one_is_refused():

@@ -124,6 +124,11 @@ def test_problems_have_line_and_path(old, new, problem):
     assert any(line.startswith(problem) for line in lines), lines
 
 
+@pytest.mark.parametrize(("old", "new"), [("guides.slide", "guide.slide"), ("E on slide", "E on slid")])
+def test_only_the_cause_is_reported(old, new):
+    assert len(problems(old, new)) == 1
+
+
 def test_all_problems_stand_in_one_message():
     text = KNUCKLE.replace("30.0", '"3 m"').replace("friction = 0.1", "friction = -1").replace('"3 kg"', "-3")
     with pytest.raises(ValueError) as refused:  # noqa: PT011
