@@ -12,6 +12,7 @@ import xarray as xr
 from linksweep.base.frozen import cached_beside
 from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
+from linksweep.results.direct_dataset import dataset_of
 from linksweep.scene.file.writing import write_scene
 from linksweep.scene.scene import Scene
 
@@ -33,14 +34,15 @@ def described(
     results = quantity.keys() - scene.motion.keys()  # a result may have the name of a parameter
     coordinates = {name: values for name, values in coordinates.items() if name not in results}
     attributes = provenance(scene, command, coordinates)
-    return xr.Dataset(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
+    return dataset_of(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
 
 
 def index_coordinate(scene: Scene, grid: Grid) -> dict[str, xr.Variable]:
     """Return the angles of a grid as the coordinate of the scene's index."""
     attributes = {"units": "degree", "long_name": scene.mechanism.position}
     # a pandas index and fastpath: xarray would import dask and pint to see whether the angles are theirs
-    return {grid.dim: xr.IndexVariable(grid.dim, pd.Index(grid.angles), attributes, fastpath=True)}
+    index = pd.Index(grid.angles, name=grid.dim)  # named, or the index of the Dataset would be a copy
+    return {grid.dim: xr.IndexVariable(grid.dim, index, attributes, fastpath=True)}
 
 
 def plain(field: Field, attributes: Mapping[str, Any]) -> xr.Variable:

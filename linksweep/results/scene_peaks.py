@@ -25,6 +25,7 @@ from linksweep.results.compute import (
     surely_ok,
 )
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
+from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
 from linksweep.results.peak_search.between import NEVER
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
@@ -85,7 +86,7 @@ def peaks_of_scene(
     command = f"linksweep.peaks(scene{'' if of is None else f', of={of}'}{grid}{by})"
     status, coordinates = status_of(scene, result, threads), design_coordinates(result.sampled)
     variables = labelled(items, result) | {"status": status}
-    return xr.Dataset(variables, coordinates, provenance(scene, command, coordinates))
+    return dataset_of(variables, coordinates, provenance(scene, command, coordinates))
 
 
 def labelled(items: list[Request], result: Result) -> dict[str, xr.Variable]:
