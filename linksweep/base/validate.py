@@ -32,6 +32,9 @@ UNITS = {
 }
 """Unit in which each kind of number is passed in and stored."""
 
+MANY, SOME = 30, 6
+"""Names that a message lists, and how many it lists of more than these."""
+
 Number = Any
 """A float, or an xarray.DataArray whose named dims are axes of a design study."""
 
@@ -209,12 +212,23 @@ def count_problems(path: str, value: Any) -> list[str]:
     return [] if sound else [f"{path} = {quote(value)}: must be a whole number, 1 or more"]
 
 
-def name_problems(path: str, name: Any, known: Iterable[str]) -> list[str]:
-    """Return a problem unless a name is among the known ones; the message lists them all only where none is close."""
+def name_problems(path: str, name: Any, known: Iterable[str], listed: str = "") -> list[str]:
+    """Return a problem unless a name is among the known ones.
+
+    Where none is close, the message lists them all, or of many those that are least far, and `listed`, which names
+    them all.
+    """
     known = list(known)
     if isinstance(name, str) and name in known:
         return []
-    return [f"{path}: nothing is named {quote(name)}{did_you_mean(name, known) or '; there are ' + ', '.join(known)}"]
+    if advice := did_you_mean(name, known):
+        return [f"{path}: nothing is named {quote(name)}{advice}"]
+    if len(known) <= MANY:
+        return [f"{path}: nothing is named {quote(name)}; there are {', '.join(known)}"]
+    alike = [other for other in known if re.sub("[0-9]", "", other) == re.sub("[0-9]", "", str(name))]  # F32 like F99
+    some = (alike or difflib.get_close_matches(str(name), known, n=SOME, cutoff=0.5) or known)[:SOME]
+    others = f"{len(known) - len(some)} others{f': see {listed}' if listed else ''}"
+    return [f"{path}: nothing is named {quote(name)}; there are {', '.join(some)} and {others}"]
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:

@@ -30,6 +30,7 @@ from linksweep.files.netcdf import load_scene
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.examples import example, names
 from linksweep.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -81,9 +82,14 @@ def add_commands(commands: Any) -> None:
 def add_command(commands: Any, name: str, run: Callable, text: str) -> argparse.ArgumentParser:
     """Add a command on a scene to those of the command line; return its parser."""
     parser = commands.add_parser(name, help=text)
-    parser.add_argument("scene", type=Path, help="scene file (.toml) or result (.nc)")
+    parser.add_argument("scene", type=Path, help="scene file (.toml), result (.nc), or an example's name")
     parser.set_defaults(run=run)
     return parser
+
+
+def scene_named(path: Path) -> Scene:
+    """Return the scene of a file; where there is no file of this name, the example of this name."""
+    return example(str(path)) if str(path) in names() and not path.exists() else load_scene(path)
 
 
 def add_plot(parser: argparse.ArgumentParser) -> None:
@@ -125,7 +131,7 @@ def _number(kind: str) -> Callable[[str], float]:
 
 def one_design(path: Path) -> Scene:
     """Return the scene of a file, of one design."""
-    scene = load_scene(path)
+    scene = scene_named(path)
     several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
     if several:
         refuse([f"{path}: has several designs, over {several}; this takes one, peaks and study take many"])

@@ -24,12 +24,13 @@ from linksweep.cli.commands import (
     add_commands,
     add_part,
     add_plot,
+    scene_named,
     without_a_screen,
     write_figure,
 )
 from linksweep.cli.text import check_lines, peak_table, study_report
 from linksweep.files.atomic import target_of
-from linksweep.files.netcdf import RESULTS, SCENES, load_scene, save
+from linksweep.files.netcdf import RESULTS, SCENES, save
 from linksweep.reports.page import report
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks
@@ -159,7 +160,7 @@ def _demo(options: argparse.Namespace) -> None:
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    scene = load_scene(options.scene)
+    scene = scene_named(options.scene)
     cycle = sweep(scene, options.angles, of=options.of)
     figure = None
     if options.plot:  # with all pin forces, whichever quantities the file has
@@ -172,7 +173,7 @@ def _sweep(options: argparse.Namespace) -> None:
 
 
 def _peaks(options: argparse.Namespace) -> None:
-    scene = load_scene(options.scene)
+    scene = scene_named(options.scene)
     ds = peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
     print(peak_table(ds, scene.mechanism))
     if options.output:
@@ -182,13 +183,13 @@ def _peaks(options: argparse.Namespace) -> None:
 
 def _quantities(options: argparse.Namespace) -> None:
     words = " ".join(options.words)
-    table = quantities(load_scene(options.scene), words)
+    table = quantities(scene_named(options.scene), words)
     refuse([] if table else [f'{options.scene}: no quantity has "{words}" in its name, unit or meaning'])
     print(table)
 
 
 def _study(options: argparse.Namespace) -> None:
-    scene = load_scene(options.scene)
+    scene = scene_named(options.scene)
     there = options.output.exists()
     with study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
         print(study_report(ds, scene.mechanism))
@@ -196,13 +197,13 @@ def _study(options: argparse.Namespace) -> None:
 
 
 def _check(options: argparse.Namespace) -> None:
-    scene = load_scene(options.scene)
+    scene = scene_named(options.scene)
     print("\n".join(check_lines(check(scene))))
 
 
 def _report(options: argparse.Namespace) -> None:
     part = tuple(options.theta2) if options.theta2 else None
-    report(load_scene(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
+    report(scene_named(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
     print(f"written: {options.output}")
 
 

@@ -15,6 +15,7 @@ from linksweep.files.seal import SAVED, mark_of, seal, sealed
 from linksweep.files.table import to_csv
 from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.examples import names
 from linksweep.scene.file.reading import parse_scene, read_scene
 from linksweep.scene.file.text_file import kind_of
 from linksweep.scene.file.writing import require_writable
@@ -142,7 +143,8 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
         return read_scene(path)
     if not path.exists():
         near = did_you_mean(path.name, [file.name for file in path.parent.glob("*")] if path.parent.is_dir() else [])
-        raise ValueError(f"{path}: there is no such file{near}")
+        there = f'; of the example write ls.example("{path}")' if str(path) in names() else near
+        raise ValueError(f"{path}: there is no such file{there}")
     if kind := kind_of(path):
         raise ValueError(f"{path}: cannot be read: it is {kind}, no file")
     return scene_of(_loaded(path), str(path))

@@ -53,7 +53,7 @@ def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) 
         if drive != scene.drive and f"{name}_".startswith(f"{unknown}_") and name not in known:
             instead = f'with drive="{scene.drive}" give {drives[scene.drive]}'
             return [f'{path}: {name} belongs to drive="{drive}"; {instead}']
-    return name_problems(path, name, known)
+    return name_problems(path, name, known, "ls.quantities(scene)")
 
 
 def require_scene(scene: Any) -> None:

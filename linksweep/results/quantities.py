@@ -93,7 +93,7 @@ class QuantityTable(Sequence[AvailableQuantity]):
     def __getitem__(self, key: str | int | slice) -> AvailableQuantity | QuantityTable:
         """Return the row of a name or a place, or the table of a slice; raise ValueError for an unknown name."""
         if isinstance(key, str):
-            refuse(name_problems("quantity", key, self.names))
+            refuse(name_problems("quantity", key, self.names, "the table's names"))
             key = self.names.index(key)
         return QuantityTable(self.rows[key]) if isinstance(key, slice) else self.rows[key]
 

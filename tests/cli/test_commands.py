@@ -57,6 +57,14 @@ def test_bearings(table):
     assert table("bearings", "press.toml")["pin"] == titles[:4]  # quantities without data have no column
 
 
+def test_an_example_is_taken_by_its_name_unless_a_file_has_it(table, capsys):
+    assert table("check", "press") == table("check", "press.toml") and table("orders", "watt-2")
+    Path("press").write_text("omega2 = 30")
+    assert main(["check", "press"]) == 2 and "press: cannot be read as NetCDF" in capsys.readouterr().err
+    with pytest.raises(ValueError, match=r'watt-2: there is no such file; of the example write ls.example\("watt-2"\)'):
+        ls.load_scene("watt-2")
+
+
 def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(table):
     rows = table("bearings", "press.toml", "--capacity", "5 kN", "--theta2", "10", "60")
     bearings = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0)), theta2=(10, 60))

@@ -205,8 +205,8 @@ def _try(ready: Objective, target: Any, path: str) -> None:
     ready(np.array(ready.bounds))
 
 
-def _measured(target: str | Measure, sign: float, results: xr.Dataset) -> Any:
-    """Return the value of a target that is minimized. A function of the module, so that an objective is pickled."""
+def _measured(target: Any, sign: float, results: xr.Dataset) -> Any:
+    """Return what is minimized, of a name or function as the target; of the module, so that an objective is pickled."""
     return sign * (results[target] if isinstance(target, str) else target(results))
 
 
