@@ -13,6 +13,7 @@ import argparse
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from fractions import Fraction
 from functools import partial
 from time import perf_counter
 from typing import NamedTuple
@@ -36,6 +37,7 @@ AT_ONCE = 250
 CANNOT_ASSEMBLE, TOGGLE = 1, 2
 """Statuses of a sample."""
 TURN = 2.0 * np.pi
+RATIOS = ("1/2", "3/2", "-2/3", "-5/4")
 COARSE = np.linspace(0.0, TURN, 720, endpoint=False)
 """Crank angles at which a design is laid out [rad]."""
 
@@ -105,6 +107,30 @@ def slider(random: Random, n: int) -> ls.Scene:
     return _scene(random, n, machine, [ls.Load("ram", force=_pair(random, n))])
 
 
+def geared(random: Random, n: int) -> ls.Scene:
+    """Return geared five-bars of several turns; half of them turn fully, near toggles, the others have any lengths."""
+    ratio = Fraction(random.choice(RATIOS))
+    theta2 = np.linspace(0.0, ratio.denominator * TURN, 720 * ratio.denominator, endpoint=False)
+    (a, e), (x, y) = np.exp(random.uniform(-1.0, 0.5, (2, n))), random.uniform(-3.0, 3.0, (2, n))
+    phase = random.uniform(-180.0, 180.0, n)
+    angle = float(ratio) * theta2 + np.radians(phase)[:, None]
+    across, up = (z[:, None] + e[:, None] * of(angle) - a[:, None] * of(theta2) for z, of in ((x, np.cos), (y, np.sin)))
+    left, right = _lengths_of_dyad(random, np.hypot(across, up))
+    branch = {"C": random.choice(["open", "crossed"])}
+    machine = ls.Linkage(
+        f"crank A-B, wheel D-E : {ratio} crank, left B-C, right E-C",
+        ground={"A": (0.0, 0.0), "D": (_number(x), _number(y))},
+        gears={"wheel": ls.Gears(phase=_number(phase))},
+        branch=branch,
+        crank=_link(random, a), wheel=_link(random, e), left=_link(random, left), right=_link(random, right),
+    )  # fmt: skip
+    loads = [
+        ls.Load("right", torque=_number(random.uniform(-10.0, 10.0, n))),
+        ls.Load("left", force=_pair(random, n)),
+    ]
+    return _scene(random, n, machine, loads)
+
+
 def any_linkage(name: str, random: Random, n: int) -> ls.Scene:
     """Return linkages of a topology of `linkages.topologies`, with springs, dampers and friction."""
     sketch = Sketch(random, n)
@@ -113,8 +139,12 @@ def any_linkage(name: str, random: Random, n: int) -> ls.Scene:
 
 
 KINDS: dict[str, Callable[[Random, int], ls.Scene]] = {"watt": watt, "stephenson": stephenson, "slider": slider}
-OTHERS: dict[str, Callable[[Random, int], ls.Scene]] = {name: partial(any_linkage, name) for name in TODAY}
-"""Any topologies, whose designs come near to toggles only by chance."""
+OTHERS: dict[str, Callable[[Random, int], ls.Scene]] = {
+    **{name: partial(any_linkage, name) for name in TODAY},
+    "geared by a fraction": geared,
+}
+"""Any topologies, whose designs come near to toggles only by chance; and geared five-bars of several turns, near
+toggles."""
 
 
 def _six_bar(
@@ -124,12 +154,7 @@ def _six_bar(
     n = len(a)
     x, y = _near(random, E)
     reach = np.hypot(E[0] - x[:, None], E[1] - y[:, None])
-    nearest, farthest = np.nanmin(reach, axis=1, initial=1e3), np.nanmax(reach, axis=1, initial=1e-3)
-    total, difference = farthest * (1.0 + _margin(random, n)), nearest * (1.0 - _margin(random, n))
-    some = random.random(n) < 0.3
-    total = np.where(some, total * random.uniform(0.5, 1.0, n), total)
-    difference = np.minimum(difference, 0.98 * total) * random.choice([-1.0, 1.0], n)
-    rod, output = 0.5 * (total + difference), 0.5 * (total - difference)
+    rod, output = _lengths_of_dyad(random, reach)
     machine = ls.Linkage(
         text,
         ground={"A": (0.0, 0.0), "D": (_number(d), 0.0), "G": (_number(x), _number(y))},
@@ -143,6 +168,17 @@ def _six_bar(
         ls.Load("coupler", force=_pair(random, n)),
     ]
     return _scene(random, n, machine, loads)
+
+
+def _lengths_of_dyad(random: Random, reach: Array) -> tuple[Array, Array]:
+    """Return the lengths of two links that close over distances (design, angle), some not over all of them."""
+    n = len(reach)
+    nearest, farthest = np.nanmin(reach, axis=1, initial=1e3), np.nanmax(reach, axis=1, initial=1e-3)
+    total, difference = farthest * (1.0 + _margin(random, n)), nearest * (1.0 - _margin(random, n))
+    some = random.random(n) < 0.3
+    total = np.where(some, total * random.uniform(0.5, 1.0, n), total)
+    difference = np.minimum(difference, 0.98 * total) * random.choice([-1.0, 1.0], n)
+    return 0.5 * (total + difference), 0.5 * (total - difference)
 
 
 def _four_bar(random: Random, n: int) -> tuple[Array, Array, Array, Array]:
@@ -224,21 +260,26 @@ def check(kind: str, designs: int, seed: Sequence[int]) -> Result:
     start = perf_counter()
     exact = ls.peaks(scene)
     seconds = perf_counter() - start
-    short = shortfall(exact, ls.peaks(scene, theta2=(np.arange(SAMPLES) + 0.3) * (360.0 / SAMPLES)))
+    short = shortfall(exact, ls.peaks(scene, theta2=_off_round(scene, SAMPLES)))
     wrong = wrong_arcs(scene)
     return Result(
         designs, int((exact.status != 2).sum()), int((short > ALLOWED).sum()), float(short.max()), wrong, seconds
     )
 
 
+def _off_round(scene: ls.Scene, per_turn: int) -> Array:
+    """Return even crank angles of a whole period [degree], none of them round."""
+    return (np.arange(per_turn * round(scene.period / 360.0)) + 0.3) * (360.0 / per_turn)
+
+
 def wrong_arcs(scene: ls.Scene) -> int:
     """Return the number of designs that some sample's status contradicts: on an arc it closes, if friction allows."""
     limits = ls.check(scene)
-    theta2 = (np.arange(STATUS_SAMPLES) + 0.3) * (360.0 / STATUS_SAMPLES)
+    theta2 = _off_round(scene, STATUS_SAMPLES)
     status = ls.sweep(scene, theta2, of=["status"]).status.transpose("design", "theta2").values
     closes = (status != CANNOT_ASSEMBLE) & (status != TOGGLE)
     start, end = limits.arc_start.values[..., None], limits.arc_end.values[..., None]
-    inside = (np.mod(theta2 - start, 360.0) < end - start).any(axis=1)
+    inside = (np.mod(theta2 - start, scene.period) < end - start).any(axis=1)
     return int((closes != inside).any(axis=1).sum())
 
 

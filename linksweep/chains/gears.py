@@ -7,6 +7,7 @@ teeth on the crank, F32, acts at the pitch point and has this moment about the c
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from linksweep.chains.between_links import force_name, name_between
@@ -23,6 +24,14 @@ if TYPE_CHECKING:
     from linksweep.chains.motion import Motion
 
 Vector = tuple[Source, ...]
+Geared = tuple[tuple[str, Fraction], ...]
+"""Roles of wheels, and their turns per turn of the crank."""
+
+
+def geared_rows(role: str) -> tuple[str, ...]:
+    """Return the names of cosine and sine of the angle of a wheel less its phase, tabulated over the crank angle for
+    a ratio that is no whole number, then of their low words."""
+    return tuple(f"geared_{role}_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
 
 
 def place_Gear(motion: Motion, step: Gear) -> None:
@@ -30,7 +39,9 @@ def place_Gear(motion: Motion, step: Gear) -> None:
     role, k, ratio = step.link.role, motion.number(step.link.role), float(step.ratio)
     phase: Vector = tuple(f"{role}_phase_{part}" for part in ("cos", "sin", "cos_lo", "sin_lo"))
     turned = full(f"turned_{role}_")
-    motion.row(pins.turned_with_low_words, turned, *_power(motion, role, abs(int(ratio)), ratio < 0.0), *phase)
+    whole = step.ratio.denominator == 1
+    unturned = _power(motion, role, abs(int(ratio)), ratio < 0.0) if whole else geared_rows(role)
+    motion.row(pins.turned_with_low_words, turned, *unturned, *phase)
     motion.certain |= dict.fromkeys(turned, 1.0)
     motion.row(planar.along, xy(f"r{k}"), f"{role}_length", *turned[:2])
     motion.names[role] = Names(f"_{role}")

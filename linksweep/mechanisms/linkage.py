@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from linksweep.base.fields import POLAR_POINT, PairField, declared, field_proble
 from linksweep.base.frozen import normalise, with_sound
 from linksweep.base.records import NamedField, Record, named, record
 from linksweep.base.validate import Number, Rule, closest, did_you_mean, is_array, is_lazy, name_problems, quote, refuse
+from linksweep.chains.gears import Geared
 from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, turned
 from linksweep.chains.shape import Shape
 from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Topology, taken, topology
@@ -53,6 +55,8 @@ CLASSES = {AnyLink: "a Link, Bar or Disk", Slider: "a Slider", Cylinder: "a Cyli
 """Classes of parts, and their names in words."""
 WITH_BRANCHES = (RRR, RRP, RPR)
 """Dyads that have two assemblies."""
+MOST_TURNS = 99
+"""Turns of the crank after which a machine with gears must repeat, at most."""
 
 
 @register
@@ -66,8 +70,9 @@ class Linkage(Machine):
         Parts with their pins, the crank first, such as "crank A-B, rod B-C, rocker D-C-E"; a link's length is that from
         its first pin to its second. Besides links, "ram F on slide", a slider on a guide or a link; "arm D-E past B",
         a link whose line slides through a block at a pin; "yoke on slide past B", a slider with a slot for a pin;
-        "c1 P~B", a cylinder; "wheel D-E : -2 crank", a second crank turned by gears. Pins are capital letters, with
-        digits where one is not enough; names of parts are words in lower case.
+        "c1 P~B", a cylinder; "wheel D-E : -2 crank", a second crank turned by gears; where their ratio is a fraction
+        such as -3/2, the cycle takes as many turns as its denominator. Pins are capital letters, with digits where one
+        is not enough; names of parts are words in lower case.
     ground : dict of str to pair of float or DataArray
         Coordinates (x, y) of each pin on the ground [m]; the first is the crank's pivot, from which results count.
     points : dict of str to pair of float or DataArray, default {}
@@ -219,6 +224,10 @@ class Linkage(Machine):
         return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
 
     @property
+    def geared(self) -> Geared:  # type: ignore[override]
+        return tuple((role, ratio) for role, ratio in self.topology.gears.items() if ratio.denominator > 1)
+
+    @property
     def places(self) -> tuple[str, ...]:  # type: ignore[override]
         return tuple(step.name for step in self.topology.steps)
 
@@ -320,11 +329,18 @@ def ground_problems(ground: Mapping[str, Any]) -> Iterator[str]:
 
 
 def gear_problems(joined: Topology, gears: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the problems of ratios and pressure angles."""
+    """Yield the problems of ratios and pressure angles, and that of a cycle of too many turns."""
+    fractions = {name: ratio for name, ratio in joined.gears.items() if ratio.denominator > 1}
+    uneven = {name for name, ratio in fractions.items() if max(abs(ratio.numerator), ratio.denominator) > MOST_TURNS}
+    for name in uneven:
+        near = fractions[name].limit_denominator(int(MOST_TURNS / max(abs(float(fractions[name])), 1.0)) or 1)
+        allowed = f"a whole number, or a fraction of whole numbers up to {MOST_TURNS}, as {near}"
+        yield f"gears.{name}.ratio = {fractions[name]}: must be {allowed}: its denominator is the cycle's turns"
+    turns = math.lcm(*(ratio.denominator for ratio in fractions.values()))
+    if turns > MOST_TURNS and not uneven:
+        yield f"gears: all repeats only after {turns} turns of the crank: take ratios that repeat within {MOST_TURNS}"
     for name, ratio in joined.gears.items():
         angle = getattr(gears.get(name), "pressure_angle", None)
-        if ratio.denominator != 1:
-            yield f"gears.{name}.ratio = {ratio}: must be a whole number, so that all repeats every turn of the crank"
         if isinstance(angle, float) and angle >= 90.0:
             yield f"gears.{name}.pressure_angle = {angle:.15g} degree: must be less than 90"
         if angle is not None and ratio == 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields, replace
@@ -13,6 +14,7 @@ import numpy as np
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
 from linksweep.base.validate import Number, refuse
+from linksweep.chains.gears import Geared
 from linksweep.chains.rows.bodies import Body, Equation
 from linksweep.chains.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
 from linksweep.chains.rows.load_forms import Form
@@ -53,6 +55,8 @@ class Mechanism(ByContent, ABC):
     """The dimension of a sweep."""
     period: ClassVar[float] = 360.0
     """One turn, in units of the index [degree]."""
+    geared: ClassVar[Geared] = ()
+    """Wheels that make no whole number of turns per turn of the crank, with their ratios."""
     position: ClassVar[str] = "angle of the crank from x, positive counter-clockwise"
     """Description of the index in results."""
     spot: ClassVar[str] = "crank angle"
@@ -101,6 +105,11 @@ class Mechanism(ByContent, ABC):
     """True where counterweights on the links cancel no more than a fraction of the first order of the shaking force."""
     position_equation: ClassVar[PositionEquation | None] = None
     """The position equation that a source document prints for the machine."""
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which the motion repeats, but for lengths that change with its angle."""
+        return math.lcm(*(ratio.denominator for _, ratio in self.geared))
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -73,7 +73,7 @@ def mechanism(
     drawing = drawing_with_point(scene, link)
     angle = _angle(theta2)
     places = positions(scene, drawing, [angle])
-    _require_assembled(places, angle)
+    _require_assembled(places, angle, scene.period_of_motion)
     shape = shape_of(scene, drawing, places, point)
     acting = _joint_forces(scene, drawing, angle) if forces else {}
     ax = axes_or_new(ax)
@@ -106,13 +106,13 @@ def _angle(theta2: Any) -> float:
         raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
 
 
-def _require_assembled(cycle: xr.Dataset, angle: float) -> None:
+def _require_assembled(cycle: xr.Dataset, angle: float, period: float) -> None:
     """Raise ValueError where the mechanism has no position at the last angle of a cycle."""
     angles = cycle[signals.INDEX].values
     status = signals.spread(cycle.status, len(angles))
     if status[-1]:
         possible = angles[:-1][status[:-1] == 0]
-        off = np.abs((possible - angle + 180.0) % 360.0 - 180.0)
+        off = np.abs((possible - angle + 0.5 * period) % period - 0.5 * period)
         nearest = f"choose another, such as {possible[np.argmin(off)]:.5g}" if possible.size else "nor at any other"
         raise ValueError(f"theta2 = {angle:.6g} degree: the mechanism {_meaning(cycle)} there; {nearest}")
 

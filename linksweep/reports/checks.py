@@ -88,7 +88,8 @@ def _assembly(results: Results) -> Check:
     """Check at which crank angles the machine can be assembled."""
     findings, everywhere = results.check, int(results.check["assembly"]) == 0
     arcs = zip(findings["arc_start"].values, findings["arc_end"].values, strict=True)
-    parts = _listed([joined(angle(a, 2), " to ", angle(b % 360.0, 2)) for a, b in arcs if np.isfinite(a)])
+    period = results.scene.period_of_motion
+    parts = _listed([joined(angle(a, 2), " to ", angle(b % period, 2)) for a, b in arcs if np.isfinite(a)])
     sound = everywhere or (results.part is not None and results.sound)
     return Check("assembly", joined("at every crank angle" if everywhere else parts), sound)
 

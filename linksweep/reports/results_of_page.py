@@ -54,10 +54,10 @@ class Results(NamedTuple):
 
     @property
     def inertia_period(self) -> float:
-        """Period of the inertia of the links alone [degree]: a turn, unless the crank's speed takes two."""
+        """Period of the inertia of the links alone [degree]: the motion's, unless the crank's speed takes more."""
         index = self.scene.mechanism.index
         over = {*self.scene.functions, *(path for path, array in self.scene.arrays.items() if index in array.dims)}
-        return self.scene.period if over & {"omega2", "alpha2"} else self.scene.mechanism.period
+        return self.scene.period if over & {"omega2", "alpha2"} else self.scene.period_of_motion
 
     @property
     def moves(self) -> bool:
@@ -76,7 +76,7 @@ class Results(NamedTuple):
 
     def reaches(self, angle: float) -> bool:
         """Return whether the motion comes to a crank angle [degree]."""
-        return self.part is None or (angle - self.part[0]) % 360.0 <= self.part[1] - self.part[0]
+        return self.part is None or (angle - self.part[0]) % self.scene.period_of_motion <= self.part[1] - self.part[0]
 
 
 def results_of(scene: Scene, part: Range | None = None, threads: int | None = None) -> Results:

@@ -26,7 +26,6 @@ from linksweep.base.records import NamedField
 from linksweep.base.validate import UNITS
 from linksweep.mechanisms.links import Bar, Disk
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.loads.ends import GROUND
 from linksweep.scene.loads.load import Load
 from linksweep.scene.loads.springs import EndField
@@ -78,7 +77,7 @@ def settings(scene: Scene) -> Markup:
 
 def _sampled(scene: Scene) -> Scene:
     """Return the scene with arrays and functions over the angle at `SAMPLES` angles."""
-    return scene.at(crank_grid(SAMPLES, scene.period, scene.mechanism.index))
+    return scene.at(scene.grid(SAMPLES))
 
 
 def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:

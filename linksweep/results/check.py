@@ -11,7 +11,6 @@ from linksweep.results.dataset import design_coordinates, flags, origin_attribut
 from linksweep.results.search_checks import search_checks
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import side_by_side
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.scene import Scene
 
@@ -126,7 +125,7 @@ def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
     if scene.alpha2 is None or not scene.changes_speed:
         return {}
     count = next(iter(counts_without_angles(scene).values()), round(2.0 * scene.period))  # else 720 a turn
-    revolution = Revolution(scene, crank_grid(count, scene.period, scene.mechanism.index))
+    revolution = Revolution(scene, scene.grid(count))
     difference = abs(revolution.alpha2 - revolution.derived_alpha2)
     at = difference["theta2"][difference.argmax("theta2")]
     words = "of alpha2 from omega2·d(omega2)/d(theta2)"

@@ -12,7 +12,6 @@ from linksweep.results.dataset import provenance, variable
 from linksweep.results.sweep import sweep
 from linksweep.results.system import as_angles
 from linksweep.scene.designs.lazy import in_memory
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
@@ -60,7 +59,7 @@ def position_equation(scene: Scene, theta2: Any, *, threads: int | None = None) 
     mechanism: Any = scene.mechanism
     formulas, roots = mechanism.position_equation
     both = replace(scene, mechanism=replace(mechanism, branch="both"), drive="crank", loads=())
-    grid = crank_grid(angles, both.period, both.mechanism.index)
+    grid = both.grid(angles)
     fields = compute(both.at(grid), grid, tuple(formulas), threads)
     order = (*both.inputs.sizes, grid.dim)
     page = sweep(both, angles, of=list(roots), threads=threads)

@@ -15,7 +15,6 @@ from linksweep.results.dataset import STATUS_AT_LONG_NAME, STATUS_LONG_NAME
 from linksweep.results.sweep import default_names
 from linksweep.results.system import names_in, of_form
 from linksweep.scene.designs.lazy import lazy_paths, stand_in
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -205,7 +204,7 @@ def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
 def _with_samples(scene: Scene) -> Scene:
     """Return the scene at one angle, or at as many as an array over the index without coordinates has."""
     counts = [*counts_without_angles(scene).values()]
-    return scene.at(crank_grid(counts[0], scene.period, scene.mechanism.index)) if counts else scene.at_one_angle
+    return scene.at(scene.grid(counts[0])) if counts else scene.at_one_angle
 
 
 def _html_row(cells: Iterable[str], tag: str) -> str:

@@ -34,7 +34,7 @@ from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid, in_order
+from linksweep.scene.grid import in_order
 from linksweep.scene.scene import Scene
 
 SUMMARIES = ("mean", "rms", "bound", "samples")
@@ -140,7 +140,7 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     refuse(angles_missing(scene))
     turns = round(scene.period / scene.mechanism.period)
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    grid = scene.grid(angles)
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
     if part is not None:
         largest = peaks_within(scene, signals, part, threads)
@@ -155,7 +155,7 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     """Return the largest of a grid's samples, without refinement."""
     exact = [f"{item.quantity.name}_{item.summary}" for item in items if item.summary in ("bound", "samples")]
     refuse([f'of = "{name}": is of exact peaks only; leave out theta2' for name in exact])
-    grid = in_order(crank_grid(angles, scene.period, scene.mechanism.index))
+    grid = in_order(scene.grid(angles))
     sampled = scene.at(grid)
     signals, powers = needed(items)
     largest = {signal: Reduction("largest_sample", signal) for signal in signals}

@@ -26,7 +26,7 @@ def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     sizes, limits = limits_of(scene.unloaded)
     tables = {
         "arc_start": (limits.arc_start, ("arc",), "crank angle at which an assembled arc starts"),
-        "arc_end": (limits.arc_end, ("arc",), "crank angle at which it ends (may pass 360)"),
+        "arc_end": (limits.arc_end, ("arc",), f"crank angle at which it ends (may pass {scene.period_of_motion:g})"),
         "toggle_angle": (_numbers(limits.zeros[:, toggles]), ("pin", "toggle"), "crank angle of a toggle at this pin"),
     }
     assembly = np.reshape(limits.assembly, tuple(sizes.values())).astype(np.int8)

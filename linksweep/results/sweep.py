@@ -25,7 +25,6 @@ from linksweep.results.compute import (
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import STATUS_AT_LONG_NAME, described, flags, plain
 from linksweep.results.system import dense_solution
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 COUNT = 720
@@ -53,8 +52,8 @@ def sweep(
     scene : Scene
         Scene of any number of designs.
     angles : int or array_like, default None
-        Count N of crank angles, for the grid arange(N)·360/N (·720/N where a load takes two turns, as in a four-stroke
-        engine), or the angles themselves [degree]; None for 720. ``sweep(scene, 360)`` is short for
+        Count N of crank angles, for the grid arange(N)·360/N (·720/N where a load or gears take two turns, as in a
+        four-stroke engine), or the angles themselves [degree]; None for 720. ``sweep(scene, 360)`` is short for
         ``sweep(scene, theta2=360)``.
     theta2 : int or array_like, default None
         Count of crank angles, or the angles [degree].
@@ -106,7 +105,7 @@ def sweep(
     with_place, names = STATUS_AT in names, tuple(name for name in names if name != STATUS_AT)
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     angles = COUNT if angles is None else angles
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    grid = scene.grid(angles)
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)

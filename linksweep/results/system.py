@@ -16,7 +16,6 @@ from linksweep.results.compute import angles_of, blank, compute, require_scene, 
 from linksweep.results.dataset import index_coordinate, provenance, status_attributes
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 FORMS = ("reduced", "document")
@@ -100,7 +99,7 @@ def system(
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     refuse([f"{index} is missing: give an angle or angles, in degrees"] if angles is None else [])
     scene = in_memory(scene)
-    grid = crank_grid(as_angles(angles), scene.period, index)
+    grid = scene.grid(as_angles(angles))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
     unknowns, equations = of_form(scene, form)

@@ -11,7 +11,7 @@ from linksweep.chains.rows.crank import OverDesigns
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import InputForms
 from linksweep.scene.dimensions import side_by_side
-from linksweep.scene.grid import NAMES as GRID_ROWS
+from linksweep.scene.grid import rows
 
 if TYPE_CHECKING:
     from linksweep.scene.scene import Scene
@@ -28,7 +28,7 @@ class Inputs(NamedTuple):
 def engine_inputs(scene: Scene) -> Inputs:
     """Return the inputs of a scene whose parameters have been evaluated at the angles of a grid."""
     fields = {name: as_field(value) for name, value in _named_values(scene).items()}
-    grid_rows = tuple((name, (scene.mechanism.index,)) for name in GRID_ROWS)
+    grid_rows = tuple((name, (scene.mechanism.index,)) for name in rows(scene.mechanism.geared))
     forms = (*((name, form_of(field)) for name, field in fields.items()), *grid_rows)
     sizes = {dim: n for field in fields.values() for dim, n in zip(field.dims, field.values.shape, strict=True)}
     sizes.pop(scene.mechanism.index, None)

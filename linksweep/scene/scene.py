@@ -85,12 +85,12 @@ class Scene(ByContent):
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
     theta2, as a DataArray or a function of theta2 [degree], which must repeat after one turn of the crank or some. One
-    that takes two, as in a four-stroke engine, makes the whole cycle two turns long: theta2 then runs to 720. The
-    values of a DataArray are in the parameter's own unit; one that states another in attrs["units"] is refused, not
-    converted. Quantities of pint, and arrays of them, are converted; numbers of any dtype become float64. Where one is
-    dask's, results are lazy too, chunk by chunk of the designs, and its values are checked when they are computed.
-    Labels are numbers, truth values, texts or times, and names of dims are those that NetCDF allows: what a file would
-    not return as it was written is refused.
+    that takes two, as in a four-stroke engine, makes the whole cycle two turns long, as gears of the ratio 1/2 do:
+    theta2 then runs to 720. The values of a DataArray are in the parameter's own unit; one that states another in
+    attrs["units"] is refused, not converted. Quantities of pint, and arrays of them, are converted; numbers of any
+    dtype become float64. Where one is dask's, results are lazy too, chunk by chunk of the designs, and its values are
+    checked when they are computed. Labels are numbers, truth values, texts or times, and names of dims are those that
+    NetCDF allows: what a file would not return as it was written is refused.
 
     The derivative of an omega2 that is an array is that of its spline; of a function it is computed by differences, to
     1e-9 of the largest. An alpha2 beside it is used as it is, and `linksweep.check` states how far the two differ.
@@ -230,12 +230,17 @@ class Scene(ByContent):
 
     @cached_property
     def period(self) -> float:
-        """Whole cycle [degree]: the turns of the crank after which all loads, omega2 and alpha2 repeat."""
+        """Whole cycle [degree]: the turns of the crank after which motion, loads, omega2 and alpha2 all repeat."""
         turn = self.mechanism.period
         periods = [period_of(array, turn) for array in self.arrays.values() if "theta2" in array.dims]
         periods += [period_of_function(function, turn) for function in self.functions.values()]
         periods += [load.period for load in self.loads if load.period]
-        return turn * math.lcm(*(round(period / turn) for period in periods))
+        return turn * math.lcm(self.mechanism.turns, *(round(period / turn) for period in periods))
+
+    @cached_property
+    def period_of_motion(self) -> float:
+        """Cycle of the machine without its loads [degree]: the turns after which all positions repeat."""
+        return self.unloaded.period
 
     @cached_property
     def quick(self) -> Quick:
@@ -275,7 +280,7 @@ class Scene(ByContent):
     @cached_property
     def at_one_angle(self) -> Scene:
         """Scene at one angle, for results that do not depend on it; the scene itself where nothing changes with it."""
-        return self.at(crank_grid(1, self.period, self.mechanism.index))
+        return self.at(self.grid(1))
 
     @cached_property
     def unloaded(self) -> Scene:
@@ -292,6 +297,26 @@ class Scene(ByContent):
     def inputs(self) -> Inputs:
         """Scene as the engine takes it; what changes over the revolution must be `at` the angles of a grid."""
         return engine_inputs(self.bare)
+
+    def grid(self, angles: Any) -> Grid:
+        """Make the grid of a sweep.
+
+        Parameters
+        ----------
+        angles : int or array of float
+            Count N of crank angles, arange(N)·period/N, or the angles themselves [degree].
+
+        Returns
+        -------
+        Grid
+            Angles with the cosines and sines from which the kernels start.
+
+        Raises
+        ------
+        ValueError
+            For a count below 1, and for what is no list of finite angles.
+        """
+        return crank_grid(angles, self.period, self.mechanism.index, self.mechanism.geared)
 
     def at(self, grid: Grid) -> Scene:
         """Evaluate all that changes over the revolution at the angles of a grid.

@@ -19,7 +19,6 @@ from linksweep.scene.curves.over_position import is_function
 from linksweep.scene.curves.tabulated import values_at
 from linksweep.scene.designs.selection import Block, blocks, design_sizes, selected
 from linksweep.scene.file.writing import write_scene
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 STEP = 0.05
@@ -84,7 +83,7 @@ def scene_digest(scene: Scene) -> str:
         digest.update(values_at(function, angles).tobytes())
     if any(is_function(curve) for load in scene.loads for curve in load.over_positions):
         first = selected(scene, {dim: slice(0, 1) for dim in design_sizes(scene)})
-        for array in first.at(crank_grid(len(angles), scene.period)).arrays.values():
+        for array in first.at(scene.grid(len(angles))).arrays.values():
             digest.update(np.ascontiguousarray(array.values, dtype=float).tobytes())
     for path, array in scene.arrays.items():
         labels = {str(dim): array[dim].values.tolist() for dim in array.dims if dim in array.coords}

@@ -14,7 +14,7 @@ from benchmarks.stress.decimals import Array
 from benchmarks.stress.linkages.errors import Errors, errors_of
 from benchmarks.stress.linkages.multibody import Solution
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import FAMILIES, NEAR_A_TOGGLE, TODAY
+from benchmarks.stress.linkages.topologies import FAMILIES, GEARED_BY_FRACTIONS, NEAR_A_TOGGLE, TODAY
 
 RESULTS = Path(__file__).parents[2] / "LINKAGES.md"
 AT_ONCE = 50
@@ -69,7 +69,7 @@ def checked(name: str, designs: int, seed: int) -> Errors:
 def solutions(name: str, designs: int, seed: int, at_once: int = AT_ONCE) -> Iterator[Solution]:
     """Draw and solve linkages, part by part."""
     for part, first in enumerate(range(0, designs, at_once)):
-        random = np.random.default_rng([seed, [*FAMILIES, *NEAR_A_TOGGLE].index(name), part])
+        random = np.random.default_rng([seed, [*FAMILIES, *NEAR_A_TOGGLE, *GEARED_BY_FRACTIONS].index(name), part])
         yield drawn((TODAY | NEAR_A_TOGGLE)[name], random, min(at_once, designs - first))
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
 from benchmarks.stress.linkages.sketch import Sketch
@@ -136,10 +138,11 @@ def held_cylinder(sketch: Sketch) -> None:
     sketch.ground("H", "C")
 
 
-def geared_five_bar(sketch: Sketch) -> None:
+def geared_five_bar(sketch: Sketch, ratio: Fraction = Fraction(-2)) -> None:
+    sketch.theta2 *= ratio.denominator  # over the turns after which all repeats
     sketch.crank()
     sketch.ground("D", "B")
-    sketch.wheel("wheel", "D", "E", -2.0)
+    sketch.wheel("wheel", "D", "E", float(ratio))
     sketch.rrr("C", "B", "E")
 
 
@@ -200,5 +203,18 @@ NEAR_A_TOGGLE = {
 
 RUBBED = (*(name for name in FAMILIES if name.endswith("arm drives")), "block on a coupler, rod drives")
 """Families whose drive loads a slide with friction, which linksweep refuses."""
-TODAY = {name: family for name, family in FAMILIES.items() if name not in RUBBED}
+GEARED_BY_FRACTIONS = {
+    f"geared five-bar, {ratio}": Family(
+        Topology(
+            f"crank A-B, wheel D-E : {ratio} crank, left B-C, right E-C",
+            partial(geared_five_bar, ratio=Fraction(ratio)),
+            ("wheel",),
+        ),
+        drive,
+    )
+    for ratio, drive in {"1/2": "", "3/2": "", "-2/3": "", "5/4": "wheel"}.items()
+}
+"""Families whose motion repeats only after several turns of the crank."""
+
+TODAY = {name: family for name, family in FAMILIES.items() if name not in RUBBED} | GEARED_BY_FRACTIONS
 """Families that linksweep computes."""

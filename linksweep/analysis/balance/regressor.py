@@ -26,7 +26,6 @@ from linksweep.mechanisms.balance import MassDistribution
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined, provenance
 from linksweep.results.sweep import sweep
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 PROBE = "_probe"
@@ -77,7 +76,7 @@ def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: in
     """
     names = _checked(scene, of)
     mechanism, quantity = scene.mechanism, scene.table.quantity
-    grid = crank_grid(theta2, scene.period, mechanism.index)
+    grid = scene.grid(theta2)
     angles = grid.angles  # of the loads' whole cycle
     values = _values(mechanism)
     probes = _with_masses(mechanism, list(values))

@@ -37,7 +37,6 @@ from linksweep.results.dataset import design_coordinates, provenance, variable, 
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 ANGLE = "transmission_angle"
@@ -217,7 +216,7 @@ def _floating(scene: Scene) -> str:
 
 def _numbers(scene: Scene, theta2: Any, sources: tuple[Any, ...], threads: int | None) -> list[Any]:
     """Return quantities of the table by name, internal ones too; a number is returned as it is."""
-    grid = crank_grid(theta2, scene.period, scene.mechanism.index)
+    grid = scene.grid(theta2)
     sampled = scene.at(grid)
     names = tuple(source for source in sources if isinstance(source, str))
     order = (*sampled.inputs.sizes, grid.dim)

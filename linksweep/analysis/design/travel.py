@@ -1,9 +1,9 @@
 """Travel of a position over the revolution: its ends, where its rate is zero, and the time that it takes each way.
 
 A position x(θ2) turns round where its rate is zero. The largest and the least value lie at θmax and θmin; with
-φ = θmax − θmin, between 0 and 360°,
+φ = θmax − θmin, between 0 and the angle P after which the motion repeats, 360° but for gears,
 
-    travel = x(θmax) − x(θmin)        time ratio = the larger of φ and 360° − φ over the smaller
+    travel = x(θmax) − x(θmin)        time ratio = the larger of φ and P − φ over the smaller
 
 A dwell is the angle about an end over which the position stays within a fraction of its travel. Zeros between samples
 are found by false position.
@@ -27,7 +27,7 @@ from linksweep.results.peak_search.groups import (
 )
 from linksweep.scene.scene import Scene
 
-SAMPLES, STEPS = 1440, 12
+PER_TURN, STEPS = 1440, 12
 TURN = 360.0
 EVERYWHERE = (0.0,)
 """The assembly of designs that have a position at every angle."""
@@ -49,12 +49,19 @@ class Travel(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """A position of designs and its rate at equal steps, and both at pairs of a design's row and an angle."""
+    """A position of designs and its rate at equal steps of a period [degree], and both at pairs of a design's row and
+    an angle."""
 
+    period: float
     position: Array
     rate: Array
     position_at: Callable[[Array, Array], Array]
     rate_at: Callable[[Array, Array], Array]
+
+    @property
+    def step(self) -> float:
+        """Step of the samples [degree]."""
+        return self.period / self.position.shape[1]
 
 
 def rate_of(position: str) -> str:
@@ -79,58 +86,60 @@ def travel(scene: Scene, name: str, dwell: float) -> Travel:
 
 
 def _samples(group: Group, names: tuple[str, ...], turns: bool) -> Samples:
-    designs, angles = len(group.designs), np.arange(SAMPLES) * (TURN / SAMPLES)
-    rows = np.repeat(np.arange(designs), SAMPLES)
-    position, rate = group.values(names, rows, np.tile(angles, designs)).reshape(2, designs, SAMPLES)
+    period = group.scene.period_of_motion
+    designs, count = len(group.designs), PER_TURN * round(period / TURN)
+    angles, rows = np.arange(count) * (period / count), np.repeat(np.arange(designs), count)
+    position, rate = group.values(names, rows, np.tile(angles, designs)).reshape(2, designs, count)
 
     def at(name: str) -> Callable[[Array, Array], Array]:
         return lambda rows, angles: group.of(name, rows)(np.nan_to_num(angles))
 
     position_at, rate_at = map(at, names)
     if not turns:
-        return Samples(position, rate, position_at, rate_at)
+        return Samples(period, position, rate, position_at, rate_at)
     unwrapped = np.unwrap(np.column_stack([position, position[:, :1]]), period=TURN, axis=1)
     goes_round = abs(unwrapped[:, -1] - unwrapped[:, 0]) > 0.5 * TURN
     position = np.where(goes_round[:, None], np.nan, unwrapped[:, :-1])
 
     def near_samples(rows: Array, angles: Array) -> Array:
-        near = position[rows, np.round(np.nan_to_num(angles) * (SAMPLES / TURN)).astype(int) % SAMPLES]
+        near = position[rows, np.round(np.nan_to_num(angles) * (count / period)).astype(int) % count]
         return near + (position_at(rows, angles) - near + 0.5 * TURN) % TURN - 0.5 * TURN
 
-    return Samples(position, rate, near_samples, rate_at)
+    return Samples(period, position, rate, near_samples, rate_at)
 
 
 def _of_group(samples: Samples, dwell: float) -> Travel:
     """Return the travel of each design of a group."""
     (top, top_at), (bottom, bottom_at) = (_end(samples, sign) for sign in (1.0, -1.0))
-    way = (top_at - bottom_at) % TURN
-    ratio = np.maximum(way, TURN - way) / np.minimum(way, TURN - way)
+    period = samples.period
+    way = (top_at - bottom_at) % period
+    ratio = np.maximum(way, period - way) / np.minimum(way, period - way)
     near = dwell * (top - bottom)
     dwells = _dwell(samples, top_at, top - near, 1.0), _dwell(samples, bottom_at, bottom + near, -1.0)
-    return Travel(top, top_at % TURN, bottom, bottom_at % TURN, ratio, *dwells)
+    return Travel(top, top_at % period, bottom, bottom_at % period, ratio, *dwells)
 
 
 def _end(samples: Samples, sign: float) -> tuple[Array, Array]:
     """Return the largest position (with sign -1 the least) and its crank angle: a zero of the rate by the largest
     sample."""
-    rows = np.arange(len(samples.position))
+    rows, count = np.arange(len(samples.position)), samples.position.shape[1]
     k = np.argmax(np.where(np.isnan(samples.position), -np.inf, sign * samples.position), axis=1)
     first = np.where((samples.rate[rows, k - 1] < 0.0) != (samples.rate[rows, k] < 0.0), k - 1, k)
-    start, end = ((j * (TURN / SAMPLES), samples.rate[rows, j % SAMPLES]) for j in (first, first + 1))
+    start, end = ((j * samples.step, samples.rate[rows, j % count]) for j in (first, first + 1))
     at = crossing(partial(samples.rate_at, rows), start, end, STEPS)
-    at = np.where(np.isfinite(at), at, k * (TURN / SAMPLES))
+    at = np.where(np.isfinite(at), at, k * samples.step)
     return samples.position_at(rows, at), at
 
 
 def _dwell(samples: Samples, at: Array, level: Array, sign: float) -> Array:
     """Return the angle about an end over which the position stays beyond a level."""
-    rows = np.arange(len(at))
+    rows, count = np.arange(len(at)), samples.position.shape[1]
     angle = np.zeros(len(at))
     for way in (1, -1):
-        k = np.round(at * (SAMPLES / TURN)).astype(int)[:, None] + way * np.arange(SAMPLES)
-        within = sign * (samples.position[rows[:, None], k % SAMPLES] - level[:, None]) >= 0.0
+        k = np.round(at / samples.step).astype(int)[:, None] + way * np.arange(count)
+        within = sign * (samples.position[rows[:, None], k % count] - level[:, None]) >= 0.0
         step = np.argmin(within, axis=1)
-        ends = [k[rows, np.maximum(step + side, 0)] * (TURN / SAMPLES) for side in (-1, 0)]
+        ends = [k[rows, np.maximum(step + side, 0)] * samples.step for side in (-1, 0)]
         inside, outside = ((end, samples.position_at(rows, end) - level) for end in ends)
         angle += way * (crossing(lambda x: samples.position_at(rows, x) - level, inside, outside, STEPS) - at)
     return angle

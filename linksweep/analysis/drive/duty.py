@@ -13,7 +13,6 @@ from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylind
 from linksweep.results.dataset import with_units
 from linksweep.results.peak_search.quadrature import cycle_time
 from linksweep.results.peaks import peaks
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
@@ -99,7 +98,7 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
 
 def turning_problems(scene: Scene) -> list[str]:
     """List why a scene has no crank that turns in one direction."""
-    grid = crank_grid(round(2.0 * scene.period), scene.period, scene.mechanism.index)
+    grid = scene.grid(round(2.0 * scene.period))
     omega2 = scene.at(grid).omega2 if scene.changes_speed else scene.omega2
     if np.any(np.equal(omega2, 0.0)):
         return ["omega2 = 0 rad/s: must turn; give the speed of the crank"]

@@ -20,7 +20,6 @@ from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import joined
 from linksweep.results.sweep import sweep
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 
@@ -75,7 +74,7 @@ def breakdown(
     require(scene, "pins")
     refuse(count_problems("threads", threads))
     names = _names(scene, of)
-    grid = crank_grid(theta2, scene.period, scene.mechanism.index)
+    grid = scene.grid(theta2)
     sampled = scene.at(grid)
     parts = tuple(dict.fromkeys(part for name in names for part in scene.table.quantity[name].components))
     cycle = sweep(scene, theta2, of=dict.fromkeys([*names, *parts]), threads=threads)

@@ -25,7 +25,6 @@ from linksweep.results.dataset import design_coordinates, with_units
 from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 LIMITS = {"N": Rule("force", above=0.0), "N m": Rule("torque", above=0.0)}
@@ -83,7 +82,7 @@ def speed_separation(
     unknowns = scene.mechanism.unknowns(scene.drive)
     names = tuple(name for name in known if name in unknowns) if of is None else tuple(requested("of", of))
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
-    grid = crank_grid(theta2, scene.period, scene.mechanism.index)
+    grid = scene.grid(theta2)
     sampled = scene.at(grid)
     bare = replace(sampled, loads=())
     cycle = sweep(scene, theta2, of=names, threads=threads)
@@ -181,7 +180,7 @@ def _one_each(scene: Scene) -> xr.DataArray:
 def _of_samples(scene: Scene, parts: tuple[str, ...], below: float, threads: int | None) -> xr.DataArray:
     """Return the largest ω2² that the samples of a grid allow; the continuous revolution can only lower it."""
     index = scene.mechanism.index
-    grid = crank_grid(SAMPLES, scene.period, index)
+    grid = scene.grid(SAMPLES)
     sampled = scene.at(grid)
     ok = sweep(scene, SAMPLES, of=[], threads=threads)["status"].drop_vars(index, errors="ignore") == 0
     growing = quantities_with(TERMS["per_omega2_squared"][0], replace(sampled, loads=()), grid, parts, threads)

@@ -124,7 +124,7 @@ def gear_problems(parts: list[Part], topology: Topology, ratios: Mapping[str, st
             yield f"gears.{role}.ratio is stated {times}: state it once, in links or in gears"
         for ratio in stated:
             if not re.fullmatch(RATIO, ratio) or not Fraction(ratio):
-                yield f'gears.{role}.ratio = "{ratio}": must be a whole number such as -2, and not 0'
+                yield f'gears.{role}.ratio = "{ratio}": must be a whole number or a fraction such as -3/2, and not 0'
         if wheel.mate != topology.crank:
             yield f"links: {role} meshes with {wheel.mate}: give its ratio to the crank, {topology.crank}"
         if len({*wheel.pins} & {*topology.ground}) != 1:

@@ -17,7 +17,7 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, force_color
-from linksweep.plot.kit.shape import CURVE, Shape, positions, shape_of
+from linksweep.plot.kit.shape import Shape, positions, shape_of
 from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -110,9 +110,10 @@ def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) ->
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
     parts = {force: _rows(cycle, force) for force in drawing.forces}
+    curve = places.sizes[signals.INDEX] - len(angles)
     frames = []
     for k in good:
-        shape = shape_of(scene, drawing, places.isel({signals.INDEX: [*range(CURVE), CURVE + k]}), point)
+        shape = shape_of(scene, drawing, places.isel({signals.INDEX: [*range(curve), curve + k]}), point)
         frames.append(Frame(float(angles[k]), shape, {force: rows[:, k] for force, rows in parts.items()}))
     return frames
 

@@ -16,7 +16,7 @@ from linksweep.plot.kit import signals
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
-CURVE = 720  # positions along the curve of a point
+CURVE = 720  # positions, of a turn of the crank, along the curve of a point
 BLOCK = 0.26  # of the mean length of two bars, or of bar and frame: half a side of a block
 
 
@@ -51,13 +51,13 @@ class Shape(NamedTuple):
 
 
 def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dataset:
-    """Return the positions of the pins over the revolution and, behind them, at these angles, with their status."""
+    """Return the positions of the pins until they repeat and, behind them, at these angles, with their status."""
     set_aside: dict[str, Any] = dict(drawing.ideal)
     geometry = Scene(replace(scene.mechanism, **set_aside), omega2=0.0)
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
-    turn = np.arange(CURVE) * (360.0 / CURVE)
-    cycle = sweep(geometry, theta2=[*turn, *angles], of=outputs)
+    count = CURVE * round(geometry.period / geometry.mechanism.period)
+    cycle = sweep(geometry, theta2=[*np.arange(count) * (geometry.period / count), *angles], of=outputs)
     signals.require_one_design(cycle.values())
     return cycle
 

@@ -20,7 +20,6 @@ from linksweep.results.compute import compute
 from linksweep.results.peak_search.between import Array, positions_at
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 WIDE = np.radians(20.0)
@@ -98,13 +97,13 @@ def with_narrow_approaches(scene: Scene, threads: int | None = None) -> Array:
 
     A design may have one if an even sample lies in or beside it, or if a near-toggle is narrow enough to hide it.
     """
-    index, sizes = scene.mechanism.index, scene.inputs.sizes
-    grid = crank_grid(round(scene.period / STEP), scene.period, index)
+    sizes = scene.inputs.sizes
+    grid = scene.grid(round(scene.period / STEP))
     widths = tuple(width for _, width in scene.approaches())
     request = plan(scene.table, widths, scene.inputs.forms)
     least = {width: Reduction("least_sample", width) for width in widths}
     reduced = reduce_rows(request, tuple(least.values()), scene.inputs.fields, grid, sizes, threads)
-    near_toggles = compute(scene, crank_grid(1, scene.period, index), (NEAR_WIDTH, FAR_WIDTH), threads)
+    near_toggles = compute(scene, scene.grid(1), (NEAR_WIDTH, FAR_WIDTH), threads)
     # at a sample δ away from an approach the width is √(w² + δ²), which is at most w + δ
     seen = [_below(reduced[least[width]][0], WIDE + np.radians(STEP)) for width in widths]
     hidden = [_below(field, NARROW_NEAR_TOGGLE) for field in near_toggles.values()]

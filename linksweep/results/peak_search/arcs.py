@@ -30,13 +30,14 @@ from linksweep.results.peak_search.paths import (
     windows_about,
 )
 from linksweep.scene.curves.quick import STEP
+from linksweep.scene.scene import Scene
 
 PER_ARC = 192
 """Even samples of an arc, in x."""
 NEAREST = 1e-5
 """Distance in x from the end of an arc within which rounding errors exceed any rise left to find."""
 NEIGHBOURS = np.array([-1.0, 0.0, 1.0])
-"""Turns away from the nearest one in which an arc may still reach into a piece."""
+"""Periods of the motion away from the nearest one in which an arc may still reach into a piece."""
 LONGEST_PIECE = 180.0
 """Longest piece of a part that one path follows [degree]."""
 
@@ -68,7 +69,7 @@ def arcs_within(part: Part, group: Group) -> Paths:
 def about_approaches_on_arcs(group: Group) -> Paths:
     """Return a window about every closest approach on the arcs of each design."""
     row, middle, half = _middles(arc_ends(group))
-    close = approaches(group.some(row), _angles(middle, half, _even()), joined=False)
+    close = approaches(group.some(row), _angles(middle, half, _even(group)), joined=False)
     return windows_about(close._replace(row=row[close.row]))
 
 
@@ -91,7 +92,8 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
     before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
     before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
     near = np.empty((len(row), 0)) if group.limits is None else group.limits.near_toggle[row]
-    steps = _steps(np.concatenate([toggles[0][row], toggles[1][row], near], axis=1), middle, half)
+    singular = np.concatenate([toggles[0][row], toggles[1][row], near], axis=1)
+    steps = _steps(singular, middle, half, group.scene.period_of_motion)
     paths = Paths(row, x, before, after, cuts, middle, half, steps, ends="stop")
     return paths.some(_ok_somewhere(group, paths))
 
@@ -101,10 +103,11 @@ def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array
     edges = np.linspace(*part, 1 + math.ceil((part[1] - part[0]) / LONGEST_PIECE))[:, None]
     kind = group.assembly()
     whole = (kind[:, None] == EVERYWHERE) | (not toggles)
-    turn = [np.where(whole, ends, np.nan) for ends in (0.0, 360.0)]
+    period = group.scene.period_of_motion
+    turn = [np.where(whole, ends, np.nan) for ends in (0.0, period)]
     arcs = [np.where(whole, np.nan, ends) for ends in toggles or (np.nan, np.nan)]
     start, end = (np.concatenate(ends, axis=1)[..., None, None] for ends in zip(turn, arcs, strict=True))
-    away = 360.0 * (np.round((edges[:-1] - start) / 360.0) + NEIGHBOURS)
+    away = period * (np.round((edges[:-1] - start) / period) + NEIGHBOURS)
     first, last = np.maximum(start + away, edges[:-1]), np.minimum(end + away, edges[1:])
     return tuple(np.where(first < last, ends, np.nan).reshape(len(kind), -1) for ends in (first, last))
 
@@ -130,16 +133,16 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, closely: bool) -
     Samples are even, and dense towards both ends, about near-toggles that the arc passes, beside breaks and, `closely`,
     about closest approaches.
     """
-    even = _even()
-    near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / PER_ARC / NEAREST), 0.5)
-    shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), PER_ARC + 2 * len(near)))
+    even, period = _even(group), group.scene.period_of_motion
+    near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / len(even) / NEAREST), 0.5)
+    shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), len(even) + 2 * len(near)))
     special = near_toggle_samples(group), both_sides(breaks(group)), both_sides(jump_angles(group))
-    graded, sides, jumps = (_filled(_on_arc(angles, middle, half)) for angles in special)
-    quick = _on_arc(_quick_and_even(group), middle, half)
-    close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half)
+    graded, sides, jumps = (_filled(_on_arc(angles, middle, half, period)) for angles in special)
+    quick = _on_arc(_quick_and_even(group), middle, half, period)
+    close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half, period)
     samples = [shared, graded, sides, quick, *([close] if closely else [])]
     # no cuts near the ends: a quantity that has a mean is smooth there, and rounding spoils samples nearer to them
-    shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), PER_ARC // 8 + 2))
+    shared = np.broadcast_to(np.concatenate([[-QUARTER], even[4::8], [QUARTER]]), (len(middle), len(even) // 8 + 2))
     cuts = [shared, graded[:, ::2], jumps, close[:, ::7], thinned(quick)]
     return in_order(np.concatenate(samples, axis=1)), in_order(np.concatenate(cuts, axis=1))
 
@@ -151,13 +154,14 @@ def _quick_and_even(group: Group) -> Array:
     return np.broadcast_to(angles, (len(group.designs), len(angles)))
 
 
-def _even() -> Array:
-    return (np.arange(PER_ARC) + 0.5) * (np.pi / PER_ARC) - QUARTER
+def _even(group: Group) -> Array:
+    count = PER_ARC * round(group.scene.period_of_motion / group.scene.mechanism.period)
+    return (np.arange(count) + 0.5) * (np.pi / count) - QUARTER
 
 
-def _on_arc(angles: Array, middle: Array, half: Array) -> Array:
+def _on_arc(angles: Array, middle: Array, half: Array, period: float) -> Array:
     """Return x of angles on arcs; NaN for angles beyond an arc, or within NEAREST of its end."""
-    away = np.mod(angles - middle[:, None] + 180.0, 360.0) - 180.0
+    away = np.mod(angles - middle[:, None] + 0.5 * period, period) - 0.5 * period
     with np.errstate(invalid="ignore", divide="ignore"):  # an angle beyond the arc, or an arc of no length
         x = np.arcsin(away / half[:, None])
     return np.where(np.abs(x) < QUARTER - NEAREST, x, np.nan)
@@ -169,15 +173,15 @@ def _filled(x: Array) -> Array:
     return np.where(np.isnan(x), arbitrary, x)
 
 
-def _steps(toggles: Array, middle: Array, half: Array) -> Array:
+def _steps(toggles: Array, middle: Array, half: Array, period: float) -> Array:
     """Return steps (path, end) for extrapolation to the ends, small against the distance in x to the next toggle or
     near-toggle.
 
     The step is 0 at an end that is no toggle: there a signal has a value, and needs no extrapolation.
     """
     own = np.stack([middle - half, middle + half], axis=1)
-    away = np.abs(np.mod(own[:, :, None] - toggles[:, None, :] + 180.0, 360.0) - 180.0)
-    away = np.sort(np.nan_to_num(away, nan=180.0), axis=-1)  # the least is the end itself
+    away = np.abs(np.mod(own[:, :, None] - toggles[:, None, :] + 0.5 * period, period) - 0.5 * period)
+    away = np.sort(np.nan_to_num(away, nan=0.5 * period), axis=-1)  # the least is the end itself
     steps = np.clip(0.01 * np.sqrt(2.0 * away[:, :, 1] / np.maximum(half[:, None], 1e-300)), 1e-6, 0.004)
     return np.where(away[:, :, 0] < ASIDE, steps, 0.0)
 
@@ -185,16 +189,18 @@ def _steps(toggles: Array, middle: Array, half: Array) -> Array:
 # -------------------------------------------------------------------------------------------- integrals of a part
 
 
-def within(paths: Paths, part: Part, period: float) -> Paths:
-    """Return turns or arcs with their cuts clipped to lie between two angles [degree]; samples stay as they are."""
+def within(paths: Paths, part: Part, scene: Scene) -> Paths:
+    """Return turns or arcs of a scene with their cuts clipped to lie between two angles [degree]; samples stay as they
+    are."""
     first, last = part
     if paths.middle is None:
-        start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], period)
-        twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + period], axis=1)
+        start = paths.cuts[:, :1] + np.mod(first - paths.cuts[:, :1], scene.period)
+        twice = np.concatenate([paths.cuts, paths.cuts[:, 1:] + scene.period], axis=1)
         return paths._replace(cuts=np.clip(twice, start, start + (last - first)))
-    nearest, reach = np.round((0.5 * (first + last) - paths.middle) / 360.0), 1 + int((last - first) // 720.0)
-    away = np.arange(-reach, reach + 1.0)  # turns away from the part's middle in which an arc may still lie in the part
+    period = scene.period_of_motion
+    nearest, reach = np.round((0.5 * (first + last) - paths.middle) / period), 1 + int((last - first) // (2.0 * period))
+    away = np.arange(-reach, reach + 1.0)  # periods from the part's middle in which an arc may still lie in the part
     copies = paths.some(np.tile(np.arange(len(paths.row)), len(away)))
-    middle = copies.middle + 360.0 * (np.tile(nearest, len(away)) + np.repeat(away, len(paths.row)))
+    middle = copies.middle + period * (np.tile(nearest, len(away)) + np.repeat(away, len(paths.row)))
     ends = (np.arcsin(np.clip((end - middle) / copies.half, -1.0, 1.0))[:, None] for end in part)
     return copies._replace(middle=middle, cuts=np.clip(copies.cuts, *ends))

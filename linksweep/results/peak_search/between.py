@@ -14,7 +14,6 @@ import numpy as np
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
 
@@ -43,7 +42,7 @@ def quantities_at(
 
 def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
     """Return values (names, designs, angles) of functions of the position, at angles [degree] shared by all designs."""
-    grid, inputs = crank_grid(angles, scene.period, scene.mechanism.index), scene.at_one_angle.inputs
+    grid, inputs = scene.grid(angles), scene.at_one_angle.inputs
     forms = tuple(
         (name, (CHOSEN,) if isinstance(form, tuple) and form and name not in grid.names else form)
         for name, form in inputs.forms
@@ -60,12 +59,11 @@ def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
 
     Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle.
     """
-    period, index = scene.period, scene.mechanism.index
     if scene.steady:
-        return scene.inputs, crank_grid(angles, period, index), np.empty(0, dtype=int)
+        return scene.inputs, scene.grid(angles), np.empty(0, dtype=int)
     different, sample = np.unique(angles, return_inverse=True)
-    known = crank_grid(different, period, index)
-    folded, first, place = np.unique(in_period(different, period), return_index=True, return_inverse=True)
+    known = scene.grid(different)
+    folded, first, place = np.unique(in_period(different, scene.period), return_index=True, return_inverse=True)
     inputs = scene.at(known._replace(angles=folded, table=known.table[:, first])).inputs
     return inputs, known._replace(angles=angles, table=known.table.take(sample, axis=1)), place[sample]
 

@@ -16,7 +16,7 @@ from linksweep.results.peak_search.between import Array, quantities_at
 from linksweep.scene.scene import Scene
 
 SEAM = 40
-"""Samples of a turn that are repeated after its end, so that every extreme has neighbours on both sides."""
+"""Samples of a period that are repeated after its end, so that every extreme has neighbours on both sides."""
 WIDE = 0.6
 """Half-width from which on a near-toggle is as smooth as the motion of the links [rad]."""
 CLEAR = 4.0

@@ -35,7 +35,6 @@ from linksweep.results.peak_search.paths import Part, about_approaches, about_br
 from linksweep.results.peak_search.poles import may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 WINDOWS_AT_ONCE = 4096
@@ -149,7 +148,7 @@ def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[
     turning = tuple(signal for signal in signals if index in request.outputs[signal].dims)
     constant = tuple(signal for signal in signals if signal not in turning)
     peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, threads) if turning else {}
-    values = compute(scene, crank_grid(1, scene.period, index), constant) if constant else {}
+    values = compute(scene, scene.grid(1), constant) if constant else {}
     at_angles = {signal: _at_angle(scene, peak) for signal, peak in peaks.items()}
     return at_angles | {signal: _constant(field) for signal, field in values.items()}
 

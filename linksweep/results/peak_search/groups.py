@@ -27,7 +27,7 @@ from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 256
-"""Designs searched together, so that the memory for it does not grow with a study."""
+"""Designs searched together whose motion repeats every turn, so that the memory for it does not grow with a study."""
 OWN_AT_ONCE = 16
 """Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
 so the memory grows with the square of this number."""
@@ -102,7 +102,8 @@ def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
     chosen = _different(scene, names) if designs is None else designs
-    step = min(at_once, OWN_AT_ONCE) if own else at_once
+    turns = round(scene.period_of_motion / scene.mechanism.period)
+    step = max(1, (min(at_once, OWN_AT_ONCE) if own else at_once) // turns)
     for first in range(0, len(chosen), step):
         part = chosen[first : first + step]
         places = places_of(inputs.sizes, part)

@@ -34,11 +34,10 @@ from linksweep.results.peak_search.between import (
     in_period,
 )
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, extremes, parabola, zeros
-from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 512
-"""Designs searched together, so that the memory for it does not grow with a study."""
+"""Designs searched together over one turn, so that the memory for it does not grow with a study."""
 EVEN, OFF_ROUND = 360, 0.381966
 """Even samples of a turn or an arc; the first one, in steps: off round angles, where machines have their toggles."""
 NEAREST = 1e-11
@@ -48,7 +47,6 @@ WIDTH_STEPS = 5
 SHORTEST = 1e-12
 """Length of an arc that rounding may leave between two toggles that are one [degree]."""
 NO_TOGGLE = -1
-TURN = 360.0
 
 
 class Arcs(NamedTuple):
@@ -66,7 +64,7 @@ class Arcs(NamedTuple):
 
     @property
     def whole(self) -> Array:
-        """True for each arc that is a turn without a toggle."""
+        """True for each arc that is a whole period without a toggle."""
         return self.start_part == NO_TOGGLE
 
 
@@ -118,7 +116,7 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     if scene.table.limits is not None:
         sizes, limits = limits_of(scene.unloaded)
         return Field(tuple(sizes), limits.assembly.reshape(tuple(sizes.values())))
-    at_one = crank_grid(1, scene.period, scene.mechanism.index)
+    at_one = scene.grid(1)
     return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
 
 
@@ -138,10 +136,12 @@ def signals_of(limits: tuple[Limit, ...]) -> tuple[str, ...]:
 
 
 def find_limits(scene: Scene, limits: tuple[Limit, ...], designs: Array) -> Limits:
-    """Search the limits of these designs."""
-    some = [_search(scene, limits, designs[k : k + AT_ONCE], k) for k in range(0, len(designs), AT_ONCE)]
+    """Search the limits of these designs of a mechanism alone, whose period is that of its motion."""
+    step = max(1, AT_ONCE // round(scene.period / scene.mechanism.period))
+    some = [_search(scene, limits, designs[k : k + step], k) for k in range(0, len(designs), step)]
     arcs, near, zeros = zip(*some, strict=True)
-    return _tables(_joined(Arcs, arcs), _joined(NearToggles, near), _joined(Zeros, zeros), len(designs), len(limits))
+    tables = _joined(Arcs, arcs), _joined(NearToggles, near), _joined(Zeros, zeros)
+    return _tables(*tables, len(designs), len(limits), scene.period)
 
 
 def _joined(kind: Callable[..., Numbers], some: Iterable[Numbers]) -> Numbers:
@@ -149,18 +149,18 @@ def _joined(kind: Callable[..., Numbers], some: Iterable[Numbers]) -> Numbers:
     return kind(*map(np.concatenate, zip(*some, strict=True)))
 
 
-def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: int) -> Limits:
+def _tables(arcs: Arcs, near: NearToggles, zeros: Zeros, designs: int, parts: int, period: float) -> Limits:
     """Return the limits of so many designs, of machines with so many parts, as tables."""
-    arcs = arcs.some(np.lexsort((in_period(arcs.start, TURN), arcs.row)))
-    start, count = in_period(arcs.start, TURN), np.bincount(arcs.row, minlength=designs)
+    arcs = arcs.some(np.lexsort((in_period(arcs.start, period), arcs.row)))
+    start, count = in_period(arcs.start, period), np.bincount(arcs.row, minlength=designs)
     whole = np.bincount(arcs.row, arcs.whole, designs) > 0
     known = np.flatnonzero(zeros.part != NO_TOGGLE)
-    angles = by_row((zeros.row * parts + zeros.part)[known], in_period(zeros.angle[known], TURN), designs * parts)
+    angles = by_row((zeros.row * parts + zeros.part)[known], in_period(zeros.angle[known], period), designs * parts)
     return Limits(
         np.where(whole, EVERYWHERE, np.where(count > 0, PARTLY, NEVER)),
         by_row(arcs.row, start, designs),
         by_row(arcs.row, start + (arcs.end - arcs.start), designs),
-        by_row(near.row, in_period(near.angle, TURN), designs),
+        by_row(near.row, in_period(near.angle, period), designs),
         by_row(near.row, np.tan(0.5 * near.width), designs),
         np.sort(angles, axis=1).reshape(designs, parts, angles.shape[1]),
     )
@@ -173,7 +173,7 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int)
     """Return the arcs, near-toggles and zeros of some designs, whose rows count from `first`."""
     count = len(designs)
     none, zero = np.full(count, NO_TOGGLE), np.zeros(count)
-    arcs = Arcs(np.arange(count), zero, zero + TURN, none, none)
+    arcs = Arcs(np.arange(count), zero, zero + scene.period, none, none)
     near = NearToggles(*(np.empty(0, dtype=kind) for kind in (int, float, float)))
     zeros = [Zeros(*(np.empty(0, dtype=kind) for kind in (int, float, int)))]
     for part, limit in enumerate(limits):
@@ -182,7 +182,7 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int)
             own = arcs.some(np.flatnonzero(arcs.whole == turns))
             if not len(own.row):
                 continue
-            curves = Curves(scene, limit, designs[own.row], _places(own, near, count, turns), turns)
+            curves = Curves(scene, limit, designs[own.row], _places(own, near, count, turns, scene.period), turns)
             crossed, touched, near_toggles = _zeros(curves, own, part)
             known += [near_toggles] if limit.zeros != "jump" else []
             pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
@@ -203,7 +203,7 @@ def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearTog
     turning = extremes(curves, values, noise)
     height = turning.sign * turning.values[1]
     curve, angle = zeros(curves, values, noise, turning.some(height < -turning.noise))
-    angle = in_period(angle, TURN) if curves.turns else angle  # the last samples of a turn are the first ones again
+    angle = in_period(angle, curves.scene.period) if curves.turns else angle  # the last samples repeat the first
     closes = (turning.sign > 0.0) | (curves.limit.zeros != "toggle")
     near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise)))
     least = turning.some(closes & (np.abs(height) <= turning.noise))
@@ -233,7 +233,7 @@ def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
     wraps = (np.bincount(arc, minlength=len(arcs.row)) > 0) & curves.turns
     first = np.full(len(wraps), np.inf)
     np.minimum.at(first, arc, angle)
-    end, end_part = np.where(wraps, first + TURN, arcs.end), np.where(wraps, part, arcs.end_part)
+    end, end_part = np.where(wraps, first + curves.scene.period, arcs.end), np.where(wraps, part, arcs.end_part)
     starts = np.flatnonzero(~wraps)
     owner = np.concatenate([arc, starts, np.arange(len(wraps))])
     x = np.concatenate([angle, arcs.start[starts], end])
@@ -249,19 +249,19 @@ def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
 # --------------------------------------------------------------------------------------------------- samples
 
 
-def _places(arcs: Arcs, near: NearToggles, designs: int, turns: bool) -> Array:
+def _places(arcs: Arcs, near: NearToggles, designs: int, turns: bool, period: float) -> Array:
     """Return the places (arc, sample) [degree] of samples: even ones, and dense ones about near-toggles and ends."""
     angle, width = (by_row(near.row, numbers, designs)[arcs.row] for numbers in (near.angle, np.tan(0.5 * near.width)))
-    graded = graded_samples(angle, width)
+    graded, count = graded_samples(angle, width), EVEN * round(period / 360.0)
     if turns:
-        even = np.broadcast_to((np.arange(EVEN) + OFF_ROUND) * (TURN / EVEN), (len(graded), EVEN))
-        x = np.sort(np.concatenate([even, TURN * _filled(in_period(graded, TURN) / TURN)], axis=1), axis=1)
-        return np.concatenate([x, x[:, :SEAM] + TURN], axis=1)
+        even = np.broadcast_to((np.arange(count) + OFF_ROUND) * (period / count), (len(graded), count))
+        x = np.sort(np.concatenate([even, period * _filled(in_period(graded, period) / period)], axis=1), axis=1)
+        return np.concatenate([x, x[:, :SEAM] + period], axis=1)
     start, length = arcs.start[:, None], (arcs.end - arcs.start)[:, None]
-    along = in_period(graded - start, TURN) / length
-    even = 0.5 - 0.5 * np.cos(np.pi * (np.arange(EVEN) + 0.5) / EVEN)
+    along = in_period(graded - start, period) / length
+    even = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
     ends = NEAREST * 2.0 ** np.arange(np.log2(even[0] / NEAREST))
-    shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(graded), EVEN + 2 * len(ends)))
+    shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(graded), count + 2 * len(ends)))
     return start + length * np.sort(
         np.concatenate([shared, _filled(np.where(along < 1.0, along, np.nan))], axis=1), axis=1
     )

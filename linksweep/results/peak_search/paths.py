@@ -124,12 +124,13 @@ def neighbours(x: Array, period: float) -> tuple[Array, Array]:
 
 
 def near_toggle_samples(group: Group) -> Array:
-    """Return samples (design, sample) of one turn [degree], graded about near-toggles by their widths."""
+    """Return samples (design, sample) of one period of the motion [degree], graded about near-toggles."""
     middle = group.number(group.scene.mechanism.near_toggle_angle)
     samples = middle[:, None] + graded_samples(*group.near_toggles())
     if group.limits is None:
         return samples
-    even = np.broadcast_to(np.arange(OFF_ROUND, 360.0, EVEN_STEP), (len(samples), round(360.0 / EVEN_STEP)))
+    even = np.arange(OFF_ROUND, group.scene.period_of_motion, EVEN_STEP)
+    even = np.broadcast_to(even, (len(samples), len(even)))
     return _merged(np.sort(np.concatenate([samples, even], axis=1), axis=1))  # near-toggles may be few, or on one side
 
 
@@ -146,10 +147,15 @@ def _merged(x: Array) -> Array:
 
 
 def _graded_over_period(group: Group) -> Array:
-    """Return the samples (design, sample) about the near-toggles of every turn [degree], in order."""
-    turn = group.scene.mechanism.period
-    one = in_order(in_period(near_toggle_samples(group), turn))
-    return np.concatenate([one + turn * k for k in range(round(group.scene.period / turn))], axis=1)
+    """Return the samples (design, sample) about the near-toggles of the whole period [degree], in order."""
+    one = in_order(in_period(near_toggle_samples(group), group.scene.period_of_motion))
+    return np.concatenate([one + start for start in _starts_of_motion(group)], axis=1)
+
+
+def _starts_of_motion(group: Group) -> Array:
+    """Return the angles [degree] at which the motion begins anew within the whole period."""
+    period = group.scene.period_of_motion
+    return period * np.arange(round(group.scene.period / period))
 
 
 def both_sides(angles: Array) -> Array:
@@ -164,11 +170,12 @@ def breaks(group: Group) -> Array:
 
 
 def jump_angles(group: Group) -> Array:
-    """Return the jumps (design, jump) of every turn [degree]; NaN where a crank that does not turn fully has none."""
+    """Return the jumps (design, jump) of the whole period [degree]; NaN where a crank that does not turn fully has
+    none."""
     turn, designs = group.scene.mechanism.period, len(group.designs)
-    rounds = range(round(group.scene.period / turn))
-    angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in rounds]
-    located = [group.zeros(kind) + turn * k for kind in ("jump", "pole") for k in rounds]
+    turns = range(round(group.scene.period / turn))
+    angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
+    located = [group.zeros(kind) + start for kind in ("jump", "pole") for start in _starts_of_motion(group)]
     return np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
 
 

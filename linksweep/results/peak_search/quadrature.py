@@ -148,7 +148,7 @@ def integrals(
     # whole turns last: an integral that designs share, such as the time of a cycle, is that of a whole turn
     for kind, group in assembled_groups(scene, names, (PARTLY, EVERYWHERE)):
         paths = arcs(group) if kind == PARTLY and arc_ends(group) else turns(group)
-        paths = paths if part is None else within(paths, part, scene.period)
+        paths = paths if part is None else within(paths, part, scene)
         _integrate(group, totals, integrands, paths, threads)
     return totals
 

@@ -158,7 +158,7 @@ TAKEN = "has a meaning of its own in linksweep or Python: give the part another 
         ),
         (
             "crank A-B, wheel D-E : 0 crank, rod B-C, arm E-C",
-            'gears.wheel.ratio = "0": must be a whole number such as -2, and not 0',
+            'gears.wheel.ratio = "0": must be a whole number or a fraction such as -3/2, and not 0',
         ),
     ],
 )
@@ -173,7 +173,7 @@ def test_gears_that_do_not_fit():
         "gears.wheel.ratio is stated twice: state it once, in links or in gears",
     ]
     assert problems(links.replace("2 crank", "crank"), ratios=(("wheel", "1.5"),)) == [
-        'gears.wheel.ratio = "1.5": must be a whole number such as -2, and not 0'
+        'gears.wheel.ratio = "1.5": must be a whole number or a fraction such as -3/2, and not 0'
     ]
 
 
