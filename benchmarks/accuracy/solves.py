@@ -25,8 +25,9 @@ from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import Call, Race, Row, race
 
 TIMES = "times the time"
-OURS, KERNEL, DENSE, RATES = "ls.sweep", "its kernel alone", "ls.sweep, solver='dense'", "ls.sweep, rates"
-LINKSWEEP = (OURS, KERNEL, DENSE, RATES)
+OURS, KERNEL, RATES = "ls.sweep", "its kernel alone", "ls.sweep, rates"
+DENSE, REFINED = "ls.sweep, solver='dense'", "ls.sweep, solver='refined'"
+LINKSWEEP = (OURS, KERNEL, DENSE, REFINED, RATES)
 NEAR = "near a toggle"
 
 STEADY = replace(GENERAL, alpha2=0.0)
@@ -157,7 +158,8 @@ def _rival(module: str) -> Bind:
 NINE_BY = {
     OURS: Method(_sweep),
     KERNEL: Method(_kernel),
-    DENSE: Method(partial(_sweep, solver="dense"), most=7200),
+    DENSE: Method(partial(_sweep, solver="dense")),
+    REFINED: Method(partial(_sweep, solver="refined")),
     "limit.c": Method(_limit),
     "numpy closed form": Method(_numpy(peers.numpy_closed_form)),
     "numpy + LAPACK": Method(_numpy(peers.numpy_lapack)),

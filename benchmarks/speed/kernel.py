@@ -1,4 +1,4 @@
-"""Select linksweep's way to run (interpreted or compiled); extract a compiled kernel without the Python around it."""
+"""Select linksweep's way to run (interpreted or compiled); extract compiled kernels without the Python around them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,15 @@ from functools import partial
 from typing import NamedTuple
 from unittest import mock
 
+import numpy as np
+
+import linksweep as ls
 from benchmarks.timing import Call
 from linksweep.engine import run
+from linksweep.engine.linear.solve import unknowns
 from linksweep.engine.peaks import find_peaks
+from linksweep.results.system import sampled_systems
+from linksweep.scene.grid import crank_grid
 
 
 class Kernel(NamedTuple):
@@ -46,3 +52,13 @@ def kernel_of(call: Call) -> Kernel:
     sources = max((kernel.sources for kernel in kernels), key=lambda sources: len(sources[0]))
     parts = [kernel.call for kernel in kernels if kernel.sources == sources]
     return Kernel(sources, lambda: [part() for part in parts])
+
+
+def eliminations(scene: ls.Scene, angles: int) -> tuple[Call, Call]:
+    """Return two solutions of a scene's square systems, by linksweep from their terms and by numpy from their matrices:
+    no kinematics, no labels."""
+    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    systems, page = sampled_systems(scene.at(grid), grid, 1), ls.system(scene, grid.angles)
+    matrix, rhs = (np.ascontiguousarray(page[part].values) for part in ("matrix", "rhs"))
+    ours = partial(unknowns, systems.structure, systems.values, False, 1)
+    return ours, lambda: np.linalg.solve(matrix, rhs[..., None])

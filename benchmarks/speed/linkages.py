@@ -11,7 +11,7 @@ import xarray as xr
 import linksweep as ls
 from benchmarks.cases import GENERAL, Size, scene
 from benchmarks.rivals import peers
-from benchmarks.speed.kernel import kernel_of, way
+from benchmarks.speed.kernel import eliminations, kernel_of, way
 from benchmarks.timing import FASTER, SHARE, Call, Race, Row, race
 from linksweep.engine.trace.plan import plan
 
@@ -30,26 +30,28 @@ def _rows(name: str, goal: float, size: Size) -> list[Row]:
     linkage, four_bar = ls.example(name), scene(GENERAL)
     names = linkage.mechanism.unknowns(linkage.drive)
     sweep = partial(ls.sweep, linkage, angles, of=names, threads=1)
-    page = ls.system(linkage, np.arange(angles) * (360.0 / angles))
-    matrix, rhs = (np.ascontiguousarray(page[part].values) for part in ("matrix", "rhs"))
     kernel, systems = f"{name}, {len(names)} unknowns", f"{name}, numpy.linalg.solve"
+    dense = f"{name}, solver='dense', the systems alone"
     with way("compiled"):
+        by_elimination, by_lapack = eliminations(linkage, angles)
         calls: dict[str, Call] = {
             kernel: kernel_of(sweep).call,
-            systems: lambda: np.linalg.solve(matrix, rhs[..., None]),
+            dense: by_elimination,
+            systems: by_lapack,
             FOUR_BAR: kernel_of(
                 partial(ls.sweep, four_bar, angles, of=four_bar.mechanism.unknowns("crank"), threads=1)
             ).call,
         }
-        dense, fast = (_values(sweep(solver=solver), names, angles) for solver in ("dense", "fast"))
-        some = dense.any(axis=1)  # a slider without inertia has no moment
-        error = peers.difference(fast[some], dense[some])
+        solved, fast = by_elimination(), _values(sweep(), names, angles)
+        some = solved.any(axis=1)  # a slider without inertia has no moment
+        error = peers.difference(fast[some], solved[some])
         timed = race(calls, size, angles)
     ours, theirs = operations(linkage), operations(four_bar)
     note = f"{ours} operations"
     of_operations = _per_operation(timed, {kernel: ours, FOUR_BAR: theirs})
     return [
         timed.row(FASTER, kernel, systems, goal, error=error, note=note),
+        timed.row(FASTER, dense, systems, 5.0, error=error),
         of_operations.row(SHARE, kernel, FOUR_BAR, 1.0, note=f"{note}, {theirs} of the four-bar"),
     ]
 

@@ -9,10 +9,11 @@ import numpy as np
 import linksweep as ls
 from benchmarks.cases import GENERAL, NINE, Size, scene, stacked
 from benchmarks.rivals import limit, peers
-from benchmarks.speed.kernel import kernel_of, way
+from benchmarks.speed.kernel import eliminations, kernel_of, way
 from benchmarks.timing import FASTER, SHARE, Row, race
 
 SWEEP, KERNEL, LAPACK, CLOSED, C = "ls.sweep", "kernel alone", "numpy + LAPACK", "numpy closed form", "limit.c"
+DENSE, ALONE, SOLVE = "ls.sweep, solver='dense'", "its 9×9 alone", "numpy.linalg.solve of the same 9×9"
 BLOCKS, ANEW, DEFAULT = "numpy + LAPACK, a tenth at a time", "ls.sweep, scene built anew", "ls.sweep, kinematics too"
 
 
@@ -23,6 +24,7 @@ def rows(size: Size) -> list[Row]:
         SWEEP: partial(sweep, machine, of=NINE),
         ANEW: lambda: sweep(scene(GENERAL), of=NINE),
         DEFAULT: partial(sweep, machine),
+        DENSE: partial(sweep, machine, of=NINE, solver="dense"),
     }
     calls = sweeps | {
         KERNEL: kernel_of(sweeps[SWEEP]).call,
@@ -36,6 +38,8 @@ def rows(size: Size) -> list[Row]:
         if lib := limit.build():
             calls[C], results[C] = limit.bind_store(lib, GENERAL, theta2)
             calls[C]()
+        calls[ALONE], calls[SOLVE] = eliminations(machine, size.angles)
+        results[ALONE] = calls[ALONE]()
         dense, results[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
         error = {name: peers.difference(nine, dense) for name, nine in results.items()}
         timed = race(calls, size, size.angles)
@@ -53,4 +57,6 @@ def rows(size: Size) -> list[Row]:
         row(FASTER, SWEEP, CLOSED),
         row(FASTER, ANEW, LAPACK),
         row(FASTER, DEFAULT, LAPACK),
+        row(FASTER, DENSE, LAPACK),
+        row(FASTER, ALONE, SOLVE, 5),
     ]

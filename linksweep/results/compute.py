@@ -100,11 +100,14 @@ def compute(
     solver: str = "fast",
 ) -> dict[str, Field]:
     """Return quantities of a scene that is sampled at the grid's angles; those that are `known` are not computed."""
-    known = known or {}
-    inputs = scene.inputs
+    known, inputs = known or {}, scene.inputs
+    missing = tuple(name for name in names if name not in known)
+    if not missing:
+        return {name: known[name] for name in names}
     forms = (*inputs.forms, *((name, field.dims) for name, field in known.items()))
-    request = planned(scene, names, forms, solver)
-    return evaluate(request, {**inputs.fields, **known}, grid, inputs.sizes, threads)
+    request = planned(scene, missing, forms, solver)
+    fields = evaluate(request, {**inputs.fields, **known}, grid, inputs.sizes, threads)
+    return {name: known[name] if name in known else fields[name] for name in names}
 
 
 def planned(scene: Scene, names: tuple[str, ...], forms: InputForms, solver: str) -> Plan:

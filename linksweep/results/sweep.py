@@ -24,13 +24,14 @@ from linksweep.results.compute import (
 )
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import STATUS_AT_LONG_NAME, described, flags, plain
-from linksweep.results.system import dense_solution
+from linksweep.results.system import condition_number, dense_unknowns
 from linksweep.scene.scene import Scene
 
 COUNT = 720
 """Angles of a turn where none are named."""
 STATUS_AT = "status_at"
-SOLVERS = ("fast", "superposed", "dense")
+DENSE = ("dense", "refined")
+SOLVERS = ("fast", "superposed", *DENSE)
 
 
 @by_blocks(of_samples=True)
@@ -64,10 +65,11 @@ def sweep(
         kinematics, the unknown forces and torque, and the magnitudes of the pin forces.
     outputs : str or iterable of str, default None
         Another name of `of`.
-    solver : {"fast", "superposed", "dense"}, default "fast"
+    solver : {"fast", "superposed", "dense", "refined"}, default "fast"
         "fast": the square system eliminated by hand, dyad by dyad. "superposed": along a design dim of masses, loads,
         speeds … over one geometry a few cycles are added up, which is faster and rounds a little differently. "dense":
-        the full system of `linksweep.system`, 9×9 for a four-bar, by LAPACK with partial pivoting, as a check.
+        the full system of `linksweep.system`, 9×9 for a four-bar, eliminated with partial pivoting, as a check.
+        "refined": the same, then one step of iterative refinement with residuals in twice the precision.
     threads : int, default None
         Largest number of threads; None for all cores. Results do not depend on it.
 
@@ -109,10 +111,9 @@ def sweep(
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)
     status = sample_status(sampled, grid, threads)
-    known = {}
-    if solver == "dense" or "cond" in names:
-        solution = dense_solution(sampled, grid, status, threads)
-        known = solution if solver == "dense" else {"cond": solution["cond"]}
+    known = dense_unknowns(sampled, grid, solver == "refined", threads) if solver in DENSE else {}
+    if "cond" in names:
+        known["cond"] = condition_number(sampled, grid, threads)
     fields = compute(sampled, grid, names, threads, known, solver)
     blank(fields, status)
     command = _command(grid.dim, angles, None if quantities is None else names, solver)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 from linksweep.base.conversion import to_float64
 from linksweep.base.validate import choice_problems, count_problems, refuse
 from linksweep.chains.rows.bodies import Equation
+from linksweep.engine.linear import solve as linear
+from linksweep.engine.linear.solve import Structure
 from linksweep.engine.run import Field, Grid
 from linksweep.results.compute import angles_of, blank, compute, require_scene, sample_status
 from linksweep.results.dataset import index_coordinate, provenance, status_attributes
@@ -146,8 +148,7 @@ def assembled(
     """Return dims, matrix and right side of a square system, for every design and angle."""
     unknowns, equations = of_form(scene, form)
     fields = compute(scene, grid, names_in(equations), threads)
-    sizes = {dim: n for dim, n in scene.inputs.sizes.items() if any(dim in field.dims for field in fields.values())}
-    sizes[grid.dim] = len(grid.angles)
+    sizes = _sizes(scene, grid, fields)
     dims, shape = tuple(sizes), tuple(sizes.values())
     matrix, rhs = np.zeros((*shape, len(equations), len(unknowns))), np.zeros((*shape, len(equations)))
     for i, row in enumerate(equations):
@@ -158,38 +159,73 @@ def assembled(
     return dims, matrix, rhs
 
 
-def dense_solution(scene: Scene, grid: Grid, status: Field, threads: int | None = None) -> dict[str, Field]:
-    """Return the unknowns by LAPACK with partial pivoting, and the exact 1-norm condition number `cond`.
+def _sizes(scene: Scene, grid: Grid, fields: dict[str, Field]) -> dict[str, int]:
+    """Return the sizes of the dims that any of the fields has, and of the grid."""
+    sizes = {dim: n for dim, n in scene.inputs.sizes.items() if any(dim in field.dims for field in fields.values())}
+    return sizes | {grid.dim: len(grid.angles)}
+
+
+def structure_of(scene: Scene) -> tuple[Structure, tuple[str, ...]]:
+    """Return the structure of a scene's square system, and the names of the quantities that its terms take.
+
+    Terms follow each other along diagonals, so that none waits for the one before, in the same row or column.
+    """
+    unknowns, equations = of_form(scene, "reduced")
+    names, terms = names_in(equations), []
+    for i, row in enumerate(equations):
+        with_torque = any(_is_torque(unknown) for unknown in row.coefficients)
+        for unknown, entry in row.coefficients.items():
+            coefficient, name = entry if isinstance(entry, tuple) else (entry, None)
+            beside = with_torque and not _is_torque(unknown)
+            source = -1 if name is None else names.index(name)
+            terms.append((coefficient, (i, unknowns.index(unknown), source, beside)))
+        terms.append((1.0, (i, len(unknowns), names.index(row.right_side), False)))
+    terms.sort(key=lambda term: (term[1][1] - term[1][0]) % (len(unknowns) + 1))
+    coefficients, places = zip(*terms, strict=True)
+    torques = np.array([_is_torque(name) for name in unknowns], dtype=np.int64)
+    return Structure(np.array(places, dtype=np.int64), np.array(coefficients, dtype=np.float64), torques), names
+
+
+def _is_torque(unknown: str) -> bool:
+    return unknown.startswith("T")
+
+
+class Sampled(NamedTuple):
+    """The square systems of a scene at all samples: their structure, the numbers of their terms, and the samples' dims
+    and shape."""
+
+    structure: Structure
+    values: list[np.ndarray]
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+
+    def field(self, row: np.ndarray) -> Field:
+        """Return one number of each sample as a field."""
+        return Field(self.dims, row.reshape(self.shape))
+
+
+def dense_unknowns(scene: Scene, grid: Grid, refined: bool = False, threads: int | None = None) -> dict[str, Field]:
+    """Return the unknowns of the square system by elimination with partial pivoting.
 
     Rows and columns of the matrix are first scaled to one size, so that units and scales do not decide the pivots.
+    `refined` adds one step of iterative refinement.
     """
-    unknowns, _ = of_form(scene, "reduced")
-    dims, matrix, rhs = assembled(scene, grid, "reduced", threads)
-    bad = np.broadcast_to(aligned(status, dims) != 0, matrix.shape[:-2])
-    matrix[bad] = np.eye(matrix.shape[-1])  # such a sample becomes NaN: any regular matrix will do
-    balanced, rows, columns = equilibrated(matrix, unknowns)
-    with np.errstate(over="ignore", under="ignore"):  # numbers out of range become inf, or 0
-        solution = np.ldexp(np.linalg.solve(balanced, np.ldexp(rhs, -rows)[..., None])[..., 0], -columns)
-    values = {name: Field(dims, solution[..., k]) for k, name in enumerate(unknowns)}
-    return values | {"cond": Field(dims, np.linalg.cond(balanced, 1))}
+    systems, names = sampled_systems(scene, grid, threads), of_form(scene, "reduced")[0]
+    rows = linear.unknowns(systems.structure, systems.values, refined, threads)
+    return {name: systems.field(row) for name, row in zip(names, rows, strict=True)}
 
 
-def equilibrated(matrix: np.ndarray, unknowns: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Scale rows, then columns by powers of two, so that their largest entries lie in [1/2, 1) and no digit changes.
-
-    Columns of torques are first scaled by the largest arm of a force in the same row, so that the unit of length does
-    not decide the pivots either. Return the matrix with the exponents of its rows and of its columns.
-    """
-    torques = np.array([name.startswith("T") for name in unknowns])
-    beside = (matrix[..., torques] != 0.0).any(axis=-1)[..., None] & ~torques
-    arm = _exponent(np.where(beside, matrix, 0.0), axis=(-2, -1))
-    units = np.where(torques, arm[..., None], 0)
-    balanced = np.ldexp(matrix, units[..., None, :])
-    rows = _exponent(balanced, axis=-1)
-    balanced = np.ldexp(balanced, -rows[..., :, None])
-    columns = _exponent(balanced, axis=-2)
-    return np.ldexp(balanced, -columns[..., None, :]), rows, columns - units
+def condition_number(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
+    """Return the 1-norm condition number of the square system, its rows and columns scaled to one size."""
+    systems = sampled_systems(scene, grid, threads)
+    return systems.field(linear.condition(systems.structure, systems.values, threads))
 
 
-def _exponent(matrix: np.ndarray, axis: int | tuple[int, ...]) -> np.ndarray:
-    return np.frexp(np.abs(matrix).max(axis=axis))[1]
+def sampled_systems(scene: Scene, grid: Grid, threads: int | None) -> Sampled:
+    """Return the square systems of a scene at all samples."""
+    structure, names = structure_of(scene)
+    fields = compute(scene, grid, names, threads)
+    sizes = _sizes(scene, grid, fields)
+    dims, shape = tuple(sizes), tuple(sizes.values())
+    values = [np.broadcast_to(aligned(fields[name], dims), shape).reshape(-1) for name in names]
+    return Sampled(structure, values, dims, shape)

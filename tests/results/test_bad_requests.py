@@ -203,9 +203,9 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.peaks(SCENE, ["status"]), "of: nothing is named 'status'; there are "),
         (
             lambda: ls.sweep(SCENE, 8, solver="dens"),
-            "solver = 'dens': must be one of fast, superposed, dense; did you mean \"dense\"?",
+            "solver = 'dens': must be one of fast, superposed, dense, refined; did you mean \"dense\"?",
         ),
-        (lambda: ls.sweep(SCENE, 8, solver=None), "solver = None: must be one of fast, superposed, dense"),
+        (lambda: ls.sweep(SCENE, 8, solver=None), "solver = None: must be one of fast, superposed, dense, refined"),
         (lambda: ls.sweep(SCENE, 8, threads=0), "threads = 0: must be a whole number, 1 or more"),
         (lambda: ls.sweep(SCENE, 8, threads=-1), "threads = -1: must be a whole number, 1 or more"),
         (lambda: ls.sweep(SCENE, 8, threads="2"), "threads = '2': must be a whole number, 1 or more"),

@@ -50,9 +50,12 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
 
 
 @cache
-def compiled_functions(source: str) -> Mapping[str, Any]:
-    """Return the functions of a module of plain functions by name, each compiled on its first call."""
-    return _jitted(source, {}) if source else {}
+def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
+    """Return the functions of a module of plain functions by name, each compiled on its first call.
+
+    `emitted` is the source of what the package itself teaches numba to compile in them.
+    """
+    return _jitted(source, {}, emitted) if source else {}
 
 
 def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
@@ -63,12 +66,16 @@ def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> di
     module = sys.modules[name] = ModuleType(name)  # where a cached kernel looks for it
     vars(module).update(helpers)
     exec(compile(text, name, "exec"), vars(module))
-    functions = {key: value for key, value in vars(module).items() if isinstance(value, FunctionType)}
+    functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
     jitted = {key: numba.njit(**SETTINGS)(function) for key, function in functions.items()}
     for key, function in jitted.items():
         function._cache = KernelCache(f"{name}.{key}")
     vars(module).update(jitted)  # so that they call each other compiled
     return jitted
+
+
+def _is_function_of(module: ModuleType, value: object) -> bool:
+    return isinstance(value, FunctionType) and value.__globals__ is vars(module)
 
 
 def _digest(text: str) -> str:

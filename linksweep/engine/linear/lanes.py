@@ -1,0 +1,51 @@
+"""Values of many systems side by side: a lane is the number of one system.
+
+An array of shape (row, column, lane) holds one value per row and column. Code that is written in these functions and in
++ − × ÷, abs, > runs as is, on numpy arrays of any number of lanes; numba compiles it to vector instructions of `LANES`
+numbers (`engine.linear.vectors`). Both do the same operations, so both return equal bits.
+"""
+
+import numpy as np
+
+LANES = 8
+"""Lanes of compiled code: 8 doubles fill a 512-bit register, or two of 256 bits."""
+
+EXPONENT = 0x7FF << 52
+"""Bits of a double's exponent."""
+LARGEST_SCALED = 2.0**1022
+"""Numbers from here on have no inverse power of two that is a normal number."""
+
+
+def load(array, row, column):
+    """Return the value at a row and a column."""
+    return array[row, column].copy()
+
+
+def store(array, row, column, value):
+    """Write a value to a row and a column."""
+    array[row, column] = value
+
+
+def everywhere(number):
+    """Return one number in all lanes."""
+    return np.float64(number)
+
+
+def choose(condition, value, other):
+    """Return `value` in the lanes where the condition holds, else `other`."""
+    return np.where(condition, value, other)
+
+
+def anywhere(condition):
+    """Return whether a condition holds in any lane."""
+    return bool(np.any(condition))
+
+
+def scale_of(value):
+    """Return the power of two that scales a positive value into [1/2, 1); 2^1022 for 0.
+
+    The bits of its exponent are those of the value, taken from a constant. Out of range (from 2^1022 on, inf, NaN) it
+    is the value itself, so that what is scaled becomes inf or NaN.
+    """
+    bits = (2045 << 52) - (np.asarray(value, dtype=np.float64).view(np.int64) & EXPONENT)
+    return np.where(value < LARGEST_SCALED, bits.view(np.float64), value)

@@ -1,0 +1,106 @@
+"""Solve the square systems of many samples, in blocks of lanes: by numpy while they are few, then compiled."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.base.memory import require_memory
+from linksweep.engine import run
+from linksweep.engine.kernel.compile import compiled_functions
+from linksweep.engine.linear import elimination, lanes
+
+AT_ONCE = 4096
+"""Samples of one call: their numbers stay in cache."""
+SAMPLES_PER_THREAD = 10_000
+"""Samples that pay for another thread: about a millisecond."""
+
+
+class Structure(NamedTuple):
+    """Square systems of one form: `terms` (term, 4) and `coefficients` (term) as `elimination` takes them, and which
+    unknowns are torques."""
+
+    terms: np.ndarray
+    coefficients: np.ndarray
+    torques: np.ndarray
+
+
+def unknowns(
+    structure: Structure,
+    values: Sequence[np.ndarray],
+    refined: bool = False,
+    threads: int | None = None,
+) -> np.ndarray:
+    """Return the unknowns (unknown, sample) of the systems whose terms take `values`, each of shape (sample).
+
+    They are NaN where a matrix is singular. `refined` adds one step of iterative refinement.
+    """
+    n = len(structure.torques)
+    return _run("solve_refined" if refined else "solve", structure, values, (n, n + 1), threads)
+
+
+def condition(structure: Structure, values: Sequence[np.ndarray], threads: int | None = None) -> np.ndarray:
+    """Return the 1-norm condition number (sample) of each equilibrated matrix; inf where it is singular."""
+    n = len(structure.torques)
+    return _run("condition", structure, values, (1, 2 * n + 1), threads)[0]
+
+
+@dataclass(eq=False)
+class Solver:
+    """A function of `elimination`, with the number of samples that were interpreted so far."""
+
+    name: str
+    interpreted: int = 0
+
+    def should_interpret(self, samples: int) -> bool:
+        self.interpreted += samples
+        return self.interpreted <= run.COMPILE_AFTER
+
+    @cached_property
+    def compiled(self) -> Callable:
+        from linksweep.engine.linear import vectors
+
+        taught = "".join(inspect.getsource(module) for module in (lanes, vectors))
+        return compiled_functions(inspect.getsource(elimination), taught)[self.name]
+
+
+solver = lru_cache(maxsize=None)(Solver)
+"""Return the one `Solver` of this name."""
+
+
+def _run(
+    name: str,
+    structure: Structure,
+    values: Sequence[np.ndarray],
+    widths: tuple[int, int],
+    threads: int | None,
+) -> np.ndarray:
+    """Return what a function of `elimination` writes; `widths` are its rows of results and the matrix's columns."""
+    (rows, columns), samples = widths, len(values[0])
+    require_memory(f"{rows * samples} numbers (results × designs × angles): ask for fewer", 8.0 * rows * samples)
+    result = np.empty((rows, samples))
+    interpret = solver(name).should_interpret(samples)
+    function = getattr(elimination, name) if interpret else solver(name).compiled
+    width = min(AT_ONCE, samples) if interpret else lanes.LANES
+    room = min(AT_ONCE, -(-samples // width) * width)
+
+    def work(first: int, last: int) -> None:
+        read, written = np.zeros((len(values), room)), np.empty((rows, room))
+        matrix = np.empty((len(structure.torques), columns, width))
+        numbers = np.empty((elimination.WORK_ROWS, max(columns, len(structure.terms)), width))
+        for start in range(first * AT_ONCE, min(last * AT_ONCE, samples), AT_ONCE):
+            count = min(AT_ONCE, samples - start)
+            for row, value in zip(read, values, strict=True):
+                row[:count] = value[start : start + count]
+            blocks, of_blocks = (array.reshape(len(array), -1, width) for array in (read, written))
+            with np.errstate(all="ignore"):
+                function(blocks, *structure, matrix, numbers, of_blocks)
+            result[:, start : start + count] = written[:, :count]
+
+    run.over_threads(work, -(-samples // AT_ONCE), 1 + samples // SAMPLES_PER_THREAD, threads)
+    return result
