@@ -32,18 +32,26 @@ def cos_sin_low_words(degrees: Any) -> tuple[Any, ...]:
     """Return cosine and sine of an angle [degree], then the low word of each; four of the kind passed in."""
     if hasattr(degrees, "dims"):
         return tuple(degrees.copy(data=values) for values in cos_sin_low_words(degrees.values))
-    angle = np.fmod(np.asarray(degrees, dtype=float), 360.0)
+    return _of_angles(np.asarray(degrees, dtype=float)) if np.ndim(degrees) else _of_angle(float(degrees))
+
+
+@lru_cache(maxsize=1024)
+def _of_angle(degrees: float) -> tuple[float, ...]:
+    return tuple(map(float, _of_angles(np.asarray(degrees))))
+
+
+def _of_angles(degrees: np.ndarray) -> tuple[np.ndarray, ...]:
+    angle = np.fmod(degrees, 360.0)
     quarter = np.rint(angle / 90.0)
     cos, sin, cos_lo, sin_lo = _within_an_eighth(angle - 90.0 * quarter)
     quadrant = quarter.astype(np.int64) % 4
     odd, sign_of_cos, sign_of_sin = quadrant % 2 == 1, COS_SIGNS[quadrant], SIN_SIGNS[quadrant]
-    values = (
+    return (
         np.where(odd, sin, cos) * sign_of_cos + 0.0,  # + 0.0 turns -0.0 into 0.0
         np.where(odd, cos, sin) * sign_of_sin + 0.0,
         np.where(odd, sin_lo, cos_lo) * sign_of_cos + 0.0,
         np.where(odd, cos_lo, sin_lo) * sign_of_sin + 0.0,
     )
-    return values if np.ndim(degrees) else tuple(map(float, values))
 
 
 def arcsine(part: np.ndarray, whole: np.ndarray) -> np.ndarray:

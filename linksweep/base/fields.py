@@ -264,8 +264,9 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 def left_out(value: Any) -> bool:
     """Return whether a value is that of a field left out: None, or an empty text, list or record."""
-    record = isinstance(value, Mapping) and has_fields(value)
-    return value is None or ((record or isinstance(value, str | tuple | list)) and not value)
+    if isinstance(value, str | tuple | list):
+        return not value
+    return value is None or (has_fields(value) and isinstance(value, Mapping) and not value)
 
 
 def has_fields(value: Any) -> bool:
@@ -289,10 +290,11 @@ def below(path: str, kind: FieldKind) -> str:
 
 def numbers_in(path: str, value: Any, kind: FieldKind) -> Iterator[tuple[str, Any, str]]:
     """Yield the path, the value and the kind of each number in the value of a field."""
-    if has_fields(value):
+    if type(value) is not float and has_fields(value):
         yield from numbers(value, below(path, kind))
     elif isinstance(kind, NumberField):
-        yield from [] if isinstance(kind, PlainNumber) else [(path, value, kind.rule.kind)]
+        if not isinstance(kind, PlainNumber):
+            yield path, value, kind.rule.kind
     else:
         for k, each in enumerate(kind.items(value) or (), 1):
             yield from numbers_in(f"{path}[{k}]", value[k - 1], each)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import numbers
 import re
 from collections.abc import Iterable
@@ -68,6 +69,10 @@ class Rule:
         advice = "; for a point on the other side turn its angle by 180 degrees" if negative else ""
         return " and ".join(filter(None, (finite, bound))) + advice
 
+    def allows(self, value: float) -> bool:
+        above = self.above is None or value > self.above
+        return math.isfinite(value) and above and (self.at_least is None or value >= self.at_least)
+
     def broken_by(self, values: np.ndarray) -> np.ndarray:
         broken = ~np.isfinite(values)
         if self.above is not None:
@@ -79,11 +84,13 @@ class Rule:
 
 def overflow_problems(path: str, number: Number, meaning: str) -> list[str]:
     """Return a problem if a number derived from valid ones is more than a float can hold."""
-    sound = is_lazy(number) or bool(np.all(np.isfinite(number)))
+    sound = math.isfinite(number) if type(number) is float else is_lazy(number) or bool(np.all(np.isfinite(number)))
     return [] if sound else [f"{path}: its {meaning} is more than a number can hold; reduce its measures"]
 
 
 def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
+    if type(value) is float and rule.allows(value):
+        return []
     if is_quantity(value):
         units = (value.data if is_array(value) else value).units
         return [f"{path} has the unit {units}: must be {rule.number}, or in a unit of that kind"]
@@ -103,14 +110,12 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     number = as_float(value)
     if number is None:
         return [f"{path} = {quote(value)}: must be {rule.number}, or an xarray.DataArray of them"]
-    if rule.broken_by(np.asarray(number)):
-        return [f"{path} = {rule.measured(number)}: must be {rule.allowed(number)}"]
-    return []
+    return [] if rule.allows(number) else [f"{path} = {rule.measured(number)}: must be {rule.allowed(number)}"]
 
 
 def is_array(value: Any) -> bool:
     """Return whether a value is a DataArray, recognised by its attributes, since xarray starts at the scene."""
-    return all(hasattr(value, name) for name in ("dims", "coords", "dtype"))
+    return hasattr(value, "dims") and hasattr(value, "coords") and hasattr(value, "dtype")
 
 
 def is_quantity(value: Any) -> bool:
@@ -120,7 +125,7 @@ def is_quantity(value: Any) -> bool:
     Numbers are converted on input; one that is still a quantity afterwards is of another kind.
     """
     data = value.data if is_array(value) else value
-    return all(hasattr(data, name) for name in ("magnitude", "units", "to_root_units"))
+    return hasattr(data, "magnitude") and hasattr(data, "units") and hasattr(data, "to_root_units")
 
 
 def is_lazy(value: Any) -> bool:

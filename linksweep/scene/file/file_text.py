@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
 Words = Mapping[str, Any]
@@ -38,13 +39,16 @@ def _tables(raw: Words) -> Iterator[tuple[str, Words]]:
 
 
 def _value(value: Any) -> str:
+    if type(value) in (float, int):
+        return repr(value)
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_value, value)) + "]"
-    return repr(value) if type(value) in (float, int) else _by_library("a", value).removeprefix("a = ")
+    return _by_library("a", value).removeprefix("a = ")
 
 
+@lru_cache(maxsize=1024)
 def _key(key: str) -> str:
     return key if re.fullmatch(r"[\w-]+", key, re.ASCII) else _by_library(key, 0).removesuffix(" = 0")
 

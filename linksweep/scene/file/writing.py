@@ -81,7 +81,9 @@ class _Writer(NamedTuple):
         words: dict[str, Any] = {}
         for name, each, _ in declared(part):
             value = getattr(part, name)
-            if isinstance(each, NamedField) and each.inline:
+            if type(value) is float:
+                words[name] = value
+            elif isinstance(each, NamedField) and each.inline:
                 words |= self._table(value, each, where)
             elif not left_out(value):
                 words[name] = self.written(value, each, (*where, name))
