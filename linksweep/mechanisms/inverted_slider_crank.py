@@ -276,9 +276,6 @@ class InvertedSliderCrank(Machine):
         a, d, e = self.lengths()
         return bool(in_range(a) and in_range(d) and np.all(abs(d - a) - abs(e) > 1e-9 * (a + d)))
 
-    def peak_quantities(self, drive: str) -> tuple[str, ...]:
-        return ("F12", "F32", "F43", "F14", "T43", self.drives[drive])
-
 
 @lru_cache
 def _own(drive: str) -> Own:

@@ -99,4 +99,7 @@ class Machine(Mechanism):
         return equations(self.topology, {drive: self.drives[drive]}, self.shape.meshed)
 
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
-        return (*(force_name(*pair) for pair in self.chain.joints.values()), self.drives[drive])
+        """Return the force of each pin and slide, the moment of each slide between links, and the drive's unknown."""
+        between = [slide for slide, pair in self.topology.slides.items() if 1 not in pair]
+        moments = (name for slide in between for name in self.chain.slide_unknowns(slide)[1:])
+        return (*(force_name(*pair) for pair in self.chain.joints.values()), *moments, self.drives[drive])

@@ -40,7 +40,8 @@ def peaks(
     of : str or iterable of str, default None
         Names of quantities; "F32_mean", "T12_rms" give mean and root mean square over time, "F32_bound" how much larger
         the peak could be than the one returned (inf where a function changes too quickly to be followed), "F32_samples"
-        how many crank angles were evaluated. None for all pin forces and the torque.
+        how many crank angles were evaluated. None for the forces of all pins and slides (of a linkage's F16n and F16t
+        their sum F16), the moments of slides between links, and the drive's torque or force.
     theta2 : int or array_like, default None
         Count of crank angles, or angles [degree]: the largest of these samples is returned instead.
     theta : int or array_like, default None

@@ -51,14 +51,17 @@ def test_four_bar_by_its_rocker():
     assert "T14" in errors and max(errors.values()) < 1e-14
 
 
-def test_slider_crank():
-    """The torque adds up friction's work with the loads' in another order."""
+def slider_cranks() -> tuple[ls.Scene, ls.Scene]:
     named = ls.SliderCrank(CRANK, ROD, 2.0, offset=0.02, friction=0.1)
     guides = {"slide": ls.Guide(through=(0.0, 0.02), friction=0.1)}
     parts = {"crank": CRANK, "rod": ROD, "slider": ls.Slider(2.0)}
     text = "crank A-B, rod B-C, slider C on slide"
-    linkage = ls.Linkage(text, ground={"A": (0.0, 0.0)}, guides=guides, **parts)
-    errors = differences(scene(named), scene(linkage))
+    return scene(named), scene(ls.Linkage(text, ground={"A": (0.0, 0.0)}, guides=guides, **parts))
+
+
+def test_slider_crank():
+    """The torque adds up friction's work with the loads' in another order."""
+    errors = differences(*slider_cranks())
     of_the_torque = {"T12", "reduced_torque", "power", "power_fed", "power_regenerated"}
     assert errors.keys() <= of_the_torque and max(errors.values(), default=0.0) < 1e-15
 
@@ -74,6 +77,17 @@ def inverted(drive: str, friction: float) -> tuple[ls.Scene, ls.Scene]:
 
 def test_inverted_slider_crank():
     assert differences(*inverted("crank", 0.0)) == {}
+
+
+@pytest.mark.parametrize(
+    "scenes",
+    [four_bars("open", "rocker"), slider_cranks(), inverted("crank", 0.2)],
+    ids=lambda it: type(it[0].mechanism).__name__,
+)
+def test_peaks_are_of_the_same_quantities_by_default(scenes):
+    """The whole force of each pin and slide, with friction, the moment of a slide between links, and the drive."""
+    named, linkage = (ls.peaks(one, theta2=8) for one in scenes)
+    assert {*named.data_vars} == {*linkage.data_vars}
 
 
 def test_a_drive_that_loads_a_slide_without_friction():
