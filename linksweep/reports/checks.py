@@ -75,7 +75,7 @@ def _checks(results: Results) -> Iterator[Check]:
         if name in findings:
             yield _special(title, findings[name], results)
     yield from _transmission(results)
-    if "pin" in findings.coords and results.part is None:
+    if findings.sizes.get("pin") and results.part is None:
         yield from _transmission_of_pins(results)
     if "friction_to_jam" in findings:
         yield from _friction(results)
@@ -123,7 +123,9 @@ def _transmission_of_pins(results: Results) -> Iterator[Check]:
     least, at = (results.check[f"transmission_angle_min{end}"] for end in ("", "_at"))
     for pin, value, where in zip(least.pin.values, least.values, at.values, strict=True):
         if np.isfinite(value):
-            text = joined(angle(float(value)), " at ", angle(float(where)))
+            text = joined(
+                angle(float(value)), " at ", angle(float(where)) if np.isfinite(where) else "every crank angle"
+            )
             yield Check(f"least transmission angle of {pin}", text, float(value) >= LEAST_TRANSMISSION)
 
 

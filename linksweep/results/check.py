@@ -60,7 +60,8 @@ def check(scene: Scene) -> xr.Dataset:
     - `toggle_angle` (pin, toggle) [degree]: theta2 at which the links that find this pin lie in one line, or a rod
       stands square to its guide; NaN where other pins or designs have more toggles
     - `transmission_angle_min`, `transmission_angle_max` (pin) [degree]: extreme acute transmission angles on those
-      arcs; `transmission_angle_min_at`, `transmission_angle_max_at` (pin) [degree]: their theta2
+      arcs; `transmission_angle_min_at`, `transmission_angle_max_at` (pin) [degree]: their theta2, NaN where the angle
+      does not change
 
     Of these machines but a Linkage, with another drive than the crank, `dead_centre_angle` (dead_centre) [degree],
     where the driving link stands still and cannot drive, labelled by branch if it differs between branches.

@@ -16,6 +16,9 @@ from linksweep.results.peak_search.limits import assembly_of, limits_of
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.scene import Scene
 
+STEADY = 1e-9
+"""Change of a transmission angle that is rounding [degree]: such an angle is the same throughout."""
+
 
 def search_checks(scene: Scene) -> dict[str, xr.Variable]:
     """Return assembly, arcs, toggles and extreme transmission angles by pin; nothing where closed forms exist."""
@@ -48,13 +51,18 @@ def _transmission_angles(scene: Scene, pins: Iterable[str]) -> dict[str, xr.Vari
     names = [f"transmission_angle_{pin}" for pin in pins]
     peaks = exact_peaks(scene, (*names, *map(opposite_of, names)), assembly_of(scene))
     variables = {}
-    for kind, extreme, signals in (("max", "largest", names), ("min", "smallest", [*map(opposite_of, names)])):
+    kinds = {"max": ("largest", names), "min": ("smallest", [*map(opposite_of, names)])}
+    most, least = (_by_pin(scene, [peaks[signal][0] for signal in signals]) for _, signals in kinds.values())
+    steady = most.values + least.values <= STEADY
+    for kind, (extreme, signals) in kinds.items():
         words = f"{extreme} acute transmission angle at this pin"
         value, angle = (_by_pin(scene, [peaks[signal][k] for signal in signals]) for k in (0, 1))
         attributes = {"units": "degree", "long_name": words}
         variables[f"transmission_angle_{kind}"] = xr.Variable(value.dims, abs(value.values), attributes)
         attributes = {"units": "degree", "long_name": f"crank angle of the {words}"}
-        variables[f"transmission_angle_{kind}_at"] = xr.Variable(angle.dims, angle.values, attributes)
+        variables[f"transmission_angle_{kind}_at"] = xr.Variable(
+            angle.dims, np.where(steady, np.nan, angle.values), attributes
+        )
     return variables
 
 

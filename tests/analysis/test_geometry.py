@@ -70,6 +70,51 @@ def test_a_link_that_turns_fully_has_no_travel_and_a_name_must_be_a_position():
     assert refusal(lambda: ls.geometry(drag, dwell=0.0))[0].startswith("dwell = 0")
 
 
+def _still_slider() -> ls.Scene:
+    """Return a slider whose rod begins at the crank's own pivot."""
+    parts = {"crank": ls.Link(0.08, **LIGHT), "rod": ls.Link(0.2, **LIGHT), "ram": ls.Slider(1.0)}
+    place = {"ground": {"A": (0.3, 0.1)}, "guides": {"slide": ls.Guide(through=(0.3, 0.1), angle=37.0)}}
+    text = "crank A-B-P, rod P-C, ram C on slide"
+    return ls.Scene(ls.Linkage(text, points={"P": (0.0, 0.0)}, **place, **parts), omega2=1.0)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "value"),
+    [
+        (_still_slider(), "x_ram", 0.2),
+        (_still_slider(), "theta3", 37.0),
+        (_still_slider(), "Cx", 0.2 * np.cos(np.radians(37.0))),
+        (four_bar(0.08, 0.2, 0.08, 0.2, ground_angle=31.0), "theta3", 31.0),
+    ],
+)
+def test_a_position_that_stands_still_has_no_travel_and_no_angles(scene, name, value):
+    motion = ls.geometry(scene, name)
+    ends = [float(motion[f"{name}_{end}"]) for end in ("max", "min")]
+    assert float(motion[f"{name}_travel"]) == 0.0 and ends[0] == ends[1] == pytest.approx(value, abs=1e-13)
+    words = ("max_at", "min_at", "time_ratio", "dwell_max", "dwell_min")
+    assert all(np.isnan(float(motion[f"{name}_{word}"])) for word in words)
+
+
+def test_a_small_travel_is_none_of_rounding():
+    motion = ls.geometry(slider(1e-7, 0.15), ["x_slider"])
+    assert float(motion.x_slider_travel) == pytest.approx(2e-7, rel=1e-8)
+    assert float(motion.x_slider_max_at) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_link_that_turns_fully_has_nothing_of_its_travel():
+    motion = ls.geometry(ls.example("drag-link-press"), "theta4")
+    assert all(np.isnan(float(motion[name])) for name in motion if str(name).startswith("theta4"))
+
+
+def test_a_transmission_angle_that_does_not_change_has_no_place():
+    motion, limits = ls.geometry(ls.example("whitworth")), ls.check(ls.example("whitworth"))
+    for end in ("max", "min"):
+        assert float(motion[f"transmission_angle_arm_{end}"]) == 90.0
+        assert np.isnan(float(motion[f"transmission_angle_arm_{end}_at"]))
+        places = limits[f"transmission_angle_{end}_at"]
+        assert np.isnan(float(places.sel(pin="arm"))) and np.isfinite(float(places.sel(pin="E")))
+
+
 def test_a_centric_crank_rocker_has_time_ratio_one():
     """a² + d² = b² + c² (Norton, chapter 3: a four-bar without quick return)."""
     a, b, d = 0.05, 0.12, 0.2

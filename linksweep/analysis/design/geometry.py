@@ -35,6 +35,7 @@ from linksweep.results.check import evaluated
 from linksweep.results.compute import compute, quantity_problems, requested, require
 from linksweep.results.dataset import design_coordinates, provenance, variable, with_units
 from linksweep.results.peaks import peaks
+from linksweep.results.search_checks import STEADY
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene
@@ -79,9 +80,10 @@ def geometry(
           inverted slider-crank over the dim `reversal`
         - of each position of `of`, such as x_ram: `x_ram_travel`, its ends `x_ram_max`, `x_ram_min` and where they are,
           `x_ram_max_at`, `x_ram_min_at` [degree], `x_ram_time_ratio` [1], and `x_ram_dwell_max`, `x_ram_dwell_min`
-          [degree], the crank angles for which it rests about its ends; NaN where it turns fully
+          [degree], the crank angles for which it rests about its ends; NaN where it turns fully. Where it stands
+          still, its travel is 0, and ratio, dwells and angles of the ends are NaN.
         - `transmission_angle_max`, `_min` and where they are, `_max_at`, `_min_at` [degree], as from `linksweep.peaks`;
-          of a linkage one for each dyad.
+          of a linkage one for each dyad. One that does not change has no angles of its ends, NaN.
 
     Raises
     ------
@@ -109,7 +111,11 @@ def geometry(
         variables |= _travelled(bare, name, dwell)
     for name in [name for name in bare.table.quantity if name.startswith(ANGLE)]:
         angles = peaks(bare, of=[name], threads=threads).drop_vars(["status", f"{name}_peak"])
-        variables |= {str(key): angles[key].variable for key in angles.data_vars}
+        changes = angles[f"{name}_max"] - angles[f"{name}_min"] > STEADY
+        variables |= {
+            str(key): (value.where(changes) if str(key).endswith("_at") else value).variable
+            for key, value in angles.items()
+        }
     dims = {dim for variable in variables.values() for dim in variable.dims}
     coordinates = {name: values for name, values in design_coordinates(scene).items() if {*values.dims} <= dims}
     attributes = provenance(scene, "linksweep.geometry(scene)", coordinates)

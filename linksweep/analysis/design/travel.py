@@ -7,6 +7,9 @@ A position x(θ2) turns round where its rate is zero. The largest and the least 
 
 A dwell is the angle about an end over which the position stays within a fraction of its travel. Zeros between samples
 are found by false position.
+
+A position stands still if it travels less than 1e-12 of its size: of a turn, or of its largest value and the crank's
+length together. Its travel is then 0, both ends are its least value, and all else is NaN.
 """
 
 from __future__ import annotations
@@ -29,6 +32,8 @@ from linksweep.scene.scene import Scene
 
 PER_TURN, STEPS = 1440, 12
 TURN = 360.0
+STILL = 1e-12
+"""Travel of a position that stands still, relative to its size: rounding, with a margin."""
 EVERYWHERE = (0.0,)
 """The assembly of designs that have a position at every angle."""
 RATES = {"theta": "omega", "x_": "v_", "length_": "rate_"}
@@ -72,6 +77,7 @@ def rate_of(position: str) -> str:
 
 def travel(scene: Scene, name: str, dwell: float) -> Travel:
     """Return the travel of a position as Fields over the design dims; NaN where it turns fully or has no revolution."""
+    crank = scene.mechanism.parameters()[f"{scene.mechanism.roles[0]}_length"]
     names = (name, rate_of(name))
     empty = empty_over_all(scene, with_assembly_signals(scene, (*names, "assembly")))
     results = Travel(*(Field(empty.dims, empty.values.copy()) for _ in Travel._fields))
@@ -79,7 +85,9 @@ def travel(scene: Scene, name: str, dwell: float) -> Travel:
     for _, group in assembled_groups(scene, names, EVERYWHERE):
         at = tuple(group.places[dim] for dim in empty.dims)
         with np.errstate(invalid="ignore", divide="ignore"):  # a link that turns fully, or stands still
-            values_of_group = _of_group(_samples(group, names, turns), dwell)
+            samples = _samples(group, names, turns)
+            largest = TURN if turns else np.fmax.reduce(abs(samples.position), axis=1) + group.number(crank)
+            values_of_group = _of_group(samples, dwell, STILL * largest)
         for field, values in zip(results, values_of_group, strict=True):
             field.values[at] = values if at else values[0]
     return results
@@ -108,15 +116,18 @@ def _samples(group: Group, names: tuple[str, ...], turns: bool) -> Samples:
     return Samples(period, position, rate, near_samples, rate_at)
 
 
-def _of_group(samples: Samples, dwell: float) -> Travel:
-    """Return the travel of each design of a group."""
+def _of_group(samples: Samples, dwell: float, still: float | Array) -> Travel:
+    """Return the travel of each design of a group; one that is at most `still` is none."""
     (top, top_at), (bottom, bottom_at) = (_end(samples, sign) for sign in (1.0, -1.0))
     period = samples.period
     way = (top_at - bottom_at) % period
     ratio = np.maximum(way, period - way) / np.minimum(way, period - way)
     near = dwell * (top - bottom)
     dwells = _dwell(samples, top_at, top - near, 1.0), _dwell(samples, bottom_at, bottom + near, -1.0)
-    return Travel(top, top_at % period, bottom, bottom_at % period, ratio, *dwells)
+    moves, stands = top - bottom > still, top - bottom <= still  # neither where it turns fully
+    numbers = (top_at % period, bottom_at % period, ratio, *dwells)
+    top_at, bottom_at, *others = (np.where(moves, number, np.nan) for number in numbers)
+    return Travel(np.where(stands, bottom, top), top_at, bottom, bottom_at, *others)
 
 
 def _end(samples: Samples, sign: float) -> tuple[Array, Array]:
