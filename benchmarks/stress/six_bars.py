@@ -26,12 +26,13 @@ from benchmarks.accuracy.missed import ALLOWED, shortfall
 from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import completed
 from benchmarks.stress.linkages.sketch import Sketch
-from benchmarks.stress.linkages.topologies import TODAY
+from benchmarks.stress.linkages.topologies import TODAY, Family, Topology, shaper_with_two_slides
 
 Array = np.ndarray
 Random = np.random.Generator
 Point = tuple[Array, Array]
 
+SHAPER = TODAY["shaper with two slides"].topology.text
 SAMPLES, STATUS_SAMPLES = 5760, 36_000
 AT_ONCE = 250
 CANNOT_ASSEMBLE, TOGGLE = 1, 2
@@ -131,17 +132,30 @@ def geared(random: Random, n: int) -> ls.Scene:
     return _scene(random, n, machine, loads)
 
 
-def any_linkage(name: str, random: Random, n: int) -> ls.Scene:
-    """Return linkages of a topology of `linkages.topologies`, with springs, dampers and friction."""
-    sketch = Sketch(random, n)
-    TODAY[name].topology.draw(sketch)
-    return scene_of(completed(sketch, TODAY[name]))
+def any_linkage(family: Family, random: Random, n: int, rubs: bool = False) -> ls.Scene:
+    """Return linkages of a topology, with springs, dampers and friction; all slides and slots rub where it `rubs`."""
+    sketch = Sketch(random, n, rubs=rubs)
+    family.topology.draw(sketch)
+    return scene_of(completed(sketch, family))
 
 
+def yoke_on_a_shaper(sketch: Sketch) -> None:
+    """A shaper with two slides whose arm also moves a yoke: what rubs in the yoke presses on the slides."""
+    shaper_with_two_slides(sketch)
+    sketch.yoke("yoke", "rail", "E")
+
+
+RUB_TWICE = {
+    "scotch yoke": TODAY["scotch yoke"],
+    "shaper with two slides": TODAY["shaper with two slides"],
+    "yoke on a shaper": Family(Topology(f"{SHAPER}, yoke on rail past E", yoke_on_a_shaper)),
+}
+"""Families with dyads of two slides."""
 KINDS: dict[str, Callable[[Random, int], ls.Scene]] = {"watt": watt, "stephenson": stephenson, "slider": slider}
 OTHERS: dict[str, Callable[[Random, int], ls.Scene]] = {
-    **{name: partial(any_linkage, name) for name in TODAY},
+    **{name: partial(any_linkage, family) for name, family in TODAY.items()},
     "geared by a fraction": geared,
+    **{f"{name}, both slides rub": partial(any_linkage, family, rubs=True) for name, family in RUB_TWICE.items()},
 }
 """Any topologies, whose designs come near to toggles only by chance; and geared five-bars of several turns, near
 toggles."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -124,7 +125,7 @@ class Chain:
 
     def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
         """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
-        of_limits, limited = ([], None) if self.motion.plain else limits(self.motion, rubbing)
+        limited = None if self.motion.plain else limits(self.motion, rubbing)
         forces, driven = self.forces(own.name), self.drive(own.name) if own.name else None
         rows = [
             *self.motion.rows,
@@ -138,7 +139,7 @@ class Chain:
             *contact_rows(forces.contacts),
             *cylinder_rows(self.topology),
             *gear_rows(self.motion),
-            *of_limits,
+            *(limited.rows if limited else []),
             *own.rows,
             *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
         ]
@@ -154,9 +155,11 @@ class Chain:
             *machine_quantities(self.bodies, self.joints, self.names, loads),
         ]
         last = {quantity.name: quantity for quantity in quantities}
-        if driven:
-            limited = (*(limited or ()), *driven.limits())
-        return Table("theta2", tuple(rows), tuple(last.values()), own.between, limited)
+        table = Table("theta2", tuple(rows), tuple(last.values()), own.between)
+        if not limited:
+            return table
+        of_drive = driven.limits() if driven else ()
+        return replace(table, limits=(*limited.of_motion, *of_drive), contacts=limited.of_contacts)
 
     def _status(self, forces: Forces, drive: Drive | None) -> Rows:
         """Return rows of the status and its step: of the first dyad that does not close, else of the first jam.

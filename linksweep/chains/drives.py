@@ -46,7 +46,11 @@ class Drive(NamedTuple):
 
     def limits(self) -> tuple[Limit, ...]:
         """Return the limit at which the driven part stands still and its force is unbounded."""
-        return () if not isinstance(self.ratio, str) else (Limit(self.name, (self.ratio,), ("drive_noise",), "pole"),)
+        return (
+            ()
+            if not isinstance(self.ratio, str)
+            else (Limit(self.name, (self.ratio,), ("drive_noise",), "dead_centre"),)
+        )
 
 
 def steps_that_bear(topology: Topology, roles: Collection[str]) -> Iterator[Step]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import NamedTuple
 
 from linksweep.chains.dyads import prp, rpp, rpr, rrp, rrr
 from linksweep.chains.dyads.names import Names
@@ -13,23 +14,35 @@ from linksweep.engine.quantity import Limit
 
 TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE, PRP: prp.TOGGLE}
 """Limit of each dyad that does not close everywhere, in its own names."""
-GRIPS = {RRP: rrp.grip(), RPR: rpr.grip(), PRP: prp.grip()}
+GRIPS = {RRP: rrp.grip(), RPR: rpr.grip(), PRP: [*prp.grip(), *prp.edges()], RPP: rpp.edges()}
 """Rows of each dyad with a slide that may rub, in its own names."""
+CONTACTS = {PRP: prp.BOTH, RPP: rpp.BOTH}
+"""Limit of each dyad with two contacts that share a force, in its own names."""
 
 
-def limits(motion: Motion, rubbing: Collection[str]) -> tuple[Rows, tuple[Limit, ...]]:
-    """Return the limits of a chain whose slides on these guides rub, and rows of their signals."""
+class Limits(NamedTuple):
+    """Limits of a chain and rows of their signals: those of its motion and, where they depend on the forces too, those
+    of its contacts."""
+
+    rows: Rows
+    of_motion: tuple[Limit, ...]
+    of_contacts: tuple[Limit, ...]
+
+
+def limits(motion: Motion, rubbing: Collection[str]) -> Limits:
+    """Return the limits of a chain whose slides on these guides rub."""
     rows: Rows = []
-    toggles, of_slides = [], []
+    toggles, of_slides, of_contacts = [], [], []
     for step in motion.topology.steps:
         names = motion.names[step.name]
         if type(step) in TOGGLES:
             toggles.append(_placed(TOGGLES[type(step)], step.name, names))
         limited = [limit for slide, of_slide in _slides(step) if slide in rubbing for limit in of_slide]
         if limited:
-            rows += names.placed(GRIPS.get(type(step), ()))
-            of_slides += [_placed(limit, step.name, names) for limit in limited]
-    return rows, (*toggles, *of_slides)
+            rows += names.placed(GRIPS[type(step)])
+            of_slides += [_placed(limit, step.name, names) for limit in dict.fromkeys(limited)]
+            of_contacts += [_placed(CONTACTS[type(step)], step.name, names)] if type(step) in CONTACTS else []
+    return Limits(rows, (*toggles, *of_slides), tuple(of_contacts))
 
 
 def _slides(step: Step) -> list[tuple[str, tuple[Limit, ...]]]:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import inspect
+import math
 import operator
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
+
+LAST_UNJAMMED = 3.5
+"""Number above the statuses 0 to 3, and below those of a jam."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +68,10 @@ class Total:
 class Limit:
     """Signals of one part of a machine, at or about `name`, whose zeros limit its motion or its forces.
 
-    `zeros` states what they are: a "toggle" ends the motion, which needs positive signals; at a "pole" quantities may
-    be unbounded, at a "jump" they may jump. Signals are smooth over the index wherever the parts before close, and may
-    be zero where they are below their `noise`.
+    `zeros` states what they are: a "toggle" ends the motion, which needs positive signals; at a "dead_centre" the drive
+    stands still, at a "wedge" friction may begin to jam a part, and at both quantities may be unbounded; at a "jump"
+    they may jump; at a "contact" a contact bears nothing, and beyond it friction acts in another way, or jams. Signals
+    are smooth over the index wherever the parts before close, and may be zero where they are below their `noise`.
     """
 
     name: str
@@ -78,9 +84,9 @@ class Limit:
 class Table:
     """Table of a machine: rows, the quantities that can be requested, and the sweep's own dim.
 
-    The rows `between` replace others between samples, where no grid tabulates the index. `limits` are those of a
-    machine without closed forms: toggles of its parts in the order in which these close, then poles and jumps; None of
-    a machine that has closed forms.
+    The rows `between` replace others between samples, where no grid tabulates the index. `limits` are those of the
+    motion of a machine without closed forms: toggles of its parts in the order in which these close, then wedges, jumps
+    and dead centres; None of a machine that has closed forms. `contacts` are limits that depend on the forces, too.
     """
 
     index: str
@@ -88,19 +94,24 @@ class Table:
     quantities: tuple[Quantity, ...] = field(default=())
     between: tuple[Row, ...] = field(default=())
     limits: tuple[Limit, ...] | None = None
+    contacts: tuple[Limit, ...] = ()
 
     @cached_property
     def between_samples(self) -> Table:
         """Return the table for samples at half-angle tangents."""
-        return Table(self.index, (*self.rows, *self.between), self.quantities, limits=self.limits)
+        return replace(self, rows=(*self.rows, *self.between), between=())
 
     @cached_property
     def maker(self) -> Mapping[str, Row | Total]:
         """Return the row that makes each name, including the negative of each quantity (its largest is minus the
-        least)."""
+        least); of a machine without closed forms also each name's values where its status is ok, or not jammed."""
         made = {name: row for row in self.rows for name in row.outputs}
-        negatives = (Row(operator.neg, (opposite_of(q.name),), (q.name,)) for q in self.quantities)
-        return made | {name: row for row in negatives for name in row.outputs}
+        made |= {opposite_of(q.name): Row(operator.neg, (opposite_of(q.name),), (q.name,)) for q in self.quantities}
+        if self.limits is None:
+            return made
+        of_ok = {where_ok(name): Row(_where_ok, (where_ok(name),), ("status", name)) for name in made}
+        free = {unless_jammed(name): Row(_unless_jammed, (unless_jammed(name),), ("status", name)) for name in made}
+        return made | of_ok | free
 
     @cached_property
     def quantity(self) -> Mapping[str, Quantity]:
@@ -109,3 +120,21 @@ class Table:
 
 def opposite_of(name: str) -> str:
     return f"-{name}"
+
+
+def where_ok(name: str) -> str:
+    return f"{name} where ok"
+
+
+def unless_jammed(name: str) -> str:
+    return f"{name} unless jammed"
+
+
+def _where_ok(status: Any, value: Any) -> Any:
+    """Return a value, NaN where the status is not ok."""
+    return (status > 0.0).where(math.nan, value)
+
+
+def _unless_jammed(status: Any, value: Any) -> Any:
+    """Return a value, NaN where the machine is jammed."""
+    return (status > LAST_UNJAMMED).where(math.nan, value)

@@ -42,13 +42,25 @@ def grip(along_squared: Number, across: Number, friction: Number) -> Number:
     return along_squared - wedged * wedged
 
 
-def grip_of_two(sin_squared: Number, friction: Number, second_friction: Number) -> Number:
-    """Return a number that is positive where no friction of two guides wedges what slides on both.
+def grips_of_two(sin_squared: Number, friction: Number, second_friction: Number) -> tuple[Number, Number]:
+    """Return two numbers, of which one is 0 where friction of two guides begins or ceases to wedge what slides on both.
 
-    They wedge where the angle between them is at most the sum of their angles of friction, atan μ.
+    It wedges where the angle between the guides is at most the sum of their angles of friction, atan μ, or the
+    difference of these: which of the two, the directions of sliding decide.
     """
-    both = friction + second_friction
-    return sin_squared - both * both / ((1.0 + friction * friction) * (1.0 + second_friction * second_friction))
+    scale = (1.0 + friction * friction) * (1.0 + second_friction * second_friction)
+    both, between = friction + second_friction, friction - second_friction
+    return sin_squared - both * both / scale, sin_squared - between * between / scale
+
+
+def edges_of_cone(along: Number, across: Number, friction: Number) -> tuple[Number, Number, Number]:
+    """Return two numbers, of which one is 0 where a force lies on an edge of a guide's cone of friction; and their
+    noise.
+
+    If the force presses on this guide and another contact, the other one then bears nothing, whatever its friction.
+    """
+    rubbing = friction * across
+    return along + rubbing, along - rubbing, CONTACT_NOISE * (abs(along) + abs(rubbing))
 
 
 def two_sliding_contacts(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -121,6 +121,19 @@ def changing_pace(scene: Scene) -> tuple[str, ...]:
     request = plan(scene.table, (scene.mechanism.pace,), scene.inputs.forms)
     changes = scene.mechanism.index in request.dims(request.outputs[scene.mechanism.pace])
     return (scene.mechanism.pace,) if changes else ()
+
+
+def known_names(scene: Scene, names: tuple[str, ...], known: Callable[[str], str]) -> dict[str, str]:
+    """Return the names under which the table has the known values alone of these quantities, by their own names.
+
+    `known` is `where_ok` or `unless_jammed`. A quantity that lacks dims of the status keeps its own name: designs that
+    share it may differ in status. So do those of machines whose dyads are never computed beyond a failure.
+    """
+    if scene.table.limits is None:
+        return {name: name for name in names}
+    plans = {name: plan(scene.table, (name, known(name)), scene.inputs.forms) for name in names}
+    same = {name: len({node.dims for node in request.outputs.values()}) == 1 for name, request in plans.items()}
+    return {name: known(name) if same[name] else name for name in names}
 
 
 def surely_ok(scene: Scene) -> bool:

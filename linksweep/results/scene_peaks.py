@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 
 from linksweep.base.validate import refuse
 from linksweep.engine.kernel.writer import Reduction
-from linksweep.engine.quantity import Quantity, opposite_of
+from linksweep.engine.quantity import Quantity, opposite_of, unless_jammed, where_ok
 from linksweep.engine.run import Field, Grid, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import (
     angles_missing,
     changing_pace,
     compute,
+    known_names,
     only_where,
     planned,
     quantity_problems,
@@ -142,13 +143,24 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     angles = STATUS_ANGLES * turns if part is None else np.linspace(*part, STATUS_ANGLES + 1)
     grid = scene.grid(angles)
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
+    names = tuple(dict.fromkeys((*signals, *(name for name, _ in powers))))
+    known = known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
+    searched = tuple(known[signal] for signal in signals)
     if part is not None:
-        largest = peaks_within(scene, signals, part, threads)
+        found = peaks_within(scene, searched, part, threads)
     else:
-        largest = exact_peaks(scene, signals, assembly, threads) if signals else {}
+        found = exact_peaks(scene, searched, assembly, threads) if signals else {}
+    largest = {signal: found[known[signal]] for signal in signals}
     sampled = scene.at_one_angle
-    averages = means(scene, powers, changing_pace(sampled), threads) if powers and part is None else {}
+    averages = _means(scene, powers, known, threads) if part is None else {}
     return Result(sampled, grid, with_dead_centres(scene, assembly), largest, averages)
+
+
+def _means(scene: Scene, powers: tuple[Power, ...], known: Mapping[str, str], threads: int | None) -> Averages:
+    """Return the means over time of powers of quantities, whose known values have other names."""
+    named = {power: (known[power[0]], power[1]) for power in powers}
+    averages = means(scene, tuple(named.values()), changing_pace(scene.at_one_angle), threads) if powers else {}
+    return {power: averages[name] for power, name in named.items()}
 
 
 def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: int | None, solver: str) -> Result:
@@ -158,9 +170,10 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     grid = in_order(scene.grid(angles))
     sampled = scene.at(grid)
     signals, powers = needed(items)
-    largest = {signal: Reduction("largest_sample", signal) for signal in signals}
+    of_ok = known_names(sampled, tuple(dict.fromkeys((*signals, *(name for name, _ in powers)))), where_ok)
+    largest = {signal: Reduction("largest_sample", of_ok[signal]) for signal in signals}
     pace = changing_pace(sampled)
-    averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], p[0]) for p in powers}
+    averages = {} if pace else {p: Reduction(("mean", "mean_square")[p[1] - 1], of_ok[p[0]]) for p in powers}
     reductions = tuple(dict.fromkeys([*largest.values(), *averages.values()]))
     request = planned(sampled, tuple(dict.fromkeys(r.name for r in reductions)), sampled.inputs.forms, solver)
     reduced = {}

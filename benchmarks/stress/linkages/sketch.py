@@ -25,10 +25,13 @@ def turn(degrees: Any) -> Array:
 
 
 class Sketch:
-    """Pins, guides and branches of n linkages of one topology, as they are drawn; the pin `near` is near a toggle."""
+    """Pins, guides and branches of n linkages of one topology, as they are drawn.
 
-    def __init__(self, random: np.random.Generator, n: int, near: str = "") -> None:
-        self.random, self.n, self.near = random, n, near
+    The pin `near` is near a toggle; where the linkage `rubs`, all guides and slots have friction.
+    """
+
+    def __init__(self, random: np.random.Generator, n: int, near: str = "", rubs: bool = False) -> None:
+        self.random, self.n, self.near, self.rubs = random, n, near, rubs
         self.theta2 = float(random.uniform(-180.0, 540.0))
         self.pins: dict[str, Array] = {}
         self.fixed: list[str] = []
@@ -110,6 +113,8 @@ class Sketch:
         self.guides[name] = {"through": (through.real, through.imag), "angle": angle, **self.friction()}
 
     def friction(self) -> dict[str, Any]:
+        if self.rubs:
+            return {"friction": self.uniform(0.02, 1.2)}
         most = 0.0 if self.near else self.random.choice([0.0, 0.3, 1.0])
         return {"friction": self.uniform(0.0, most)} if most else {}
 
@@ -149,6 +154,8 @@ class Sketch:
         through = self.around(pin, 0.0, 1.0)
         self.guides[guide] = {"through": (through.real, through.imag), "angle": angle, **self.friction()}
         self.parts[role] = {"slot_angle": self.uniform(35.0, 145.0)}
+        if self.rubs:
+            self.parts[role]["slot_friction"] = self.uniform(0.02, 1.2)
 
     def cylinder(self, role: str, first: str, second: str) -> None:
         """Hold a cylinder at the distance of two pins, or move it over the turn."""

@@ -24,10 +24,13 @@ CERTAIN: Certain = {
 CERTAIN_BEYOND: Certain = {"Cx_lo": "size", "Cy_lo": "size"}
 TOGGLE = Limit("C", ("low",), ("low_noise",))
 """Limit of the dyad's motion: where the guides are parallel."""
-WEDGED = Limit("C", ("grip",), ("low_noise",), "pole")
+EDGE_NOISE = ("edge_noise", "edge_noise", "second_edge_noise", "second_edge_noise")
+WEDGED = Limit("C", ("grip", "second_grip"), ("low_noise", "low_noise"), "wedge")
 SLIDE = WEDGED, Limit("C", ("ratio_slider",), ("noise",), "jump")
 SECOND_SLIDE = WEDGED, Limit("C", ("ratio_second",), ("noise",), "jump")
 """Limits of friction: where it may wedge the sliders, and where each turns round."""
+BOTH = Limit("C", ("edge", "opposite_edge", "second_edge", "second_opposite_edge"), EDGE_NOISE, "contact")
+"""Limits of friction that depend on the forces: where one of the guides bears nothing."""
 SECOND = ("second_guide_cos", "second_guide_sin")
 CONTACT = Slide("normal_force", "friction_force", "T13", ("direction", *GUIDE, "Cx", "Cy"))
 SECOND_CONTACT = Slide("second_normal_force", "second_friction_force", "T14", ("second_direction", *SECOND, "Cx", "Cy"))
@@ -85,8 +88,22 @@ def between_guides() -> Rows:
 
 
 def grip() -> Rows:
-    """Return the row of the signal that is positive where friction does not wedge the sliders."""
-    return [Row(coulomb.grip_of_two, ("grip",), ("low", "friction", "second_friction"))]
+    """Return the row of the signals that are positive where friction does not wedge the sliders."""
+    return [Row(coulomb.grips_of_two, ("grip", "second_grip"), ("low", "friction", "second_friction"))]
+
+
+def edges() -> Rows:
+    """Return the rows of the signals that are 0 where one of the guides bears nothing."""
+    second = ("Q_along_second", "Q_across_second")
+    return [
+        Row(coulomb.edges_of_cone, ("edge", "opposite_edge", "edge_noise"), ("Q_along", "Q_across", "friction")),
+        Row(moving_guide.along_and_across, second, ("Qx", "Qy", *SECOND)),
+        Row(
+            coulomb.edges_of_cone,
+            ("second_edge", "second_opposite_edge", "second_edge_noise"),
+            (*second, "second_friction"),
+        ),
+    ]
 
 
 def forces() -> Rows:

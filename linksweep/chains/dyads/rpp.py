@@ -17,6 +17,9 @@ from linksweep.physics.closures import dyad_rpp, moving_guide, pins, slider_cran
 SLIDE = (Limit("C", ("ratio_slider",), ("noise",), "jump"),)
 SLOT = (Limit("C", ("ratio_in_slot",), ("noise",), "jump"),)
 """Limits of friction: where the slider, and the pin in its slot, turn round."""
+EDGE_NOISE = ("edge_noise", "edge_noise", "slot_edge_noise", "slot_edge_noise")
+BOTH = Limit("C", ("edge", "opposite_edge", "slot_edge", "slot_opposite_edge"), EDGE_NOISE, "contact")
+"""Limits of friction that depend on the forces: where guide or pin bear nothing."""
 CONTACT = Slide("normal_force", "friction_force", "T14", ("direction", *GUIDE, "Cx", "Cy"))
 SLOT_CONTACT = Slide("slot_force", "slot_friction_force", "", ("slot_direction", "slot_x", "slot_y", "Bx", "By"))
 SLOT_AXIS = ("slot_cos", "slot_sin")
@@ -41,6 +44,20 @@ def between_pin_and_guide() -> Rows:
         Row(planar.product, ("v_in_slot",), ("omega2", "ratio_in_slot")),
         *slider_rows(),
         Row(planar.vector_sum, ("Cx", "Cy"), ("Ox", "Oy", "OCx", "OCy")),
+    ]
+
+
+def edges() -> Rows:
+    """Return the rows of the signals that are 0 where guide or pin bear nothing."""
+    second = ("Q4_along_slot", "Q4_across_slot")
+    return [
+        Row(coulomb.edges_of_cone, ("edge", "opposite_edge", "edge_noise"), ("Q4_along", "Q4_across", "friction")),
+        Row(moving_guide.along_and_across, second, ("Q4x", "Q4y", "slot_x", "slot_y")),
+        Row(
+            coulomb.edges_of_cone,
+            ("slot_edge", "slot_opposite_edge", "slot_edge_noise"),
+            (*second, "slot_friction"),
+        ),
     ]
 
 

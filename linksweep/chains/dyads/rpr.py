@@ -17,7 +17,7 @@ CERTAIN: Certain = {"slide_squared": "reach"}
 CERTAIN_BEYOND: Certain = dict.fromkeys(full("line_"), 1.0)
 TOGGLE = Limit("rocker", ("slide_squared",), ("noise",))
 """Limit of the dyad's motion."""
-SLIDE = Limit("rocker", ("grip",), ("noise",), "pole"), Limit("rocker", ("slide_leverage",), ("noise",), "jump")
+SLIDE = Limit("rocker", ("grip",), ("noise",), "wedge"), Limit("rocker", ("slide_leverage",), ("noise",), "jump")
 """Limits of friction in the slide: where it wedges the block, and where the block turns round."""
 CONTACT = Slide("F43n", "friction_force", "T43", ("direction", "r3x", "r3y", "Bx", "By"))
 LINE = ("slide", "ratio_slide", "inverse_slide", "offset", "r3x", "r3y")

@@ -21,7 +21,7 @@ CERTAIN: Certain = {"low": "rod_length", "high": "rod_length", "rod_across": "ro
 CERTAIN_BEYOND: Certain = {"Cx_lo": "rod_length", "Cy_lo": "rod_length"}
 TOGGLE = Limit("C", ("low", "high"), ("low_noise", "high_noise"))
 """Limit of the dyad's motion."""
-SLIDE = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")
+SLIDE = Limit("C", ("grip",), ("grip_noise",), "wedge"), Limit("C", ("ratio_slider",), ("noise",), "jump")
 """Limits of friction in the guide: where it wedges the slider, and where the slider turns round."""
 GUIDE = ("guide_cos", "guide_sin")
 CONTACT = Slide("normal_force", "friction_force", "T14", ("direction", "guide_cos", "guide_sin", "Cx", "Cy"))

@@ -22,9 +22,9 @@ from linksweep.results.peak_search.paths import (
     Paths,
     approach_samples,
     both_sides,
-    breaks,
     in_order,
     jump_angles,
+    kinks,
     near_toggle_samples,
     thinned,
     windows_about,
@@ -88,7 +88,8 @@ def _angles(middle: Array, half: Array, x: Array) -> Array:
 def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], closely: bool = False) -> Paths:
     """Return paths between starts and ends (design, path); `closely` samples closest approaches, too."""
     row, middle, half = _middles(ends)
-    x, cuts = _samples_and_cuts(group.some(row), middle, half, closely)
+    at_jumps = jump_angles(group)[row]
+    x, cuts = _samples_and_cuts(group.some(row), middle, half, at_jumps, closely)
     before, after = np.roll(x, 1, axis=1), np.roll(x, -1, axis=1)
     before[:, 0], after[:, -1] = x[:, 0] - 0.01 * NEAREST, x[:, -1] + 0.01 * NEAREST
     near = np.empty((len(row), 0)) if group.limits is None else group.limits.near_toggle[row]
@@ -127,8 +128,8 @@ def _ok_somewhere(group: Group, paths: Paths) -> Array:
 # ---------------------------------------------------------------------------------------- samples and cuts
 
 
-def _samples_and_cuts(group: Group, middle: Array, half: Array, closely: bool) -> tuple[Array, Array]:
-    """Return samples and cuts in x of arcs, one arc for each row of the group.
+def _samples_and_cuts(group: Group, middle: Array, half: Array, at_jumps: Array, closely: bool) -> tuple[Array, Array]:
+    """Return samples and cuts in x of arcs, one arc for each row of the group and of the angles (arc, jump) of jumps.
 
     Samples are even, and dense towards both ends, about near-toggles that the arc passes, beside breaks and, `closely`,
     about closest approaches.
@@ -136,7 +137,8 @@ def _samples_and_cuts(group: Group, middle: Array, half: Array, closely: bool) -
     even, period = _even(group), group.scene.period_of_motion
     near = QUARTER - NEAREST * 2.0 ** np.arange(0.0, np.log2(np.pi / len(even) / NEAREST), 0.5)
     shared = np.broadcast_to(np.concatenate([even, near, -near]), (len(middle), len(even) + 2 * len(near)))
-    special = near_toggle_samples(group), both_sides(breaks(group)), both_sides(jump_angles(group))
+    breaks = np.concatenate([at_jumps, kinks(group)], axis=1)
+    special = near_toggle_samples(group), both_sides(breaks), both_sides(at_jumps)
     graded, sides, jumps = (_filled(_on_arc(angles, middle, half, period)) for angles in special)
     quick = _on_arc(_quick_and_even(group), middle, half, period)
     close = _on_arc(approach_samples(group, _angles(middle, half, even)), middle, half, period)

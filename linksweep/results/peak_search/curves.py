@@ -76,6 +76,19 @@ class Extremes(NamedTuple):
         """Return the extremes with these indices."""
         return Extremes(*(numbers[..., which] for numbers in self))
 
+    @property
+    def height(self) -> Array:
+        """Height of each least value over zero, or depth of each largest one below it."""
+        return self.sign * self.values[1]
+
+
+def zeros_and_extremes(curves: Curves) -> tuple[Array, Array, Extremes]:
+    """Return curve and place [degree] of each zero; and the extremes, refined, that are or may be near zero."""
+    values, noise = curves.samples()
+    turning = extremes(curves, values, noise)
+    beyond = turning.some(turning.height < -turning.noise)
+    return *_crossings(curves, values, noise, beyond), turning
+
 
 def extremes(curves: Curves, values: Array, noise: Array) -> Extremes:
     """Return the extremes that may be near-toggles, or have a toggle on either side, refined."""
@@ -103,8 +116,8 @@ def _brackets(curves: Curves, sign: float, values: Array, noise: Array) -> Extre
 def _matter(brackets: Extremes) -> Array:
     """Return whether each may be a near-toggle, or have a toggle on either side, by the parabola through its points."""
     slope, curvature = parabola(brackets)
-    height = brackets.sign * brackets.values[1]
-    return (height > -brackets.noise) & (height - 0.25 * slope * slope / curvature < 2.0 * curvature * WIDE**2)
+    lowest = brackets.height - 0.25 * slope * slope / curvature
+    return (brackets.height > -brackets.noise) & (lowest < 2.0 * curvature * WIDE**2)
 
 
 def parabola(brackets: Extremes) -> tuple[Array, Array]:
@@ -142,7 +155,7 @@ def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     return brackets._replace(x=x, values=values, noise=noise)
 
 
-def zeros(curves: Curves, values: Array, noise: Array, beyond: Extremes) -> tuple[Array, Array]:
+def _crossings(curves: Curves, values: Array, noise: Array, beyond: Extremes) -> tuple[Array, Array]:
     """Return curve and place [degree] of each zero: between samples, and on either side of extremes `beyond` zero."""
     curve, x, heights = _changes_of_sign(curves, values, noise)
     sides = [(beyond.curve, beyond.x[k : k + 2], beyond.values[k : k + 2]) for k in (0, 1)]

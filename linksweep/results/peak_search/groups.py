@@ -191,6 +191,7 @@ def crossing(values_at: Callable[[Array], Array], start: Point, end: Point, step
     for _ in range(steps):
         x = b - f_b * (b - a) / (f_b - f_a)
         f = values_at(x)
+        f = np.nan_to_num(f)  # where there is no value, as in a jam, the place itself is near enough
         beyond = (f < 0.0) == (f_b < 0.0)
         a, f_a = np.where(beyond, a, b), np.where(beyond, 0.5 * f_a, f_b)
         b, f_b = x, f

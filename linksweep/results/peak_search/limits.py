@@ -33,7 +33,7 @@ from linksweep.results.peak_search.between import (
     different_designs,
     in_period,
 )
-from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, extremes, parabola, zeros
+from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 512
@@ -199,10 +199,8 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int)
 
 def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearToggles]:
     """Return the zeros of curves, with the arc in place of the design, then those that they touch, and near-toggles."""
-    values, noise = curves.samples()
-    turning = extremes(curves, values, noise)
-    height = turning.sign * turning.values[1]
-    curve, angle = zeros(curves, values, noise, turning.some(height < -turning.noise))
+    curve, angle, turning = zeros_and_extremes(curves)
+    height = turning.height
     angle = in_period(angle, curves.scene.period) if curves.turns else angle  # the last samples repeat the first
     closes = (turning.sign > 0.0) | (curves.limit.zeros != "toggle")
     near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise)))
@@ -214,7 +212,7 @@ def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearTog
 
 def _near_toggles(curves: Curves, arcs: Arcs, least: Extremes) -> NearToggles:
     """Return the narrow ones of least distances from zero as near-toggles."""
-    angle, value = least.x[1], least.sign * least.values[1]
+    angle, value = least.x[1], least.height
     depth = np.maximum(value, least.noise)
     with np.errstate(all="ignore"):
         width = np.sqrt(depth / parabola(least)[1])
@@ -252,19 +250,29 @@ def _pieces(curves: Curves, arcs: Arcs, toggles: Zeros, part: int) -> Arcs:
 def _places(arcs: Arcs, near: NearToggles, designs: int, turns: bool, period: float) -> Array:
     """Return the places (arc, sample) [degree] of samples: even ones, and dense ones about near-toggles and ends."""
     angle, width = (by_row(near.row, numbers, designs)[arcs.row] for numbers in (near.angle, np.tan(0.5 * near.width)))
-    graded, count = graded_samples(angle, width), EVEN * round(period / 360.0)
-    if turns:
-        even = np.broadcast_to((np.arange(count) + OFF_ROUND) * (period / count), (len(graded), count))
-        x = np.sort(np.concatenate([even, period * _filled(in_period(graded, period) / period)], axis=1), axis=1)
-        return np.concatenate([x, x[:, :SEAM] + period], axis=1)
-    start, length = arcs.start[:, None], (arcs.end - arcs.start)[:, None]
-    along = in_period(graded - start, period) / length
+    graded = graded_samples(angle, width)
+    return on_turns(graded, period) if turns else on_arcs(arcs.start, arcs.end, graded, period)
+
+
+def on_turns(dense: Array, period: float) -> Array:
+    """Return places (arc, sample) [degree] on whole periods: even ones, these, and the first ones again at the end."""
+    count = EVEN * round(period / 360.0)
+    even = np.broadcast_to((np.arange(count) + OFF_ROUND) * (period / count), (len(dense), count))
+    x = np.sort(np.concatenate([even, period * _filled(in_period(dense, period) / period)], axis=1), axis=1)
+    return np.concatenate([x, x[:, :SEAM] + period], axis=1)
+
+
+def on_arcs(start: Array, end: Array, dense: Array, period: float) -> Array:
+    """Return places (arc, sample) [degree] on arcs: even ones, dense ones about the ends, and those of these on the
+    arc."""
+    count = EVEN * round(period / 360.0)
+    start, length = start[:, None], (end - start)[:, None]
+    along = in_period(dense - start, period) / length
     even = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
     ends = NEAREST * 2.0 ** np.arange(np.log2(even[0] / NEAREST))
-    shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(graded), count + 2 * len(ends)))
-    return start + length * np.sort(
-        np.concatenate([shared, _filled(np.where(along < 1.0, along, np.nan))], axis=1), axis=1
-    )
+    shared = np.broadcast_to(np.concatenate([ends, even, 1.0 - ends]), (len(dense), count + 2 * len(ends)))
+    dense = _filled(np.where(along < 1.0, along, np.nan))
+    return start + length * np.sort(np.concatenate([shared, dense], axis=1), axis=1)
 
 
 def graded_samples(angles: Array, widths: Array) -> Array:

@@ -21,6 +21,7 @@ from linksweep.results.peak_search.approaches import (
     concatenated,
 )
 from linksweep.results.peak_search.between import Array, by_row, in_period
+from linksweep.results.peak_search.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
 
@@ -41,6 +42,8 @@ KINK_STEPS = 3
 MOST_CUTS = 200
 """Cuts at which a load or speed over the angle changes quickly: more do not help a mean."""
 QUARTER = 0.5 * np.pi
+JUMPS = ("jump", "wedge", "dead_centre")
+"""Kinds of zeros at which a quantity may jump."""
 
 Part = tuple[float, float]
 """First and last crank angle [degree] of a machine that moves over part of a turn."""
@@ -91,7 +94,8 @@ def turns(group: Any) -> Paths:
     even = (np.arange(PER_TURN * round(period / turn)) + OFF_ROUND) * (turn / PER_TURN)
     even, quick = (np.broadcast_to(angles, (len(group.designs), len(angles))) for angles in (even, group.quick))
     graded = _graded_over_period(group)
-    sides, jumps = both_sides(breaks(group)), both_sides(jump_angles(group))
+    at_jumps = jump_angles(group)
+    sides, jumps = both_sides(np.concatenate([at_jumps, kinks(group)], axis=1)), both_sides(at_jumps)
     close = approach_samples(group)[:, ::7]
     # a piece between cuts has 15 nodes of its own: it needs fewer cuts than a search needs samples
     samples, edges = (even, graded, sides, quick), (even[:, ::30], graded[:, ::2], jumps, close, thinned(quick))
@@ -163,20 +167,30 @@ def both_sides(angles: Array) -> Array:
     return np.concatenate([angles - ASIDE, angles + ASIDE], axis=1)
 
 
-def breaks(group: Group) -> Array:
-    """Return the angles (design, break) of jumps, exactly, and of kinks, nearly: too inexact to cut an integral at."""
-    kinks = [_changes_of_sign(group, name) for name in group.scene.mechanism.kinks()]
-    return np.concatenate([jump_angles(group), *kinks], axis=1)
+def kinks(group: Group) -> Array:
+    """Return the angles (design, kink) of kinks, nearly: too inexact to cut an integral at."""
+    found = [_changes_of_sign(group, name) for name in group.scene.mechanism.kinks()]
+    return np.concatenate([np.empty((len(group.designs), 0)), *found], axis=1)
 
 
 def jump_angles(group: Group) -> Array:
-    """Return the jumps (design, jump) of the whole period [degree]; NaN where a crank that does not turn fully has
-    none."""
+    """Return the jumps (design, jump) of the whole period [degree], and the angles at which contacts bear nothing; NaN
+    where others have more."""
     turn, designs = group.scene.mechanism.period, len(group.designs)
     turns = range(round(group.scene.period / turn))
     angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
-    located = [group.zeros(kind) + start for kind in ("jump", "pole") for start in _starts_of_motion(group)]
-    return np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
+    located = [group.zeros(kind) + start for kind in JUMPS for start in _starts_of_motion(group)]
+    jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
+    return _distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
+
+
+def _distinct(angles: Array) -> Array:
+    """Return angles (design, nth) in order, those made equal that differ by rounding, as where two slides turn round
+    together: between samples so close a signal shows no slope."""
+    x = np.sort(angles, axis=1)
+    close = np.diff(x, axis=1, prepend=-np.inf) < ASIDE
+    first = np.where(close, 0, np.arange(x.shape[1]))
+    return np.take_along_axis(x, np.maximum.accumulate(first, axis=1), axis=1)
 
 
 def _changes_of_sign(group: Group, name: str) -> Array:
@@ -219,7 +233,7 @@ def _approaches(group: Group) -> Approaches:
 
 def about_breaks(group: Group) -> Paths:
     """Return a window about every break of each design, wide enough to reach the samples of the fused search."""
-    angles = breaks(group)
+    angles = np.concatenate([jump_angles(group), kinks(group)], axis=1)
     row = np.repeat(np.arange(len(angles)), angles.shape[1])
     return _windows(row, np.nan_to_num(angles).reshape(-1, 1) + np.concatenate([-BESIDE[::-1], BESIDE]), BESIDE[-1])
 

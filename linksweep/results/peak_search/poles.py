@@ -21,6 +21,7 @@ from linksweep.mechanisms.limits.finding import Finding
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY, Array
 from linksweep.results.peak_search.groups import Group
+from linksweep.results.peak_search.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.scene.dimensions import side_by_side
 from linksweep.scene.scene import Scene
@@ -58,6 +59,9 @@ def _of_output(signals: tuple[str, ...]) -> bool:
 def with_dead_centres(scene: Scene, assembly: Field) -> Field:
     """Return `assembly` as it is, but PARTLY where a dead centre or friction forbids some angles of a whole turn."""
     status = xr.Variable(assembly.dims, assembly.values, fastpath=True)  # else xarray imports dask to look at them
+    if may_jam(scene):
+        jammed = jammed_designs(scene)
+        status = xr.where(xr.Variable(jammed.dims, jammed.values) & (status < PARTLY), PARTLY, status)
     if "unbounded" in scene.mechanism.round_meanings:
         for dims, angles in chain(_poles_by_search(scene), _poles_in_closed_form(scene)):
             some = xr.Variable(dims, np.isfinite(angles).any(axis=-1))
@@ -66,10 +70,10 @@ def with_dead_centres(scene: Scene, assembly: Field) -> Field:
 
 
 def _poles_by_search(scene: Scene) -> Iterator[tuple[tuple[str, ...], Array]]:
-    """Yield dims and angles [degree], several on a trailing axis, of dead centres and jams located by a search."""
+    """Yield dims and angles [degree], several on a trailing axis, of dead centres located by a search."""
     if scene.table.limits:
         sizes, limits = limits_of(scene.unloaded)
-        angles = limits.zeros_of(scene.table.limits, "pole")
+        angles = limits.zeros_of(scene.table.limits, "dead_centre")
         yield tuple(sizes), angles.reshape(*sizes.values(), angles.shape[1])
 
 
@@ -129,7 +133,7 @@ def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     checks += scene.mechanism.output_findings() if _of_output(signals) else ()
     angles = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
-    angle = np.concatenate([group.zeros("pole"), *chain(*angles)], axis=1)
+    angle = np.concatenate([group.zeros("dead_centre"), group.zeros("wedge"), *chain(*angles)], axis=1)
     row, which = np.nonzero(np.isfinite(angle))
     return row, angle[row, which], np.full(len(row), CLOSEST)
 

@@ -160,7 +160,7 @@ def grip(low, high, rod_across, friction):
 
 
 GRIP = Row(grip, ("grip",)), Row(planar.product, ("grip_noise",), ("noise", "rod_length"))
-SLIDES = Limit("C", ("grip",), ("grip_noise",), "pole"), Limit("C", ("ratio_slider",), ("noise",), "jump")
+SLIDES = Limit("C", ("grip",), ("grip_noise",), "wedge"), Limit("C", ("ratio_slider",), ("noise",), "jump")
 
 
 @pytest.mark.parametrize("jams", [0.0, 0.3])

@@ -1,0 +1,129 @@
+"""Find the crank angles at which friction jams a slide: between jumps and zeros of contacts a status does not change.
+
+The status in the middle of each piece between these, and between even cuts beside, shows which pieces are jammed;
+bisection finds the ends.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.quantity import LAST_UNJAMMED
+from linksweep.engine.run import Field
+from linksweep.results.peak_search.between import Array, by_row
+from linksweep.results.peak_search.groups import Group, empty_over_all, groups
+from linksweep.results.peak_search.paths import ASIDE, in_order, jump_angles
+from linksweep.scene.scene import Scene
+
+STEP = 2.0
+"""Step of the even cuts [degree]."""
+STATUS = ("status", "status_at")
+FREE = 0
+"""Place of a jam where there is none."""
+HALVINGS = 50
+"""Halvings of the distance of two pieces down to the last digits of an angle."""
+
+
+class Jams(NamedTuple):
+    """Jams: row of the design, start and end [degree], and the number of the place, as `status_at` counts them."""
+
+    row: Array
+    start: Array
+    end: Array
+    place: Array
+
+
+class Pieces(NamedTuple):
+    """Pieces of the period of designs, in order: row of the design, middle [degree], and the place that is jammed."""
+
+    row: Array
+    middle: Array
+    place: Array
+
+
+def may_jam(scene: Scene) -> bool:
+    """Return whether friction may jam a slide of a machine without closed forms."""
+    return scene.table.limits is not None and scene.mechanism.rubs
+
+
+def jammed_designs(scene: Scene) -> Field:
+    """Return whether each design is jammed at any angle."""
+    jammed = empty_over_all(scene, STATUS)
+    for group in groups(scene, STATUS):
+        pieces = _pieces(group)
+        of_group = np.bincount(pieces.row, pieces.place != FREE, len(group.designs)) > 0
+        jammed.values[tuple(group.places[dim] for dim in jammed.dims)] = of_group if jammed.dims else of_group[0]
+    return Field(jammed.dims, jammed.values > 0.0)
+
+
+def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
+    """Return the design dims of jams, and tables (design dims…, jam) of their starts, ends and places; NaN for none."""
+    dims, values = empty_over_all(scene, STATUS)
+    found = [Jams(*(np.empty(0, dtype=kind) for kind in (int, float, float, int)))]
+    for group in groups(scene, STATUS):
+        jams = _jams(group)
+        places = tuple(group.places[dim][jams.row] for dim in dims)
+        found.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
+    row, *numbers = map(np.concatenate, zip(*found, strict=True))
+    tables = (by_row(row, number.astype(float), values.size) for number in numbers)
+    start, end, place = (table.reshape(*values.shape, -1) if row.size else table for table in tables)
+    return dims, start, end, place
+
+
+def _jams(group: Group) -> Jams:
+    """Return the jams of designs, each ended by the next change of place."""
+    row, middle, place = _pieces(group)
+    if not len(row):
+        return Jams(row, middle, middle, place)
+    period, following = group.scene.period, _next_of_row(row)
+    changes = np.flatnonzero(place[following] != place)
+    ahead = middle[following] + np.where(following <= np.arange(len(row)), period, 0.0)
+    angle = _bisected(group, row[changes], place[changes], middle[changes], ahead[changes])
+    after, end = place[following[changes]], angle[_next_of_row(row[changes])] if len(changes) else angle
+    end = end + np.where(end <= angle, period, 0.0)
+    always = np.flatnonzero((place != FREE) & ~np.isin(row, row[changes]) & (np.diff(row, prepend=-1) > 0))
+    jams = Jams(row[changes], angle, end, after)
+    jams = Jams(*(numbers[after != FREE] for numbers in jams))
+    whole = Jams(row[always], np.zeros(len(always)), np.full(len(always), period), place[always])
+    row, start, end, place = (np.concatenate(both) for both in zip(jams, whole, strict=True))
+    turns = np.floor(start / period) * period
+    order = np.lexsort((start - turns, row))
+    return Jams(row[order], (start - turns)[order], (end - turns)[order], place[order])
+
+
+def _pieces(group: Group) -> Pieces:
+    """Return the pieces of a group's designs, without those as short as the noise of a jump."""
+    period = group.scene.period
+    even = np.broadcast_to(np.arange(0.5 * STEP, period, STEP), (len(group.designs), round(period / STEP)))
+    limits = group.limits
+    ends = [] if limits is None else [limits.arc_start, limits.arc_end]
+    ends = [end + start for end in ends for start in np.arange(0.0, period, group.scene.period_of_motion)]
+    cuts = in_order(np.mod(np.concatenate([even, jump_angles(group), *ends], axis=1), period))
+    length = np.diff(cuts, axis=1, append=cuts[:, :1] + period)
+    row, nth = np.nonzero(length > 4.0 * ASIDE)
+    middle = (cuts + 0.5 * length)[row, nth]
+    return Pieces(row, middle, _jammed_place(group, row, middle))
+
+
+def _jammed_place(group: Group, row: Array, angle: Array) -> Array:
+    """Return the place that is jammed at angles of designs, `FREE` for none."""
+    status, place = group.values(STATUS, row, angle)
+    return np.where(status > LAST_UNJAMMED, place, FREE).astype(int)
+
+
+def _next_of_row(row: Array) -> Array:
+    """Return the index of the next item of the same row, of its last item that of the first; rows are in order."""
+    count = np.arange(len(row))
+    first = np.searchsorted(row, row)
+    return np.where(np.append(row[1:] != row[:-1], True), first, count + 1)
+
+
+def _bisected(group: Group, row: Array, place: Array, before: Array, after: Array) -> Array:
+    """Return the angle at which the jammed place changes from this one, between two angles."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (before + after)
+        same = _jammed_place(group, row, middle) == place
+        before, after = np.where(same, middle, before), np.where(same, after, middle)
+    return after
