@@ -103,7 +103,7 @@ class Chain:
     def slide_forces(self) -> tuple[str, ...]:
         """Friction in each slide, and the components of its whole force."""
         names = [force_name(*pair) for pair in self.topology.slides.values()]
-        return tuple(f"{name}{part}" for name in names for part in "txy")
+        return tuple(f"{name}{part}" for name in names for part in ("xy" if self.motion.plain else "txy"))
 
     @property
     def kinematics(self) -> tuple[str, ...]:

@@ -89,7 +89,7 @@ def equations(
                 _add_slide(of_link, pair, k, has_moment(slide))
         for name, pin, number, way in _pushed(topology, cylinders):
             if number == k:
-                _add_cylinder(of_link, name, pin, way)
+                add_force(of_link, f"force_{name}", way, (*xy(f"axis_{name}"), f"axis_{name}_at_{pin}"))
         add_gears(topology, meshed, of_link, k)
         rows += of_link
     return tuple(rows)
@@ -99,16 +99,15 @@ def _add_slide(rows: list[Equation], pair: tuple[int, int], k: int, with_moment:
     """Add the normal force and the moment of a slide to the rows of a link."""
     force = force_name(*pair)
     stem = f"contact_{force}"
-    for row, name in zip(rows, (*xy(stem), f"{stem}_on{k}"), strict=True):
-        row.coefficients[f"{force}n"] = (sign(pair, k), name)
+    add_force(rows, f"{force}n", sign(pair, k), (*xy(stem), f"{stem}_on{k}"))
     if with_moment:
         rows[2].coefficients[name_between("T", *pair)] = sign(pair, k)
 
 
-def _add_cylinder(rows: list[Equation], role: str, pin: str, way: float) -> None:
-    """Add the force of a cylinder on its pin to the rows of a link."""
-    for row, name in zip(rows, (*xy(f"axis_{role}"), f"axis_{role}_at_{pin}"), strict=True):
-        row.coefficients[f"force_{role}"] = (way, name)
+def add_force(rows: Iterable[Equation], force: str, way: float, names: Iterable[str]) -> None:
+    """Add a force of unknown size to the rows of a link: names of its components and moment per unit of the force."""
+    for row, name in zip(rows, names, strict=True):
+        row.coefficients[force] = (way, name)
 
 
 def has_moment(slide: str) -> bool:

@@ -54,7 +54,7 @@ def first_moment(link: Any) -> Any:
     return distribution(link).first_moment()
 
 
-def on_crank(crank: Any, coupler: Any) -> Any:
+def turning_with_crank(crank: Any, coupler: Any) -> Any:
     """Return the first moment that turns with the crank, h2 + m3·a − h3·a/b [kg m]."""
     a, b = crank.length, coupler.length
     return first_moment(crank) + coupler.mass * a - first_moment(coupler) * (a / b)

@@ -20,8 +20,7 @@ from linksweep.chains.gears import Geared
 from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, turned
 from linksweep.chains.shape import Shape
 from linksweep.chains.topology import GROUND, RPR, RRP, RRR, Topology, taken, topology
-from linksweep.mechanisms.drawing import Drawing
-from linksweep.mechanisms.linkage_drawing import LinkageDrawing
+from linksweep.mechanisms.drawing import Drawing, LinkageDrawing
 from linksweep.mechanisms.linkage_numbers import (
     ORIGIN,
     branch_sign,
@@ -30,7 +29,6 @@ from linksweep.mechanisms.linkage_numbers import (
     ground_pin,
     guide_numbers,
     point_on_link,
-    slider_numbers,
     slot_numbers,
 )
 from linksweep.mechanisms.links import (
@@ -218,12 +216,6 @@ class Linkage(Machine):
         return LinkageDrawing(self.topology, self.ground, self.guides).drawing()
 
     @property
-    def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
-        guides = {role: guide for role, (_, guide) in self.topology.sliders.items()}
-        guides |= {role: guide for role, (guide, _) in self.topology.yokes.items()}
-        return tuple(role for role, guide in guides.items() if self.topology.hosts[guide] == GROUND)
-
-    @property
     def geared(self) -> Geared:  # type: ignore[override]
         return tuple((role, ratio) for role, ratio in self.topology.gears.items() if ratio.denominator > 1)
 
@@ -260,10 +252,8 @@ class Linkage(Machine):
     def _numbers_of_parts(self) -> dict[str, Any]:
         """Return the numbers of links, sliders, wheels and cylinders."""
         joined, parts, numbers = self.topology, self.parts, dict[str, Any]()
-        for role in joined.links:
+        for role in (*joined.links, *joined.on_guides):
             numbers |= link_parameters(role, parts[role])
-        for role in (*joined.sliders, *joined.yokes):
-            numbers |= slider_numbers(role, parts[role])
         for role in joined.yokes:
             numbers |= slot_numbers(role, parts[role])
         for role in joined.gears:
@@ -298,7 +288,7 @@ def misspelt_fields(links: str, parts: Mapping[str, Any], fields: Iterable[str])
 def part_problems(joined: Topology, parts: Mapping[str, Any], taken: Collection[str]) -> Iterator[str]:
     """Yield the problems of parts that are missing, of the wrong class, or that no text names."""
     expected: dict[str, Any] = dict.fromkeys(joined.links, AnyLink) | dict.fromkeys(joined.cylinders, Cylinder)
-    expected |= dict.fromkeys((*joined.sliders, *joined.yokes), Slider)
+    expected |= dict.fromkeys(joined.on_guides, Slider)
     for role, kind in expected.items():
         if role not in parts and kind is not Cylinder and role not in taken:
             yield f"{role}: missing; give {role} = {CLASSES[kind]}"

@@ -15,7 +15,7 @@ from linksweep.base.degrees import cos_sin, cos_sin_low_words
 from linksweep.base.validate import Number
 from linksweep.chains.rows.crank import BRANCH_SIGN, frame_parameters
 from linksweep.engine.run import Field
-from linksweep.mechanisms.links import Cylinder, Gears, Guide, Slider, cg_parameters
+from linksweep.mechanisms.links import Cylinder, Gears, Guide, Slider
 from linksweep.physics.algebra.double_double import Pair, divide, dot, multiply, ordered_sum, two_product, two_sum
 
 Numbers = dict[str, Any]
@@ -67,12 +67,6 @@ def guide_numbers(name: str, guide: Guide, origin: Sequence[Number] = ORIGIN) ->
     offset, start = dot((-sin, -sin_lo), (cos, cos_lo), x, y), dot((cos, cos_lo), (sin, sin_lo), x, y)
     line = frame_parameters(name, guide.angle) | words(f"{name}_offset", offset)
     return line | {f"{name}_start": start[0], f"{name}_friction": guide.friction}
-
-
-def slider_numbers(role: str, slider: Slider) -> Numbers:
-    """Return the numbers of a slider as a body whose axes lie along and across its guide."""
-    body = {f"{role}_mass": slider.mass, f"{role}_inertia": slider.inertia, f"{role}_length": 1.0}
-    return body | cg_parameters(role, slider.cg_distance, slider.cg_angle)
 
 
 def slot_numbers(role: str, slider: Slider) -> Numbers:

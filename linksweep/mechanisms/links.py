@@ -353,10 +353,13 @@ def with_distribution(part: Any, numbers: Mapping[str, Number]) -> Any:
     return Link(part.length, **numbers) if isinstance(part, AnyLink) else replace(part, **numbers)
 
 
-def link_parameters(role: str, link: AnyLink) -> dict[str, Number]:
-    """Return the numbers of a link under the names that the physics takes; the centre of gravity in the link's axes."""
+def link_parameters(role: str, link: Any) -> dict[str, Number]:
+    """Return the numbers of a link under the names that the physics takes; the centre of gravity in the link's axes.
+
+    Of a slider, or of a `MassDistribution`, the axes lie along and across its guide, of unit length.
+    """
     return {
-        f"{role}_length": link.length,
+        f"{role}_length": getattr(link, "length", 1.0),
         f"{role}_mass": link.mass,
         f"{role}_inertia": link.inertia,
         **cg_parameters(role, link.cg_distance, link.cg_angle),

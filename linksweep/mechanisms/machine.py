@@ -47,7 +47,7 @@ class Machine(Mechanism):
     @property
     def sliders(self) -> tuple[str, ...]:  # type: ignore[override]
         joined = self.topology
-        return tuple(role for role, (_, guide) in joined.sliders.items() if joined.hosts[guide] == GROUND)
+        return tuple(role for role, (_, guide) in joined.on_guides.items() if joined.hosts[guide] == GROUND)
 
     @property
     def pins(self) -> Pins:  # type: ignore[override]

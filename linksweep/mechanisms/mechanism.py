@@ -274,27 +274,13 @@ class Mechanism(ByContent, ABC):
         """Return the closed-form checks of the machine alone, each with its numbers."""
         return ()
 
-    def dead_centre_findings(self, drive: str) -> Checks:
-        """Return the checks for angles at which the driven part stands still; a crank never does."""
-        return ()
-
     def output_findings(self) -> Checks:
         """Return the checks for angles at which the output stands still, where its force is unbounded."""
-        return self.dead_centre_findings("rocker")
+        return ()
 
     def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
         """Return the closed-form checks that depend on the motion and its drive."""
-        return self.dead_centre_findings(motion["drive"])
-
-
-def reach_problems(offset: Number, first: Number, second: Number, names: str) -> list[str]:
-    """Return the problem of a single design whose offset is beyond the reach of two lengths."""
-    if any(hasattr(length, "dims") for length in (offset, first, second)) or abs(offset) <= first + second:
-        return []
-    return [
-        f"offset = {offset:.15g} m is {abs(offset) - first - second:.6g} m beyond the reach of {names}: "
-        f"the mechanism cannot be assembled at any angle; reduce it or lengthen them"
-    ]
+        return ()
 
 
 MECHANISMS: dict[str, type[Mechanism]] = {}

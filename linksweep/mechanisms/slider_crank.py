@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,37 +10,31 @@ import numpy as np
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
+from linksweep.chains.dyads import on_crank
 from linksweep.chains.equations import equations
-from linksweep.chains.rows.bodies import Equation, drive_torque, newton_euler_equations
-from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, between_rows, frame_parameters, in_range, turned
+from linksweep.chains.rows.bodies import Equation, newton_euler_equations
+from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, turned
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.rows.pins import Journals
-from linksweep.chains.shape import Shape
 from linksweep.chains.topology import Topology, topology_of
-from linksweep.engine.quantity import Quantity, Row, Total
-from linksweep.mechanisms.balance import first_moment, on_crank
+from linksweep.engine.quantity import Row, Total
+from linksweep.mechanisms.balance import first_moment, turning_with_crank
 from linksweep.mechanisms.cylinder import PistonCylinder
-from linksweep.mechanisms.drawing import Block, Drawing, Frame, Rail, direction
-from linksweep.mechanisms.limits import slider_crank_limits as limits
-from linksweep.mechanisms.limits.finding import Checks
-from linksweep.mechanisms.linkage_drawing import drawing_of
-from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
-from linksweep.mechanisms.machine import Machine
-from linksweep.mechanisms.mechanism import reach_problems, register
+from linksweep.mechanisms.drawing import Block, Drawing, Frame, Rail, direction, drawing_of
+from linksweep.mechanisms.limits import slider_crank_limits
+from linksweep.mechanisms.links import LINK, AnyLink
+from linksweep.mechanisms.mechanism import register
+from linksweep.mechanisms.single_dyad import SingleDyad
 from linksweep.mechanisms.strokes import Stroke, slider_strokes
-from linksweep.physics import advantage, coulomb, crank_driven
-from linksweep.physics.algebra import planar
 from linksweep.physics.closures import slider_crank
 
 TOPOLOGY = topology_of("crank A-B, rod B-C, slider C on guide", ("A",), (("guide", "ground"),))
-DRIVES = {"crank": "T12", "coupler": "T13"}
-DRIVEN = {"crank": "omega2", "coupler": "omega3"}
 JOURNALS = {"A": 2, "B": 2, "C": 4}
 """As in engines: the crank carries crankshaft and crankpin, the piston the gudgeon pin; the rod has both its bushes."""
 UNKNOWN_FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y")
 FRICTION = Equation("friction on 4", {"F14x": (1.0, "friction_row_x"), "F14y": (1.0, "friction_row_y")}, "friction_rhs")
-SLIDER = {"slider_inertia": 0.0, "slider_length": 1.0}
-"""Inputs of the slider as a body that does not turn; its axes lie along and across the guide."""
+FRICTION_ROWS = Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")), Total("friction_rhs", ())
+NO_CYCLE = Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))
 GUIDE = Frame("guide", "slide_angle")
 
 
@@ -54,7 +46,7 @@ def _guide(mechanism: Any) -> Rail:
 
 @register
 @dataclass(frozen=True, eq=False, repr=False)
-class SliderCrank(Machine):
+class SliderCrank(SingleDyad):
     """A slider-crank: engine, pump, compressor.
 
     Parameters
@@ -112,45 +104,35 @@ class SliderCrank(Machine):
     slider_cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     slider_cg_angle: Number = parameter("angle", 0.0)
 
-    drives: ClassVar[dict[str, str]] = DRIVES
+    topology: ClassVar[Topology] = TOPOLOGY
+    dyad: ClassVar[on_crank.OnCrank] = on_crank.RRP._replace(rows=(*on_crank.RRP.rows, *FRICTION_ROWS))
+    sizes: ClassVar[tuple[str, ...]] = ("crank", "rod", "offset")
+    frame: ClassVar[tuple[str, str]] = ("guide", "slide_angle")
+    first: ClassVar[tuple[str, ...]] = ("offset", "friction", "slider_mass", "guide_cos", "branch_sign", "slider_cg_x")
+    closed_forms = slider_crank_limits.CHECKS
     journals: ClassVar[Journals] = JOURNALS
     balances_partly: ClassVar[bool] = True
-    topology: ClassVar[Topology] = TOPOLOGY
     title: ClassVar[str] = "Slider-crank"
-    drawing: ClassVar[Drawing] = replace(
-        drawing_of(TOPOLOGY),
+    drawing: ClassVar[Drawing] = drawing_of(
+        TOPOLOGY,
         journals=JOURNALS,
         frames={**drawing_of(TOPOLOGY).frames, 4: GUIDE},
         blocks=(Block(4, "C", GUIDE, _guide),),
         ideal={"friction": 0.0},
     )
 
-    def closure_problems(self) -> list[str]:
-        """Return why a single design cannot be assembled: crank and rod do not reach the guide."""
-        a, b, e = self.crank.length, self.rod.length, self.offset
-        return reach_problems(e, a, b, "crank + rod")
-
-    def parameters(self) -> dict[str, Any]:
-        numbers: dict[str, Any] = {
-            "offset": self.offset,
-            "friction": self.friction,
-            "slider_mass": self.slider_mass,
-            **frame_parameters("guide", self.slide_angle),
-            "branch_sign": self.branch_sign,
-            **cg_parameters("slider", self.slider_cg_distance, self.slider_cg_angle),
-        }
-        return numbers | SLIDER | link_parameters("crank", self.crank) | link_parameters("rod", self.rod)
-
     @property
     def near_toggle_angle(self) -> Number:
         return 90.0 + self.slide_angle
 
     @property
-    def shape(self) -> Shape:
-        return Shape(TOPOLOGY, turned=frozenset({"C"} if turned(self.slide_angle) else ()), plain=True)
+    def narrowest(self) -> tuple[tuple[Number, Number], ...]:
+        a, b, e = self.by_role.values()
+        return ((b, a + abs(e)),)
 
     def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
-        return _own(drive, any(form.full_turns for form in loads))
+        own = super().own(drive, loads)
+        return own._replace(rows=(*own.rows, NO_CYCLE)) if any(form.full_turns for form in loads) else own
 
     def unknowns(self, drive: str) -> tuple[str, ...]:
         return (*UNKNOWN_FORCES, self.drives[drive])
@@ -178,35 +160,9 @@ class SliderCrank(Machine):
         crank_and_rod = equations(TOPOLOGY, {driven: self.drives[drive]})[:6]
         return (*crank_and_rod, *newton_euler_equations(4, {"F43": (-1.0, "R34"), "F14": (1.0, "R34")}, "T14"))
 
-    @property
-    def _lengths(self) -> tuple[Number, Number, Number]:
-        """Lengths of crank and rod, and the offset, which alone decide the motion."""
-        return self.crank.length, self.rod.length, self.offset
-
-    def findings(self) -> Checks:
-        return (limits.classes, self._lengths), (limits.angles, (*self._lengths, self.slide_angle))
-
-    def dead_centre_findings(self, drive: str) -> Checks:
-        """Return the check for angles at which a driven rod does not turn."""
-        return ((limits.rod_dead_centres, (*self._lengths, self.slide_angle)),) if drive == "coupler" else ()
-
-    def output_findings(self) -> Checks:
-        """Return the check for angles at which the slider turns round."""
-        return ((limits.slider_dead_centres, (*self._lengths, self.slide_angle)),)
-
-    def driven_findings(self, motion: Mapping[str, Any]) -> Checks:
-        """Return also the check for wedging, by the link whose moment equation is without the drive."""
-        if motion["drive"] == "coupler":
-            return (*super().driven_findings(motion), (limits.wedging_by_crank, (self.slide_angle, self.friction)))
-        return ((limits.wedging, (*self._lengths, self.slide_angle, self.friction)),)
-
     def jumps(self) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which friction jumps: dead centres, where the slider turns round."""
         return self.dead_centres() if np.any(self.friction) else ()
-
-    def kinks(self) -> tuple[str, ...]:
-        """Return the normal force: friction has a kink where it changes sides."""
-        return ("normal_force",) if np.any(self.friction) else ()
 
     def dead_centres(self) -> tuple[Number, ...]:
         """Compute the crank angles with the rod in line with the crank.
@@ -217,77 +173,24 @@ class SliderCrank(Machine):
             Angles [degree], for each branch stretched (C farthest from A), then folded; NaN in designs without any.
         """
         signs = [BRANCH_SIGN[self.branch]] if self.branch in BRANCH_SIGN else BRANCH_SIGN.values()
-        cylinders = (PistonCylinder(*self._lengths, self.slide_angle, sign) for sign in signs)
-        return tuple(angle for cylinder in cylinders for angle in cylinder.dead_centres())
+        return tuple(angle for sign in signs for angle in self._cylinder(sign).dead_centres())
 
     @property
     def strokes(self) -> dict[str, Stroke]:
         """Position of the slider, and its distance from the outer dead centre, which a load may follow."""
-        return slider_strokes(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
+        a, b, e = self.by_role.values()
+        return slider_strokes(a, b, e, self.slide_angle, BRANCH_SIGN[self.branch], self.dead_centres())
 
     @property
     def engine_cylinder(self) -> PistonCylinder:
         """The cylinder in which the slider is the piston, its head where the rod reaches farthest."""
-        return PistonCylinder(*self._lengths, self.slide_angle, BRANCH_SIGN[self.branch])
+        return self._cylinder(BRANCH_SIGN[self.branch])
 
-    def stroke_findings(self) -> Checks:
-        """Return the closed forms of the slider's travel, time ratio and reversals."""
-        return (limits.travel, self._lengths), (limits.reversals, (*self._lengths, self.slide_angle, self.branch_sign))
+    def _cylinder(self, side: float) -> PistonCylinder:
+        a, b, e = self.by_role.values()
+        return PistonCylinder(a, b, e, self.slide_angle, side)
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moment that the crank lacks to cancel what turns, and a fraction of the first order."""
         reciprocating = self.slider_mass + first_moment(self.rod).real / self.rod.length
-        return {"crank": -on_crank(self.crank, self.rod) - fraction * self.crank.length * reciprocating}
-
-    @cached_property
-    def closes_everywhere(self) -> bool:
-        b, height = self.rod.length, self.crank.length + abs(self.offset)
-        return bool(in_range(b) and in_range(self.crank.length) and np.all(b - height > 1e-9 * (b + height)))
-
-    def always_ok(self, drive: str) -> bool:
-        """Return whether the numbers alone ensure status 0 at every sample, friction included."""
-        b, height = self.rod.length, self.crank.length + abs(self.offset)
-        with np.errstate(over="ignore"):
-            wedges = np.square(self.friction * height) >= (b - height) * (b + height) * (1.0 - 1e-9)
-        return super().always_ok(drive) and not np.any(wedges)
-
-
-@lru_cache
-def _own(drive: str, full_turns: bool) -> Own:
-    """Return a drive, the ratio of the slider's velocity to the crank's, and the document's friction row."""
-    no_cycle = Row(slider_crank.no_cycle_status, ("status",), ("jam_status", "assembly"))
-    rows: tuple[Row | Total, ...] = (
-        Row(slider_crank.work_on_crank, ("work",)),
-        Row(planar.identity, ("velocity_ratio",), ("ratio_slider",)),
-        Row(advantage.mechanical_advantage, ("mechanical_advantage",), ("velocity_ratio", "crank_length", 1.0)),
-        Row(slider_crank.friction_row, ("friction_row_x", "friction_row_y")),
-        Total("friction_rhs", ()),
-        *([] if drive == "crank" else DRIVEN_ROD),
-        *([no_cycle] if full_turns else []),
-    )
-    return Own(
-        drive_torque(DRIVES[drive], drive), DRIVEN[drive], rows, QUANTITIES, between_rows("upright_cos", "upright_sin")
-    )
-
-
-DRIVEN_ROD = (
-    Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
-    Row(crank_driven.moment_on_crank, ("moment_r2",)),
-    Row(
-        slider_crank.guide_force,
-        ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),
-        ("inverse_crank_along", "crank_across", "moment_r2", "Q4x", "Q4y", "guide_cos", "guide_sin", "direction"),
-    ),
-    Row(slider_crank.torque_on_rod, ("T13",)),
-    Row(crank_driven.drive_status, ("leverage_status",), ("closure", "crank_along", "crank_length", 1.0)),
-    Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging")),
-)
-"""Rows in which the crank's moment equation takes the place of the driven rod's."""
-QUANTITIES = (
-    Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
-    Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
-    Quantity("friction_force", "N", "force of the guide on the slider along it"),
-    Quantity("friction_power", "W", "power of friction on the slider, never positive"),
-    Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
-    Quantity("mechanical_advantage", "1", "force of the slider per force on the crank at B square to it"),
-)
+        return {"crank": -turning_with_crank(self.crank, self.rod) - fraction * self.crank.length * reciprocating}

@@ -60,6 +60,11 @@ class Topology:
         return {GROUND: self.ground, **self.links, **slider, **self.cylinders}.get(name, ())
 
     @cached_property
+    def on_guides(self) -> dict[str, tuple[str, str]]:
+        """Pin and guide of each part that slides on one; of a yoke its centre, such as yoke_."""
+        return {**self.sliders, **{role: (f"{role}_", guide) for role, (guide, _) in self.yokes.items()}}
+
+    @cached_property
     def points(self) -> dict[str, str]:
         """Link in whose axes each third pin is stated."""
         return {pin: role for role, pins in self.links.items() for pin in pins[2:]}
@@ -106,10 +111,7 @@ class Topology:
 
         Where several sliders share a guide, each has a name such as "slide:ram".
         """
-        on = {
-            **{role: guide for role, (_, guide) in self.sliders.items()},
-            **{r: g for r, (g, _) in self.yokes.items()},
-        }
+        on = {role: guide for role, (_, guide) in self.on_guides.items()}
         guides = list(on.values())
         return {
             **{
@@ -151,8 +153,7 @@ class Topology:
         """Return the number of constraints of each joint, and the links that it joins."""
         carrier = {pin: members[0] for pin, members in self.members.items()}
         yield from ((2, members) for members in self.members.values())
-        yield from ((2, (role, self.hosts.get(guide, ""))) for role, (_, guide) in self.sliders.items())
-        yield from ((2, (role, self.hosts.get(guide, ""))) for role, (guide, _) in self.yokes.items())
+        yield from ((2, (role, self.hosts.get(guide, ""))) for role, (_, guide) in self.on_guides.items())
         yield from ((1, (role, carrier.get(pin, ""))) for role, pin in self.passed.items())
         yield from ((1, (role, self.crank)) for role in self.gears)
         yield from ((1, [carrier.get(pin, "") for pin in self.cylinders[name]]) for name in self.struts)

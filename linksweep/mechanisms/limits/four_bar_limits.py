@@ -20,6 +20,7 @@ import numpy as np
 from linksweep.mechanisms.limits.finding import (
     Array,
     Finding,
+    Findings,
     Results,
     arcs,
     around,
@@ -141,3 +142,13 @@ def _least_transmission_angle(a: Array, b: Array, c: Array, d: Array) -> Array:
         return np.minimum(angle, 180.0 - angle)
 
     return np.minimum(acute(shortest), acute(longest))
+
+
+CHECKS: dict[str, tuple[Findings, ...]] = {
+    "machine": (classes, angles),
+    "stroke": (swings, reversals),
+    "output": (rocker_dead_centres,),
+    "coupler": (coupler_dead_centres,),
+    "rocker": (rocker_dead_centres,),
+}
+"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""

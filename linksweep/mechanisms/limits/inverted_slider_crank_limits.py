@@ -17,7 +17,17 @@ import numpy as np
 
 from linksweep.base.degrees import arcsine
 from linksweep.mechanisms.limits import finding
-from linksweep.mechanisms.limits.finding import Array, Finding, Results, around, assembled, jams, leg, zero_angle
+from linksweep.mechanisms.limits.finding import (
+    Array,
+    Finding,
+    Findings,
+    Results,
+    around,
+    assembled,
+    jams,
+    leg,
+    zero_angle,
+)
 
 MOTIONS = ("swings", "turns_fully", "limited")
 """Motion of the rocker: as the crank turns, or as it goes back and forth between its limits."""
@@ -127,3 +137,14 @@ def _reversals(a: Array, d: Array, e: Array) -> tuple[Array, Array, Array, Array
     """Return φ with the crank square to the rocker's line, in the order of `REVERSALS`; NaN where it never is."""
     ahead, behind = arcsine(a - e, d), arcsine(a + e, d)
     return 270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead
+
+
+CHECKS: dict[str, tuple[Findings, ...]] = {
+    "machine": (classes, angles, swings, reversals),
+    "stroke": (swings, reversals),
+    "output": (rocker_dead_centres,),
+    "crank": (wedging,),
+    "rocker": (rocker_dead_centres, wedging_by_crank),
+    "cylinder": (dead_centres,),
+}
+"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""

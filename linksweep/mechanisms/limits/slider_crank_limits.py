@@ -13,6 +13,7 @@ from linksweep.base.degrees import arcsine
 from linksweep.mechanisms.limits.finding import (
     Array,
     Finding,
+    Findings,
     Results,
     arcs,
     around,
@@ -49,9 +50,9 @@ def angles(a: Array, b: Array, e: Array, frame: Array) -> Results:
     never = np.abs(e) >= a + b
     upper, upper_beyond, lower_beyond, lower = (np.where(never, np.nan, angle) for angle in toggles)
     whole = np.isnan(upper) & np.isnan(lower) & ~never
-    found = arcs(whole, frame, upper_beyond, lower_beyond, lower - 360.0, upper)
+    both = arcs(whole, frame, upper_beyond, lower_beyond, lower - 360.0, upper)
     return {
-        **{name: arc._replace(values=_ahead_first(arc.values)) for name, arc in found.items()},
+        **{name: arc._replace(values=_ahead_first(arc.values)) for name, arc in both.items()},
         "toggle_angle": Finding(around(frame, *toggles), "rod square to the guide", along=("side", SIDES)),
     }
 
@@ -109,3 +110,13 @@ def _crossings(a: Array, height: Array, e: Array) -> tuple[Array, Array, Array, 
     """Return φ with e − a sin φ = −height (upper), and = height (lower), two of each; NaN: none."""
     upper, lower = arcsine(e + height, a), arcsine(e - height, a)
     return upper, 180.0 - upper, 180.0 - lower, 360.0 + lower
+
+
+CHECKS: dict[str, tuple[Findings, ...]] = {
+    "machine": (classes, angles),
+    "stroke": (travel, reversals),
+    "output": (slider_dead_centres,),
+    "crank": (wedging,),
+    "coupler": (rod_dead_centres, wedging_by_crank),
+}
+"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""
