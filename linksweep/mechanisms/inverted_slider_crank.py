@@ -160,6 +160,9 @@ class InvertedSliderCrank(SingleDyad):
         """Return the nine unknowns of the 9×9: the contact of rocker and block as normal force and moment."""
         return ("F12x", "F12y", "F32x", "F32y", "F43n", "T43", "F14x", "F14y", self.drives[drive])
 
+    def peak_quantities(self, drive: str) -> tuple[str, ...]:
+        return ("F12", "F32", "F43", "F14", "T43", self.drives[drive])
+
     def equations(self, drive: str) -> tuple[Equation, ...]:
         """Return the 9×9: the rows of document 2 (ME 470), with a cylinder along the rocker's line (r3x, r3y)."""
         rows = super().equations(drive)

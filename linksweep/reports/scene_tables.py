@@ -24,7 +24,8 @@ from linksweep.base.fields import (
 )
 from linksweep.base.records import NamedField
 from linksweep.base.validate import UNITS
-from linksweep.mechanisms.links import Bar, Disk
+from linksweep.mechanisms.links import Bar, Disk, Guide
+from linksweep.mechanisms.machine import Machine
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
 from linksweep.scene.loads.ends import GROUND
 from linksweep.scene.loads.load import Load
@@ -43,6 +44,9 @@ SHOWN = {
 LEFT_OUT = ("length", "angle")
 """Kinds of number that are left out at their default, no offset and no turn."""
 LONG = 10.0  # m: lengths from here on stand in m
+
+TITLES = {"ground": "ground pin", "points": "pin", "guides": "guide", "branch": "branch of", "gears": "gears of"}
+"""Titles of the rows of a linkage's named numbers, by parameter."""
 
 SAMPLES = 720  # angles for numbers that change over the revolution
 
@@ -65,13 +69,17 @@ def links(scene: Scene) -> Markup:
 def loads(scene: Scene) -> Markup:
     """Return the table of the loads, each in words."""
     pairs = zip(_sampled(scene).loads, scene.loads, strict=True)
-    rows = [(f"load {k}", _load(load) + _followed(own)) for k, (load, own) in enumerate(pairs, 1)]
+    rows = [(f"load {k}", _load(load, scene.mechanism) + _followed(own)) for k, (load, own) in enumerate(pairs, 1)]
     return table((), rows, class_="settings") if rows else Markup()
 
 
 def settings(scene: Scene) -> Markup:
     """Return the table of the mechanism's other parameters, its drive, its speed and gravity."""
-    rows = [*_of_mechanism(scene.mechanism), *_of_motion(_sampled(scene)), ("gravity", _gravity(*scene.gravity))]
+    rows = [
+        *_of_mechanism(_sampled(scene).mechanism),
+        *_of_motion(_sampled(scene)),
+        ("gravity", _gravity(*scene.gravity)),
+    ]
     return table((), rows, class_="settings")
 
 
@@ -87,7 +95,8 @@ def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
     values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
     sizes = ("" if value is None else quantity(value, kind) for kind, value in values.items())
     distance, angle = (getattr(owner, f"{prefix}cg_{word}") for word in ("distance", "angle"))
-    cg = "on its first pin" if distance == 0.0 else f"{quantity(distance, 'length')} at {quantity(angle, 'angle')}"
+    at_origin, place = f"on {_origin(mechanism, role)}", f"{quantity(distance, 'length')} at {quantity(angle, 'angle')}"
+    cg = at_origin if distance == 0.0 else place
     return f"{number} {role}", *sizes, cg, _made(link)
 
 
@@ -112,14 +121,25 @@ def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
         elif isinstance(value, str):
             yield name, value
         elif isinstance(field, NamedField) and not field.inline:
-            yield from ((f"{_plain(name)} {key}", _named(field.each, item)) for key, item in value.items())
+            yield from ((f"{TITLES.get(name, name)} {key}", _named(field.each, item)) for key, item in value.items())
+    for role in mechanism.topology.cylinders if isinstance(mechanism, Machine) else ():
+        length = getattr(mechanism.parts.get(role), "length", None)
+        yield f"cylinder {role}", "follows" if length is None else f"{quantity(length, 'length')} long"
 
 
 def _named(kind: FieldKind, item: Any) -> str:
-    """Return a named thing in words: a point, a word, or an object by its fields."""
-    if isinstance(kind, PairField):
-        return _pair(kind, item)
-    return _in_words(item) if has_fields(item) else str(item)
+    """Return a named thing in words: a point, a word, a guide, or gears by their fields."""
+    if isinstance(item, Guide):
+        return _guide(item)
+    return _pair(kind, item) if isinstance(kind, PairField) else ", ".join(_fields(item)) if has_fields(item) else item
+
+
+def _guide(guide: Guide) -> str:
+    """Return a guide in words: "on the ground, through (0 mm, 20 mm) at 20°, friction 0.1"."""
+    host = "on the ground" if guide.of == GROUND else f"on the {guide.of}, in its axes"
+    x, y = (quantity(number, "length") for number in guide.through)
+    friction = f", friction {quantity(guide.friction, 'dimensionless')}" if np.any(guide.friction) else ""
+    return f"{host}, through ({x}, {y}) at {quantity(guide.angle, 'angle')}{friction}"
 
 
 def _pair(kind: PairField, pair: Any) -> str:
@@ -134,7 +154,7 @@ def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
     if "drive" in mechanism.motion:
         yield "drive", f"{sampled.drive}; unknown: {symbol(mechanism.drives[sampled.drive])}"
     if "omega2" in mechanism.motion:
-        yield "speed of the crank", _speed(sampled.omega2)
+        yield f"speed of the {mechanism.roles[0]}", _speed(sampled.omega2)
     if np.any(np.not_equal(sampled.motion.get("alpha2", 0.0), 0.0)):
         yield "its acceleration", quantity(sampled.motion["alpha2"], "angular_acceleration")
     for name in ("speed", "thrust"):
@@ -160,19 +180,36 @@ def _gravity(x: float, y: float) -> str:
     return f"{size} at {quantity(float(np.degrees(np.arctan2(y, x))), 'angle')} to x"
 
 
-def _load(load: Any) -> str:
+def _load(load: Any, mechanism: Any) -> str:
     """Return a load in words: a force or torque as a sentence, anything else by its parameters."""
     if not isinstance(load, Load):
         return _in_words(load)
     parts = []
     if load.force is not None:
-        start = "its centre of gravity" if load.origin == "cg" else "its first pin"
-        at = f"{quantity(load.at[0], 'length')} at {quantity(load.at[1], 'angle')} from {start}"
+        start = "its centre of gravity" if load.origin == "cg" else _origin(mechanism, load.link)
         axes = "" if load.frame == "ground" else ", in its own axes"
-        parts.append(f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {at}")
+        parts.append(
+            f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {_place(load.at, start)}"
+        )
     if load.torque is not None:
         parts.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
     return "; ".join(parts + _breaks(load.breaks))
+
+
+def _place(at: tuple[Any, Any], origin: str) -> str:
+    """Return a point of a link in words, by its polar coordinates from an origin."""
+    distance, angle = at
+    if np.all(distance == 0.0):
+        return f"at {origin}"
+    return f"{quantity(distance, 'length')} at {quantity(angle, 'angle')} from {origin}"
+
+
+def _origin(mechanism: Any, role: str) -> str:
+    """Return the origin of a link's own coordinates, in words."""
+    if getattr(mechanism.parts.get(role), "length", None) is not None:
+        return "its first pin"
+    yokes = mechanism.topology.yokes if isinstance(mechanism, Machine) else ()
+    return "its slot at the guide" if role in yokes else "its pin"
 
 
 def _followed(load: Any) -> str:
@@ -189,10 +226,14 @@ def _breaks(angles: Sequence[float]) -> list[str]:
 
 def _in_words(part: Any) -> str:
     """Return a dataclass in words: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
-    fields = ((name, kind, getattr(part, name)) for name, kind, _ in declared(part))
-    texts = [_field_in_words(_plain(name), kind, value) for name, kind, value in fields if not left_out(value)]
     title = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
-    return f"{title} ({', '.join(texts)})"
+    return f"{title} ({', '.join(_fields(part))})"
+
+
+def _fields(part: Any) -> list[str]:
+    """Return those fields of a dataclass that are stated, each in words."""
+    fields = ((name, kind, getattr(part, name)) for name, kind, _ in declared(part))
+    return [_field_in_words(_plain(name), kind, value) for name, kind, value in fields if not left_out(value)]
 
 
 def _field_in_words(name: str, kind: FieldKind, value: Any) -> str:
@@ -212,7 +253,7 @@ def _end(end: tuple[str, Any, Any]) -> str:
     link, first, second = end
     if link == GROUND:
         return f"ground at ({quantity(first, 'length')}, {quantity(second, 'length')})"
-    return f"{link}, {quantity(first, 'length')} at {quantity(second, 'angle')} from its first pin"
+    return f"{link}, {_place((first, second), 'its first pin')}"
 
 
 def _plain(name: str) -> str:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from linksweep.chains.between_links import is_pin
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
+from linksweep.scene.scene import Scene
 
 NOISE = 1e-12  # of the terms of a mean: the rounding of a sum that cancels
 UNITS = {"degree": "°", "1": "", "m s-1": "m/s", "m s-2": "m/s²", "kg m2": "kg m²"}
@@ -20,6 +21,8 @@ WORKS = {
     "work_of_loads": "work of the loads",
     "work_of_friction": "work of friction",
 }
+JOINT = re.compile(r"\((.*?)\) on link .*?\((.*?)\) at (?:pin (\w+)|the ([^:,]+))")
+"""Two links, and the pin or the slide at which the first acts on the second, in the words of a quantity."""
 SHAKEN = {"Fs": "N", "Ms": "N m"}
 
 
@@ -39,7 +42,7 @@ def _peak(results: Results, name: str, more: list[str]) -> Iterator[tuple[Any, .
     ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
     for ending, suffix in ends.items():
         value, spot = float(worst[name + ending]), float(worst[f"{name}{ending}_at"])
-        what = tag("span", _where(results, name) + suffix, title=quantity.long_name)
+        what = tag("span", _where(results.scene, name) + suffix, title=quantity.long_name)
         yield symbol(name), what, _of(size, value, unit), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
 
 
@@ -49,16 +52,16 @@ def _summary(size: float, kind: str, value: float, unit: str) -> str:
     return _of(size, value, unit)
 
 
-def _where(results: Results, name: str) -> str:
+def _where(scene: Scene, name: str) -> str:
     """Return the joint of a force and its two links, "pin B: coupler on crank"; else the quantity's name."""
-    name_in_words = results.scene.table.quantity[name].long_name
-    if name in results.scene.mechanism.drives.values():
-        return f"drive of the {results.scene.drive}"
-    pair, at_pin, pin = name_in_words.partition(" at pin ")
-    if not at_pin:
+    name_in_words = scene.table.quantity[name].long_name
+    if name in scene.mechanism.drives.values():
+        return f"drive of the {scene.drive}" if name.startswith("T") else "drive, positive where it pushes"
+    joint = JOINT.search(name_in_words)
+    if not joint:
         return name_in_words.split(" on the ")[0].split(" about ")[0]
-    here, there = (part.partition("(")[2].partition(")")[0] for part in pair.split(" on link "))
-    return f"{'pin ' if is_pin(pin) else ''}{pin.partition(':')[0]}: {here} on {there}"
+    here, there, pin, slide = joint.groups()
+    return f"{f'pin {pin}' if pin else slide}: {here} on {there}"
 
 
 def drive(results: Results) -> Markup:

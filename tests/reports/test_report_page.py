@@ -137,7 +137,7 @@ def test_printed_numbers_are_rounded_values(press):
 def test_the_table_of_links_has_the_sliders_centre_of_gravity():
     """The row has number, length, mass, inertia and position."""
     crank, rod = ls.Bar(0.05, **STEEL), ls.Bar(0.15, **STEEL)
-    for place, text in (((0.0, 0.0), "on its first pin"), ((0.02, 30.0), "20 mm at 30°")):
+    for place, text in (((0.0, 0.0), "on its pin"), ((0.02, 30.0), "20 mm at 30°")):
         slider = dict(zip(("slider_cg_distance", "slider_cg_angle"), place, strict=True))
         table = scene_tables.links(ls.Scene(ls.SliderCrank(crank, rod, 0.5, **slider), 30.0))
         cells = re.findall("<td>(.*?)</td>", str(table).replace("\u202f", " "))
