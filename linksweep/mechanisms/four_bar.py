@@ -10,14 +10,14 @@ import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number, is_lazy
-from linksweep.chains.dyads import on_crank
+from linksweep.chains.on_crank import rrr
+from linksweep.chains.on_crank.machine import OnCrank
 from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN
 from linksweep.chains.shape import Shape
 from linksweep.chains.topology import Topology, topology_of
 from linksweep.engine.quantity import Quantity, Row
 from linksweep.mechanisms.balance import first_moment, turning_with_crank
 from linksweep.mechanisms.drawing import Drawing, drawing_of, ground_pins
-from linksweep.mechanisms.limits import four_bar_limits
 from linksweep.mechanisms.links import LINK, AnyLink
 from linksweep.mechanisms.mechanism import register
 from linksweep.mechanisms.single_dyad import SingleDyad
@@ -33,7 +33,6 @@ DOCUMENT_2 = (
     Row(freudenstein.coupler_equation, ("D", "E", "F")),
 )
 SIGNED = Quantity("transmission_angle_signed", "degree", "mu = theta4 - theta3 of document 2 (ME 470), in (-180, 180]")
-RRR = on_crank.RRR
 
 
 @register
@@ -79,10 +78,11 @@ class FourBar(SingleDyad):
     ground_angle: Number = parameter("angle", 0.0)
 
     topology: ClassVar[Topology] = TOPOLOGY
-    dyad: ClassVar[on_crank.OnCrank] = RRR._replace(rows=(*RRR.rows, *DOCUMENT_2), quantities=(SIGNED, *RRR.quantities))
+    dyad: ClassVar[OnCrank] = rrr.MACHINE._replace(
+        rows=(*rrr.MACHINE.rows, *DOCUMENT_2), quantities=(SIGNED, *rrr.MACHINE.quantities)
+    )
     sizes: ClassVar[tuple[str, ...]] = ("crank", "coupler", "rocker", "ground")
     first: ClassVar[tuple[str, ...]] = ("ground_length", "branch_sign")
-    closed_forms = four_bar_limits.CHECKS
     position_equation: ClassVar[PositionEquation | None] = freudenstein.POSITION_EQUATION
     title: ClassVar[str] = "Four-bar"
     drawing: ClassVar[Drawing] = drawing_of(TOPOLOGY, fixed=ground_pins)
@@ -96,11 +96,6 @@ class FourBar(SingleDyad):
             Lengths [m] by role.
         """
         return self.by_role
-
-    @property
-    def narrowest(self) -> tuple[tuple[Number, Number], ...]:
-        a, b, c, d = self.by_role.values()
-        return (abs(d - a), abs(b - c)), (b + c, d + a)
 
     @property
     def strokes(self) -> dict[str, Stroke]:

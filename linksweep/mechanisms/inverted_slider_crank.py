@@ -9,14 +9,14 @@ import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
-from linksweep.chains.dyads import on_crank
 from linksweep.chains.equations import add_force
+from linksweep.chains.on_crank import rpr
+from linksweep.chains.on_crank.machine import OnCrank
 from linksweep.chains.rows.bodies import Equation
 from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN
 from linksweep.chains.topology import Topology, topology_of
 from linksweep.mechanisms.balance import first_moment
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, drawing_of, ground_pins
-from linksweep.mechanisms.limits import inverted_slider_crank_limits
 from linksweep.mechanisms.links import LINK, AnyLink
 from linksweep.mechanisms.mechanism import register
 from linksweep.mechanisms.single_dyad import SingleDyad
@@ -109,7 +109,7 @@ class InvertedSliderCrank(SingleDyad):
     friction: Number = parameter("dimensionless", 0.0, at_least=0.0)
 
     topology: ClassVar[Topology] = TOPOLOGY
-    dyad: ClassVar[on_crank.OnCrank] = on_crank.RPR
+    dyad: ClassVar[OnCrank] = rpr.MACHINE
     sizes: ClassVar[tuple[str, ...]] = ("crank", "ground", "offset")
     first: ClassVar[tuple[str, ...]] = (
         "ground_length",
@@ -121,7 +121,6 @@ class InvertedSliderCrank(SingleDyad):
         "friction",
         "block_cg_x",
     )
-    closed_forms = inverted_slider_crank_limits.CHECKS
     title: ClassVar[str] = "Inverted slider-crank"
     drawing: ClassVar[Drawing] = drawing_of(
         TOPOLOGY,
@@ -144,11 +143,6 @@ class InvertedSliderCrank(SingleDyad):
             Crank, ground and offset [m].
         """
         return tuple(self.by_role.values())
-
-    @property
-    def narrowest(self) -> tuple[tuple[Number, Number], ...]:
-        a, d, e = self.by_role.values()
-        return ((abs(d - a), abs(e)),)
 
     @property
     def strokes(self) -> dict[str, Stroke]:

@@ -14,6 +14,7 @@ import numpy as np
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import ANYTHING, declared, field_problems
 from linksweep.base.validate import Number, refuse
+from linksweep.chains.finding import Checks
 from linksweep.chains.gears import Geared
 from linksweep.chains.rows.bodies import Body, Equation
 from linksweep.chains.rows.crank import BRANCH_SIGN, STATUS_OF_CRANK, OverDesigns
@@ -24,7 +25,6 @@ from linksweep.engine.run import Field
 from linksweep.mechanisms.balance import MassDistribution, distribution
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Drawing, Track
-from linksweep.mechanisms.limits.finding import Checks
 from linksweep.mechanisms.links import links_of, with_distribution
 from linksweep.mechanisms.strokes import Stroke
 from linksweep.physics.closures.freudenstein import PositionEquation

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -13,11 +12,11 @@ import numpy as np
 
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
-from linksweep.chains.dyads.on_crank import OnCrank
+from linksweep.chains.finding import Checks
+from linksweep.chains.on_crank.machine import OnCrank
 from linksweep.chains.rows.crank import frame_parameters, in_range, turned
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.shape import Shape
-from linksweep.mechanisms.limits.finding import Checks, Findings
 from linksweep.mechanisms.links import link_parameters
 from linksweep.mechanisms.machine import Machine
 
@@ -32,15 +31,13 @@ class SingleDyad(Machine):
     """A machine of one dyad on crank and ground."""
 
     dyad: ClassVar[OnCrank]
-    """Drives, and rows under the names of the textbooks."""
+    """Drives, rows and closed forms in the names of the textbooks."""
     sizes: ClassVar[tuple[str, ...]]
     """Parameters whose lengths alone decide the motion; an offset, from the line of another link, is the last."""
     frame: ClassVar[tuple[str, str]] = ("ground", "ground_angle")
     """Name of the frame link in physics, and the parameter with its angle to x."""
     first: ClassVar[tuple[str, ...]]
     """Names in physics of the numbers whose dims come first in results."""
-    closed_forms: ClassVar[Mapping[str, tuple[Findings, ...]]]
-    """Checks of the machine, of its stroke and output, and of each drive; their arguments are named as in equations."""
 
     @property
     def drives(self) -> dict[str, str]:  # type: ignore[override]
@@ -64,11 +61,6 @@ class SingleDyad(Machine):
     def by_role(self) -> dict[str, Number]:
         """Lengths that alone decide the motion [m], by role."""
         return {name: self.parts[name].length if name in self.parts else getattr(self, name) for name in self.sizes}
-
-    @property
-    @abstractmethod
-    def narrowest(self) -> tuple[tuple[Number, Number], ...]:
-        """Pairs of lengths, the first of which is larger at every crank angle where the machine closes all the way."""
 
     def closure_problems(self) -> list[str]:
         """Return why a single design cannot be assembled: a length is larger than the others together."""
@@ -113,28 +105,31 @@ class SingleDyad(Machine):
     def closes_everywhere(self) -> bool:
         first, *_, last = lengths = [length for name, length in self.by_role.items() if name != "offset"]
         size = sum(map(abs, self.by_role.values()))
-        wide = (np.all((reach - other) * (reach + other) > 1e-9 * size * size) for reach, other in self.narrowest)
+        wide = (np.all((reach - other) * (reach + other) > 1e-9 * size * size) for reach, other in self._narrowest)
         return all(map(in_range, (*lengths, size / first * (size / last)))) and all(wide)
 
     def always_ok(self, drive: str) -> bool:
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""
-        reach, other = self.narrowest[0]
+        reach, other = self._narrowest[0]
         with np.errstate(over="ignore"):
             wedges = np.square(self.friction * other) >= (reach - other) * (reach + other) * (1.0 - 1e-9)
         return super().always_ok(drive) and not np.any(wedges)
+
+    @property
+    def _narrowest(self) -> tuple[tuple[Number, Number], ...]:
+        return self.dyad.narrowest(*self.by_role.values())
 
     def _checks(self, of: str) -> Checks:
         """Return closed forms, each with the numbers after which its arguments are named."""
         numbers: dict[str, Any] = {LETTERS[name]: length for name, length in self.by_role.items()}
         numbers |= {"frame": self.frame_angle, "side": self.branch_sign, "friction": self.friction}
         return tuple(
-            (f, tuple(numbers[name] for name in signature(f).parameters)) for f in self.closed_forms.get(of, ())
+            (f, tuple(numbers[name] for name in signature(f).parameters)) for f in self.dyad.checks.get(of, ())
         )
 
 
 @lru_cache
 def _own(kind: type[SingleDyad], drive: str) -> Own:
     """Return a drive of a kind of machine, with all rows of its own."""
-    _, rows, quantities, between = kind.dyad
-    driven = kind.dyad.drives[drive]
-    return Own(driven.unknown, driven.rate, (*rows, *driven.rows), quantities, between)
+    dyad, driven = kind.dyad, kind.dyad.drives[drive]
+    return Own(driven.unknown, driven.rate, (*dyad.rows, *driven.rows), dyad.quantities, dyad.between)

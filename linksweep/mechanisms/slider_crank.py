@@ -10,8 +10,9 @@ import numpy as np
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
-from linksweep.chains.dyads import on_crank
 from linksweep.chains.equations import equations
+from linksweep.chains.on_crank import rrp
+from linksweep.chains.on_crank.machine import OnCrank
 from linksweep.chains.rows.bodies import Equation, newton_euler_equations
 from linksweep.chains.rows.crank import BRANCH, BRANCH_SIGN, turned
 from linksweep.chains.rows.load_forms import Form
@@ -21,7 +22,6 @@ from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms.balance import first_moment, turning_with_crank
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.mechanisms.drawing import Block, Drawing, Frame, Rail, direction, drawing_of
-from linksweep.mechanisms.limits import slider_crank_limits
 from linksweep.mechanisms.links import LINK, AnyLink
 from linksweep.mechanisms.mechanism import register
 from linksweep.mechanisms.single_dyad import SingleDyad
@@ -105,11 +105,10 @@ class SliderCrank(SingleDyad):
     slider_cg_angle: Number = parameter("angle", 0.0)
 
     topology: ClassVar[Topology] = TOPOLOGY
-    dyad: ClassVar[on_crank.OnCrank] = on_crank.RRP._replace(rows=(*on_crank.RRP.rows, *FRICTION_ROWS))
+    dyad: ClassVar[OnCrank] = rrp.MACHINE._replace(rows=(*rrp.MACHINE.rows, *FRICTION_ROWS))
     sizes: ClassVar[tuple[str, ...]] = ("crank", "rod", "offset")
     frame: ClassVar[tuple[str, str]] = ("guide", "slide_angle")
     first: ClassVar[tuple[str, ...]] = ("offset", "friction", "slider_mass", "guide_cos", "branch_sign", "slider_cg_x")
-    closed_forms = slider_crank_limits.CHECKS
     journals: ClassVar[Journals] = JOURNALS
     balances_partly: ClassVar[bool] = True
     title: ClassVar[str] = "Slider-crank"
@@ -124,11 +123,6 @@ class SliderCrank(SingleDyad):
     @property
     def near_toggle_angle(self) -> Number:
         return 90.0 + self.slide_angle
-
-    @property
-    def narrowest(self) -> tuple[tuple[Number, Number], ...]:
-        a, b, e = self.by_role.values()
-        return ((b, a + abs(e)),)
 
     def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         own = super().own(drive, loads)

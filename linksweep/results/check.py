@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from linksweep.mechanisms.limits.finding import Checks, Finding
+from linksweep.chains.finding import Checks, Finding
 from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import design_coordinates, flags, origin_attributes
 from linksweep.results.search_checks import search_checks
@@ -82,7 +82,7 @@ def check(scene: Scene) -> xr.Dataset:
     - `overshoot` (spline) [1]: distance by which each spline leaves the range of its values, relative to that range;
       a spline with more than 0.01 rings, as it does beside steps
 
-    Source: triangle inequality for pins B, C, D; equations in `linksweep.mechanisms.limits.four_bar_limits`.
+    Source: triangle inequality for pins B, C, D; equations in `linksweep.chains.on_crank.rrr`.
 
     Examples
     --------

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from linksweep.chains.finding import ASSEMBLY, Array
 from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
-from linksweep.mechanisms.limits.finding import ASSEMBLY, Array
 from linksweep.results.dataset import flags
 from linksweep.results.peak_search.exact import exact_peaks
 from linksweep.results.peak_search.limits import assembly_of, limits_of

@@ -18,6 +18,7 @@ import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
 from linksweep.base.validate import Number
+from linksweep.chains.finding import Finding, turning_round
 from linksweep.chains.rows.bodies import (
     CRANK,
     Body,
@@ -33,7 +34,6 @@ from linksweep.chains.rows.pins import Journals, Pins, rotating
 from linksweep.chains.rows.whole_machine import machine_quantities, machine_rows, power_rows
 from linksweep.engine.quantity import Quantity, Row, Table
 from linksweep.mechanisms.drawing import Block, Carrier, Drawing, Frame, Rail
-from linksweep.mechanisms.limits.finding import Finding, turning_round
 from linksweep.mechanisms.links import LINK, AnyLink, cg_parameters, link_parameters
 from linksweep.mechanisms.mechanism import MECHANISMS, Mechanism, register
 from linksweep.physics import crank_driven

@@ -11,8 +11,8 @@ from references import LinkData as Bar
 from references import Unassemblable, log_uniform, mp, turn
 
 import linksweep as ls
-from linksweep.mechanisms.limits.finding import ASSEMBLY
-from linksweep.mechanisms.limits.four_bar_limits import GRASHOF, TOGGLES
+from linksweep.chains.finding import ASSEMBLY
+from linksweep.chains.on_crank.rrr import GRASHOF, TOGGLES
 
 ROLES = ("crank", "coupler", "rocker")
 

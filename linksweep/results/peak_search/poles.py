@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.chains.finding import Finding
 from linksweep.engine.run import Field
-from linksweep.mechanisms.limits.finding import Finding
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY, Array
 from linksweep.results.peak_search.groups import Group

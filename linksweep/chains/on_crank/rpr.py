@@ -1,4 +1,4 @@
-"""Limits of the inverted slider-crank: assembly, motion of the rocker, dead centres, wedging, for arrays of designs.
+"""A block and its rocker on crank and ground: assembly, swing, dead centres and wedging in closed form; drives.
 
 The block's distance from D, between |d − a| and d + a, must exceed the offset e of the rocker's line (see
 `linksweep.physics.closures.inverted_slider_crank`). It equals |e| where tan²(φ/2) = (e² − (d−a)²)/((d+a)² − e²).
@@ -16,18 +16,27 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.base.degrees import arcsine
-from linksweep.mechanisms.limits import finding
-from linksweep.mechanisms.limits.finding import (
-    Array,
-    Finding,
-    Findings,
-    Results,
-    around,
-    assembled,
-    jams,
-    leg,
-    zero_angle,
+from linksweep.base.validate import Number
+from linksweep.chains.finding import Array, Finding, Results
+from linksweep.chains.on_crank import closed_forms
+from linksweep.chains.on_crank.closed_forms import around, assembled, jams, leg, zero_angle
+from linksweep.chains.on_crank.machine import (
+    CRANK,
+    FROM_GROUND,
+    MOMENT_ON_CRANK,
+    OF_ROCKER,
+    RATIOS_OF_ROCKER,
+    WEDGED,
+    Driven,
+    OnCrank,
+    ratio_of_driven,
+    status,
 )
+from linksweep.chains.rows.bodies import drive_torque
+from linksweep.engine.quantity import Quantity, Row
+from linksweep.physics import coulomb, crank_driven
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import inverted_slider_crank
 
 MOTIONS = ("swings", "turns_fully", "limited")
 """Motion of the rocker: as the crank turns, or as it goes back and forth between its limits."""
@@ -61,7 +70,7 @@ def classes(a: Array, d: Array, e: Array) -> Results:
 def angles(a: Array, d: Array, e: Array, frame: Array) -> Results:
     """Compute the crank angles of arcs and toggles."""
     toggle, none = _toggle(a, d, e), np.full(a.shape, np.nan)
-    arcs = finding.arcs(np.abs(e) < np.abs(d - a), frame, toggle, none, none, -toggle)
+    arcs = closed_forms.arcs(np.abs(e) < np.abs(d - a), frame, toggle, none, none, -toggle)
     single = {name: arc._replace(values=arc.values[..., :1]) for name, arc in arcs.items()}
     words = "line D-B square to the rocker's line"
     return single | {"toggle_angle": Finding(around(frame, toggle, -toggle), words, along=("toggle", TOGGLES))}
@@ -96,7 +105,7 @@ def dead_centres(a: Array, d: Array, e: Array, frame: Array) -> Results:
         slide = np.stack([leg(way, e) for way in (np.abs(d - a), d + a)], axis=-1)
     angle = np.where(np.isnan(slide), np.nan, around(frame, 0.0 * a, 180.0 + 0.0 * a))
     return {
-        **finding.dead_centres(angle, "crank angle at which the block stands still", DEAD_CENTRES),
+        **closed_forms.dead_centres(angle, "crank angle at which the block stands still", DEAD_CENTRES),
         "slide_at_dead_centre": Finding(slide, "size of slide there", "m", along=("dead_centre", DEAD_CENTRES)),
     }
 
@@ -104,7 +113,7 @@ def dead_centres(a: Array, d: Array, e: Array, frame: Array) -> Results:
 def rocker_dead_centres(a: Array, d: Array, e: Array, frame: Array) -> Results:
     """Compute the crank angles at which the rocker turns round, and cannot drive."""
     angle = around(frame, *_reversals(a, d, e))
-    return finding.dead_centres(angle, "crank square to the rocker's line", REVERSALS)
+    return closed_forms.dead_centres(angle, "crank square to the rocker's line", REVERSALS)
 
 
 def wedging(a: Array, d: Array, e: Array, frame: Array, friction: Array) -> Results:
@@ -139,12 +148,70 @@ def _reversals(a: Array, d: Array, e: Array) -> tuple[Array, Array, Array, Array
     return 270.0 + ahead, 90.0 - behind, 270.0 + behind, 90.0 - ahead
 
 
-CHECKS: dict[str, tuple[Findings, ...]] = {
-    "machine": (classes, angles, swings, reversals),
-    "stroke": (swings, reversals),
-    "output": (rocker_dead_centres,),
-    "crank": (wedging,),
-    "rocker": (rocker_dead_centres, wedging_by_crank),
-    "cylinder": (dead_centres,),
-}
-"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""
+def narrowest(a: Number, d: Number, e: Number) -> tuple[tuple[Number, Number], ...]:
+    """Return the least distance of the block from D, and the offset."""
+    return ((abs(d - a), abs(e)),)
+
+
+WORK = ("N2", "N3", "N4", "Q3x", "Q3y", "r2x", "r2y", "ratio4", "ratio4")
+LINE = ("r3x", "r3y")
+ON_ROCKER, ON_BLOCK = ("normal_arm4", "line_arm4"), ("normal_arm3", "line_arm3")
+MACHINE = OnCrank(
+    drives={
+        "crank": CRANK,
+        "rocker": Driven(
+            drive_torque("T14", "rocker"),
+            "omega4",
+            (
+                MOMENT_ON_CRANK,
+                Row(planar.cross, ("crank_across",), ("r2x", "r2y", *LINE)),
+                Row(inverted_slider_crank.contact_force_from_crank, ("F43n", "friction_force", "wedging")),
+                ratio_of_driven("ratio4", "crank_along", ("crank_length", 1.0)),
+                Row(crank_driven.balancing_drive, ("T14",), ("work", "driven_ratio")),
+                *status("crank_along", ("crank_length", 1.0), WEDGED),
+            ),
+        ),
+        "cylinder": Driven(
+            Quantity("cylinder_force", "N", "force of the cylinder on the block along the line, positive as slide"),
+            "slide_velocity",
+            (
+                Row(crank_driven.work_on_crank, ("work_of_loads",), WORK),
+                ratio_of_driven("ratio_slide", "slide_leverage", ("crank_length", "ground_length")),
+                Row(crank_driven.balancing_drive, ("line_force",), ("work_of_loads", "driven_ratio")),
+                Row(inverted_slider_crank.normal_force_on_block, ("F43n",)),
+                Row(coulomb.friction, ("friction_force",), ("F43n", "direction")),
+                Row(inverted_slider_crank.cylinder_force, ("cylinder_force",)),
+                *status("slide_leverage", ("crank_length", "ground_length")),
+            ),
+        ),
+    },
+    rows=(
+        *OF_ROCKER,
+        Row(planar.direction, ("theta4",), LINE),
+        Row(planar.identity, ("theta3",), ("theta4",)),
+        Row(inverted_slider_crank.slide_arms, ON_ROCKER, ("DBx", "DBy", "rG4x", "rG4y", *LINE)),
+        Row(inverted_slider_crank.slide_arms, ON_BLOCK, (0.0, 0.0, "rG3x", "rG3y", *LINE)),
+        Row(inverted_slider_crank.contact_arm, ("contact_F43_on4",), ("F43n", "direction", *ON_ROCKER)),
+        Row(inverted_slider_crank.contact_arm, ("contact_F43_on3",), ("F43n", "direction", *ON_BLOCK)),
+    ),
+    quantities=(
+        Quantity("theta3", "degree", "angle of the block, the rocker's"),
+        Quantity("theta4", "degree", "direction of the rocker's line from x, counter-clockwise, in (-180, 180]"),
+        Quantity("F43n", "N", "force of the rocker on the block across its line, positive to the line's left"),
+        Quantity("T43", "N m", "moment of the rocker on the block about B, positive counter-clockwise"),
+        Quantity("friction_force", "N", "friction of the rocker on the block along its line"),
+        Quantity("friction_power", "W", "power of friction in the slide, never positive"),
+        *RATIOS_OF_ROCKER,
+    ),
+    between=FROM_GROUND,
+    checks={
+        "machine": (classes, angles, swings, reversals),
+        "stroke": (swings, reversals),
+        "output": (rocker_dead_centres,),
+        "crank": (wedging,),
+        "rocker": (rocker_dead_centres, wedging_by_crank),
+        "cylinder": (dead_centres,),
+    },
+    narrowest=narrowest,
+)
+"""Block 3 and rocker 4. A cylinder along the rocker's line overcomes friction: it takes no part in the contact."""

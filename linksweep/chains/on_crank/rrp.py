@@ -1,4 +1,4 @@
-"""Limits of the slider-crank: assembly, dead centres and wedging in closed form, for arrays of designs.
+"""A rod and a slider on crank and ground: assembly, dead centres and wedging in closed form; drives.
 
 With φ the angle from the guide to the crank, the rod's component across the guide is h = e − a·sin φ. It closes while
 |h| ≤ b, and friction wedges the slider where μ·|tan ψ| ≥ 1, with sin ψ = h/b the rod's slope: where |h| ≥ b/√(1 +
@@ -10,19 +10,24 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.base.degrees import arcsine
-from linksweep.mechanisms.limits.finding import (
-    Array,
-    Finding,
-    Findings,
-    Results,
-    arcs,
-    around,
-    assembled,
-    dead_centres,
-    jams,
-    leg,
-    turning_round,
+from linksweep.base.validate import Number
+from linksweep.chains.finding import Array, Finding, Results, turning_round
+from linksweep.chains.on_crank.closed_forms import arcs, around, assembled, dead_centres, jams, leg
+from linksweep.chains.on_crank.machine import (
+    ADVANTAGE,
+    CRANK,
+    FROM_GUIDE,
+    MOMENT_ON_CRANK,
+    WEDGED,
+    Driven,
+    OnCrank,
+    status,
 )
+from linksweep.chains.rows.bodies import drive_torque
+from linksweep.engine.quantity import Quantity, Row
+from linksweep.physics import advantage
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import slider_crank
 
 SIDES = ("upper", "upper_beyond", "lower_beyond", "lower")
 """Labels of angles: at the largest height of the crank over the guide, before and past the normal; at the least."""
@@ -112,11 +117,52 @@ def _crossings(a: Array, height: Array, e: Array) -> tuple[Array, Array, Array, 
     return upper, 180.0 - upper, 180.0 - lower, 360.0 + lower
 
 
-CHECKS: dict[str, tuple[Findings, ...]] = {
-    "machine": (classes, angles),
-    "stroke": (travel, reversals),
-    "output": (slider_dead_centres,),
-    "crank": (wedging,),
-    "coupler": (rod_dead_centres, wedging_by_crank),
-}
-"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""
+def narrowest(a: Number, b: Number, e: Number) -> tuple[tuple[Number, Number], ...]:
+    """Return the rod's length and its largest component across the guide."""
+    return ((b, a + abs(e)),)
+
+
+FROM_CRANK = ("inverse_crank_along", "crank_across", "moment_r2", "Q4x", "Q4y", "guide_cos", "guide_sin", "direction")
+MACHINE = OnCrank(
+    drives={
+        "crank": CRANK,
+        "coupler": Driven(
+            drive_torque("T13", "coupler"),
+            "omega3",
+            (
+                Row(slider_crank.inverse_lever, ("inverse_crank_along",)),
+                MOMENT_ON_CRANK,
+                Row(
+                    slider_crank.guide_force,
+                    ("normal_force", "friction_force", "wedging", "rod_force_across", "rod_force_along"),
+                    FROM_CRANK,
+                ),
+                Row(slider_crank.torque_on_rod, ("T13",)),
+                *status("crank_along", ("crank_length", 1.0), WEDGED),
+            ),
+        ),
+    },
+    rows=(
+        Row(slider_crank.work_on_crank, ("work",)),
+        Row(planar.identity, ("velocity_ratio",), ("ratio_slider",)),
+        Row(advantage.mechanical_advantage, ADVANTAGE, ("velocity_ratio", "crank_length", 1.0)),
+    ),
+    quantities=(
+        Quantity("T14", "N m", "moment of the guide on the slider about C, positive counter-clockwise"),
+        Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
+        Quantity("friction_force", "N", "force of the guide on the slider along it"),
+        Quantity("friction_power", "W", "power of friction on the slider, never positive"),
+        Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
+        Quantity(*ADVANTAGE, "1", "force of the slider per force on the crank at B square to it"),
+    ),
+    between=FROM_GUIDE,
+    checks={
+        "machine": (classes, angles),
+        "stroke": (travel, reversals),
+        "output": (slider_dead_centres,),
+        "crank": (wedging,),
+        "coupler": (rod_dead_centres, wedging_by_crank),
+    },
+    narrowest=narrowest,
+)
+"""Rod 3 and slider 4."""

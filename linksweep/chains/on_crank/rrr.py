@@ -1,4 +1,4 @@
-"""Limits of the four-bar: Grashof class, assembly limits and toggle angles in closed form, for arrays of designs.
+"""Three pins on crank and ground: Grashof class, assembly limits and toggle angles in closed form; drives.
 
 With φ the angle from the line A→D to the crank, the four-bar closes while (see `linksweep.physics.closures.four_bar`)
 
@@ -15,20 +15,30 @@ third link: with g = a ± b and h = c, or g = a ∓ c and h = b, is (d−g−h)(
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from linksweep.mechanisms.limits.finding import (
-    Array,
-    Finding,
-    Findings,
-    Results,
-    arcs,
-    around,
-    assembled,
-    dead_centres,
-    turning_round,
-    zero_angle,
+from linksweep.base.validate import Number
+from linksweep.chains.finding import Array, Finding, Results, turning_round
+from linksweep.chains.on_crank.closed_forms import arcs, around, assembled, dead_centres, zero_angle
+from linksweep.chains.on_crank.machine import (
+    ADVANTAGE,
+    CRANK,
+    FROM_GROUND,
+    MOMENT_ON_CRANK,
+    OF_ROCKER,
+    RATIOS_OF_ROCKER,
+    Driven,
+    OnCrank,
+    ratio_of_driven,
+    status,
 )
+from linksweep.chains.rows.bodies import drive_torque
+from linksweep.engine.quantity import Quantity, Row
+from linksweep.physics import advantage
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import dyad_rrr
 from linksweep.physics.closures.four_bar import extremes
 
 GRASHOF = ("crank_rocker", "double_crank", "double_rocker", "rocker_crank", "triple_rocker", "change_point")
@@ -144,11 +154,49 @@ def _least_transmission_angle(a: Array, b: Array, c: Array, d: Array) -> Array:
     return np.minimum(acute(shortest), acute(longest))
 
 
-CHECKS: dict[str, tuple[Findings, ...]] = {
-    "machine": (classes, angles),
-    "stroke": (swings, reversals),
-    "output": (rocker_dead_centres,),
-    "coupler": (coupler_dead_centres,),
-    "rocker": (rocker_dead_centres,),
-}
-"""Closed forms of the machine, of its stroke and its output, and of each drive: where it wedges or cannot drive."""
+def narrowest(a: Number, b: Number, c: Number, d: Number) -> tuple[tuple[Number, Number], ...]:
+    """Return the diagonal f and |b−c| where f is shortest, b+c and f where it is longest."""
+    return (abs(d - a), abs(b - c)), (b + c, d + a)
+
+
+def _driven(link: int, role: str, other: tuple[str, str, str], length: str, torque: Callable) -> Driven:
+    """Return the drive of one link of three pins; `other` are vector and moment of the other, of this length."""
+    inverse, lengths = "inverse_r4_cross_r3", ("crank_length", length)
+    at_C = ("r2x", "r2y", "crank_length", "moment_r2", *other, "driven_ratio", inverse)
+    rows = (
+        Row(planar.opposite, ("moment_r3",), ("N3",)),
+        MOMENT_ON_CRANK,
+        Row(dyad_rrr.rrr_leverage, ("leverage",), (f"ratio{link}", inverse)),
+        ratio_of_driven(f"ratio{link}", "leverage", lengths),
+        Row(dyad_rrr.rrr_driven_pin_force, ("push_rocker_Cx", "push_rocker_Cy", "pull", "push"), at_C),
+        Row(torque, (f"T1{link}",)),
+        *status("leverage", lengths),
+    )
+    return Driven(drive_torque(f"T1{link}", role), f"omega{link}", rows)
+
+
+MACHINE = OnCrank(
+    drives={
+        "crank": CRANK,
+        "coupler": _driven(3, "coupler", ("r4x", "r4y", "N4"), "rocker_length", dyad_rrr.rrr_coupler_torque),
+        "rocker": _driven(4, "rocker", ("r3x", "r3y", "moment_r3"), "coupler_length", dyad_rrr.rrr_rocker_torque),
+    },
+    rows=(
+        *OF_ROCKER,
+        Row(advantage.mechanical_advantage, ADVANTAGE, ("velocity_ratio", "crank_length", "rocker_length")),
+    ),
+    quantities=(
+        *RATIOS_OF_ROCKER,
+        Quantity(*ADVANTAGE, "1", "force across the rocker at C per force across the crank at B"),
+    ),
+    between=FROM_GROUND,
+    checks={
+        "machine": (classes, angles),
+        "stroke": (swings, reversals),
+        "output": (rocker_dead_centres,),
+        "coupler": (coupler_dead_centres,),
+        "rocker": (rocker_dead_centres,),
+    },
+    narrowest=narrowest,
+)
+"""Coupler 3 and rocker 4; a rocker that is driven, or a coupler, may stand still."""
