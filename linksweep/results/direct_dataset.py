@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from xarray.indexes import PandasIndex
 
@@ -26,11 +27,9 @@ def dataset_of(variables: Variables, coordinates: Variables, attributes: Mapping
 @cache
 def _constructor() -> Constructor:
     """Return the shortcut where it works, else the public constructor."""
-    parts = (
-        {"a": xr.Variable(("design", "theta2"), np.ones((2, 1)), {"units": "N"}), "b": xr.Variable((), 1)},
-        {"theta2": xr.Variable("theta2", [0.0]), "design": xr.Variable("design", ["x", "y"]), "c": xr.Variable((), 2)},
-        {"title": "a probe"},
-    )
+    angles, names = (xr.IndexVariable(dim, pd.Index([0.0]), fastpath=True) for dim in ("theta2", "design"))
+    numbers = xr.Variable(("design", "theta2"), np.ones((1, 1)), {"units": "N"}, fastpath=True)
+    parts = {"a": numbers}, {"theta2": angles, "design": names, "b": numbers}, {"title": "a probe"}
     try:
         made, expected = direct(*parts), xr.Dataset(*parts)
         works = made.identical(expected) and made.sizes == expected.sizes and {*made.xindexes} == {*expected.xindexes}
