@@ -26,16 +26,23 @@ def peak_table(ds: xr.Dataset, machine: Mechanism) -> str:
 def _row(ds: xr.Dataset, name: str) -> tuple[str, ...]:
     values = ds[name]
     place = _worst(values)
-    angle = f"{float(ds[f'{name}_at'].isel(place)):.2f}°" if f"{name}_at" in ds else ""
+    angle = f"{_number(ds[f'{name}_at'], place):.2f}°" if f"{name}_at" in ds else ""
     labels = (_label(ds, dim, place.get(dim)) for dim in ds.sizes)
-    return name, f"{float(values.isel(place)):.6g}", _unit(values), angle, *labels
+    return name, f"{_number(values, place):.6g}", _unit(values), angle, *labels
 
 
-def _worst(values: xr.DataArray) -> Mapping[Any, xr.DataArray]:
+def _number(values: xr.DataArray, place: Mapping[Any, int]) -> float:
+    """Return the number at a place, of an array over some of its dims; in numpy, since xarray would import dask."""
+    return float(values.values[tuple(place[dim] for dim in values.dims)])
+
+
+def _worst(values: xr.DataArray) -> Mapping[Any, int]:
     """Place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else."""
     name = str(values.name)
-    size = values if name.endswith("_max") else -values if name.endswith("_min") else abs(values)
-    return size.where(np.isfinite(size), -np.inf).argmax(...)
+    size = values.values  # in numpy: xarray's arithmetic would import dask
+    size = size if name.endswith("_max") else -size if name.endswith("_min") else np.abs(size)
+    place = np.unravel_index(np.argmax(np.where(np.isfinite(size), size, -np.inf)), size.shape)
+    return dict(zip(values.dims, map(int, place), strict=True))
 
 
 def _label(ds: xr.Dataset, dim: Hashable, k: Any) -> str:
