@@ -30,8 +30,10 @@ SIGNATURE = (
 )
 
 SEARCH_SIGNATURE = (
-    "void(i8, i8, i8[::1], f8[::1], i8[::1], f8[::1], i8[::1], "
-    "f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1])"
+    "void(i8, i8, i8, b1, i8[::1], f8[::1], i8[::1], i8[:, ::1], f8[:, ::1], "
+    "FunctionType(void(f8[::1], f8[::1])), FunctionType(void(f8[::1], f8[::1], f8[::1])), "
+    "FunctionType(void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8)), "
+    "f8[::1], f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1])"
 )
 
 IMPORTS = "import math\nfrom math import atan2, sqrt\n\n\n"
@@ -47,6 +49,52 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
     kernel.compile(signature)
     kernel.disable_compile()
     return kernel
+
+
+def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature: str) -> Callable:
+    """Return one function of a module of plain functions, compiled for these types of its arguments."""
+    context = f"{signature} {sorted((key, repr(value)) for key, value in helpers.items() if not callable(value))}"
+    entry = _jitted("import math\n\n\n" + source, helpers, context)[name]
+    entry.compile(signature)
+    entry.disable_compile()
+    return entry
+
+
+def compiled_vectors(emit: Callable[..., None], signature: str, text: str) -> Callable:
+    """Return a function of arrays and integers whose body `emit` writes by a builder of instructions, which gets the
+    starts of the arrays; `text` differs wherever the body does."""
+    from numba.core.sigutils import normalize_signature
+
+    kinds, _ = normalize_signature(signature)
+    arguments = ", ".join(f"x{k}" for k in range(len(kinds)))
+    source = f"def kernel({arguments}):\n    body({arguments})\n"
+    kernel = _jitted(source, {"body": _body(emit, arguments)}, f"{signature} {emit.__qualname__} {text}")["kernel"]
+    kernel.compile(signature)
+    kernel.disable_compile()
+    return kernel
+
+
+def _body(emit: Callable[..., None], arguments: str) -> Callable:
+    """Return what `emit` writes as a function that numba-compiled ones call."""
+    from numba.core import cgutils, types
+    from numba.extending import intrinsic
+
+    def typed(*kinds: Any) -> tuple[Any, Callable]:
+        def write(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            starts = [
+                cgutils.create_struct_proxy(kind)(context, builder, value=value).data
+                if isinstance(kind, types.Array)
+                else value
+                for kind, value in zip(signature.args, values, strict=True)
+            ]
+            emit(builder, *starts)
+            return context.get_dummy_value()
+
+        return types.void(*kinds), write
+
+    namespace: dict[str, Any] = {"typed": typed}
+    exec(f"def body(typing_context, {arguments}):\n    return typed({arguments})\n", namespace)
+    return intrinsic(namespace["body"])
 
 
 @cache

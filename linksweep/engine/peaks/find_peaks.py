@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import inspect
 import math
+from collections import defaultdict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.base.product_low import product_low
-from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled, compiled_functions
-from linksweep.engine.peaks import search
-from linksweep.engine.peaks.search_kernel import STORED, SearchWriter
-from linksweep.engine.run import Field, Fields, Layout, Sizes, flat, ordered, over_threads, single_of, slots
+from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled_entry, compiled_functions
+from linksweep.engine.peaks import abreast, search
+from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
+from linksweep.engine.peaks.lanewise import Lanewise
+from linksweep.engine.run import Field, Fields, Sizes, flat, ordered, over_threads
 from linksweep.engine.trace.plan import Plan
 
 SEARCH_SOURCE = inspect.getsource(search)
+WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
+SIGNALS_AT_ONCE = 16
+"""Signals searched together."""
 INTERPRETED_DESIGNS = 40
 """Designs interpreted before a plan's kernel is compiled."""
 INTERPRETED_SAMPLES = 100_000
@@ -46,75 +51,106 @@ class Peak(NamedTuple):
 class Searcher:
     """The search for the peaks of some outputs of a plan, ready to run."""
 
-    plan: Plan
-    signals: tuple[str, ...]
+    evaluators: Evaluators
     interpreted: int = 0
-    layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
-    @cached_property
-    def writer(self) -> SearchWriter:
-        return SearchWriter(self.plan, self.signals)
-
-    def layout(self, sizes: Sizes) -> Layout:
-        key = tuple(sizes[dim] for dim in self.plan.loops)
-        if key not in self.layouts:
-            nodes = [node for node in self.writer.signals for _ in STORED]
-            self.layouts[key] = Layout(np.array(key or (1,), dtype=np.int64), (), slots(self.plan, nodes, sizes))
-        return self.layouts[key]
-
-    def kernel(self, designs: int) -> Callable:
-        """Return the kernel as Python for the first designs, then compiled."""
+    def functions(self, designs: int) -> Functions:
+        """Return the evaluators interpreted for the first designs, then compiled."""
         self.interpreted += designs
-        if self.interpreted > INTERPRETED_DESIGNS:
-            return compiled(self.writer.source, SEARCH_SOURCE, SEARCH_SIGNATURE)
-        return self.in_python
-
-    @cached_property
-    def in_python(self) -> Callable:
-        namespace = vars(search) | {"sqrt": np.sqrt, "atan2": math.atan2, "product_low": product_low}
-        exec(self.writer.source, namespace)
-        return namespace["kernel"]
+        interpreted = self.interpreted <= INTERPRETED_DESIGNS
+        return self.evaluators.interpreted if interpreted else self.evaluators.compiled
 
 
-searcher = lru_cache(maxsize=256)(Searcher)
-"""Return the `Searcher` of these arguments, one for all requests."""
+@lru_cache(maxsize=256)
+def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
+    """Return the `Searcher` of these arguments, one for all requests."""
+    return Searcher(Evaluators(plan, signals))
+
+
+@cache
+def compiled_search() -> Callable:
+    """Return `abreast.search` as machine code."""
+    functions = (inspect.getsource(function) for function in vars(abreast).values() if is_of(abreast, function))
+    numbers = {name: value for name, value in vars(abreast).items() if isinstance(value, int | float)}
+    vectors = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
+    helpers = {**compiled_functions(SEARCH_SOURCE), **numbers, **vectors}
+    return compiled_entry("search", "\n\n".join(functions), helpers, SEARCH_SIGNATURE)
 
 
 @lru_cache(maxsize=1)
 def grades() -> np.ndarray:
-    """Return the half-angle tangents of the samples of half a turn, for each scale of the sinh grade."""
+    """Return the half-angle tangents of the samples of half a turn from its middle on, for each scale of the sinh
+    grade; both ends are 1."""
     scale = 0.5 ** np.arange(search.GRADES)[:, None]
-    steps = np.arange(-search.HALF, search.HALF) / search.HALF
+    steps = np.arange(search.HALF + 1) / search.HALF
     table = scale * np.sinh(np.arcsinh(1.0 / scale) * steps)
-    table[:, 0] = -1.0
+    table[:, -1] = 1.0
     return table
 
 
 def find_peaks(
-    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, threads: int | None
+    plan: Plan, signals: tuple[str, ...], inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None
 ) -> dict[str, Peak]:
-    """Return the largest value of each signal over the turn, for every design."""
+    """Return the largest value of each signal over the turn, for every design; `smooth` tells that none has jumps or
+    kinks."""
+    together = defaultdict(list)
+    for signal in signals:
+        together[plan.outputs[signal].dims].append(signal)
+    peaks: dict[str, Peak] = {}
+    for group in together.values():
+        for first in range(0, len(group), SIGNALS_AT_ONCE):
+            peaks |= _peaks(
+                plan.only((*group[first : first + SIGNALS_AT_ONCE], *WIDTHS)), inputs, sizes, smooth, threads
+            )
+    return peaks
+
+
+def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None) -> dict[str, Peak]:
+    """Return the peaks of a plan's signals, which all have the same dims."""
+    signals = tuple(name for name in plan.outputs if name not in WIDTHS)
     ready = searcher(plan, signals)
-    layout, designs = ready.layout(sizes), math.prod(sizes[dim] for dim in plan.loops)
-    kernel, writer = ready.kernel(designs), ready.writer
-    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in writer.parameters])
-    single_at, single_size = layout.places(layout.singles)
-    single = np.empty(single_size)
-    room = search.in_blocks(len(signals) * search.SAMPLES // 2)  # at most every other sample is a summit
+    shape = tuple(sizes[dim] for dim in plan.loops)
+    designs, nodes = math.prod(shape), ready.evaluators.inputs
+    functions = ready.functions(designs)
+    lanes = functions.lanes
+    run = abreast.search if lanes == 1 else compiled_search()
+    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
+    strides = np.ascontiguousarray(np.transpose([_strides(plan, inputs[node.value], sizes) for node in nodes]))
+    strides = strides.reshape(len(shape), len(nodes)).astype(np.int64)
+    columns = lanes * len(signals)
+    out = np.empty((search.BEST_ROWS + 1, len(signals), designs))
 
     def work(first: int, last: int) -> None:
-        scratch = np.empty(writer.scratch_size)
-        lanes, trials = np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room))
-        best = np.empty((search.BEST_ROWS, len(signals)))
-        kernel(
-            first, last, layout.sizes, parameters, parameter_at, single, single_at,
-            scratch, grades(), lanes, trials, best, np.zeros(search.SAMPLES, dtype=np.int64),
+        blocks = -(-min(last - first, abreast.DESIGNS) // lanes)
+        room = search.in_blocks(abreast.DESIGNS + 2 * search.HALF)
+        constants = len(ready.evaluators.constants) * lanes
+        run(
+            first, last, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
+            strides, grades(), functions.prepare, functions.sample, functions.evaluate,
+            np.zeros(len(nodes) * lanes), np.zeros((blocks, constants)), np.zeros(2 * (search.HALF + 1) * lanes),
+            np.zeros((search.SAMPLES + 1) * columns), np.zeros((abreast.STATE_ROWS, columns)),
+            np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room)),
+            np.zeros(constants), np.zeros((search.BEST_ROWS + 1, abreast.DESIGNS * len(signals))), out,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
-        over_threads(work, int(layout.sizes[0]), 1 + designs // DESIGNS_PER_THREAD if plan.loops else 1, threads)
-    fields = iter(single_of(slot, single) for slot in layout.singles)
-    return {signal: Peak(*(next(fields) for _ in STORED)) for signal in signals}
+        over_threads(work, designs, 1 + designs // DESIGNS_PER_THREAD, threads)
+    stored = out.reshape(len(out), len(signals), *shape)
+    return {name: Peak(*(Field(plan.loops, row[k, ...]) for row in stored)) for k, name in enumerate(signals)}
+
+
+def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
+    """Return the distances between a parameter's values along each design dim, 0 along those that it lacks."""
+    strides, size = [], 1
+    for dim in reversed(plan.loops):
+        strides.append(size if dim in field.dims else 0)
+        size *= sizes[dim] if dim in field.dims else 1
+    return strides[::-1]
+
+
+def is_of(module: ModuleType, value: object) -> bool:
+    """Return whether a value is a function that a module defines."""
+    return inspect.isfunction(value) and value.__module__ == module.__name__
 
 
 def search_functions(samples: int) -> Mapping[str, Callable]:

@@ -4,9 +4,9 @@ A signal is evaluated at samples x along a path. Each sample above its neighbour
 refinement), unless its curvature rules out that it exceeds the largest sample:
 
              b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
-        a    |            of the parabola through them (at first: of the quartic through five samples), all lanes side
-        |    |    c       by side, and keeps the best point with its neighbours. Where that converges slowly (a kink,
-                          a jump), the two sides of b are bisected instead.
+        a    |            of the parabola through them, all lanes side by side, and keeps the best point with its
+        |    |    c       neighbours. Where that converges slowly (a kink, a jump), the two sides of b are bisected
+                          instead.
 
 A lane closes when its extended secants allow no further rise: a concave curve lies below them.
 
@@ -28,9 +28,9 @@ ROUNDS = 400
 """Rounds, at most: more than bisecting a bracket down to its last digit takes."""
 
 # rows of `lanes`: the three points of a bracket; its half turn and signal; its width, at the last round and at first;
-# noise of the signal, rise that remains possible, whether it is done; predicted vertex, its uncertainty; outer samples
-XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, REMAINING, DONE, VERTEX, REACH, FAA, FCC = range(17)
-LANE_ROWS, LASTING_ROWS = 17, 11  # a lane carries the first 11 from round to round
+# noise of the signal, rise that remains possible, whether it is done
+XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, REMAINING, DONE = range(13)
+LANE_ROWS, LASTING_ROWS = 13, 11  # a lane carries the first 11 from round to round
 TRIALS = 3
 """Trials per lane and round."""
 # rows of `trials`: place, half turn, signal, value
@@ -53,39 +53,10 @@ NOISE = 1e-15
 """Rounding noise of a signal, relative to its largest magnitude."""
 
 
-def place_halves(far):
-    """Set `far` to 0 for the samples of the near half turn and to 1 for those of the far one."""
-    for k in range(2 * HALF):
-        far[k], far[2 * HALF + k] = 0.0, 1.0
-
-
-def place_samples(x, before, after, near, far, grades):
-    """Place a design's samples and their neighbours (half-angle tangents), by the widths of its two near-toggles."""
-    for start, width in ((0, near), (2 * HALF, far)):
-        grade = grade_of(width)
-        for k in range(2 * HALF):
-            x[start + k] = grades[grade, k]
-        for k in range(1, 2 * HALF):
-            before[start + k], after[start + k - 1] = x[start + k - 1], x[start + k]
-    # measured from the other middle, 180 degrees away, a tangent is minus its inverse
-    before[0], before[2 * HALF] = -1.0 / x[SAMPLES - 1], -1.0 / x[2 * HALF - 1]
-    after[2 * HALF - 1], after[SAMPLES - 1] = 1.0, 1.0
-
-
-def grade_of(width):
-    """Return the index of the first scale that does not exceed `width`."""
-    grade, scale = 0, 1.0
-    while width < scale and grade < GRADES - 1:
-        grade += 1
-        scale *= 0.5
-    return grade
-
-
-def open_lanes(row, x, before, after, far, joined, even, tag, lanes, count, best, flags):
+def open_lanes(row, x, before, after, joined, tag, lanes, count, best, flags):
     """Note a signal's largest sample and open a lane at each that could lead higher; return the number of lanes.
 
-    `joined` tells whether the path's ends meet, `even` whether each half of it is graded evenly; `before` and `after`
-    are the places of the samples' neighbours.
+    `joined` tells whether the path's ends meet; `before` and `after` are the places of the samples' neighbours.
     """
     n = len(row)
     summits = find_summits(row, joined, flags)
@@ -97,7 +68,7 @@ def open_lanes(row, x, before, after, far, joined, even, tag, lanes, count, best
     quarter = n // 4  # a few samples suffice for the signal's magnitude
     floor = NOISE * max(abs(top), abs(row[0]), abs(row[quarter]), abs(row[2 * quarter]), abs(row[3 * quarter]))
     best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
-    best[PEAK_X, tag], best[PEAK_FAR, tag] = x[at], far[at]
+    best[PEAK_X, tag] = x[at]
     if abs(top) == math.inf:
         return count
     for k in range(summits):
@@ -106,18 +77,15 @@ def open_lanes(row, x, before, after, far, joined, even, tag, lanes, count, best
         while first > 0 and x[first - 1] == x[j]:
             first -= 1
         left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
-        ratio = 1.0 if even else (after[j] - x[j]) / (x[j] - before[first])  # the sinh grade is even in its parameter
+        ratio = (after[j] - x[j]) / (x[j] - before[first])
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
             lanes[XA, count], lanes[FA, count] = before[first], left
             lanes[XB, count], lanes[FB, count] = x[j], value
             lanes[XC, count], lanes[FC, count] = after[j], right
-            lanes[FAR, count], lanes[TAG, count] = far[j], float(tag)
+            lanes[TAG, count] = float(tag)
             width = after[j] - before[first]
             lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow at first
             lanes[FLOOR, count] = floor
-            lanes[VERTEX, count] = math.nan
-            inner = even and 2 <= j % (n // 2) < n // 2 - 2
-            lanes[FAA, count], lanes[FCC, count] = row[j - 2] if inner else math.nan, row[j + 2] if inner else math.nan
             count += 1
     return count
 
@@ -166,8 +134,8 @@ def open_path_lanes(rows, x, before, after, joined, lanes, best, flags):
     paths, signals = rows.shape[:2]
     for path in range(paths):
         for k in range(signals):
-            where = x[path], before[path], after[path], x[path]
-            count = open_lanes(rows[path, k], *where, joined, False, path * signals + k, lanes, count, best, flags)
+            where = x[path], before[path], after[path]
+            count = open_lanes(rows[path, k], *where, joined, path * signals + k, lanes, count, best, flags)
     return count
 
 
@@ -177,42 +145,18 @@ def in_blocks(count):
     return (count + BLOCK - 1) // BLOCK * BLOCK
 
 
-def predict_vertices(lanes, count):
-    """Predict each lane's vertex, and its uncertainty, from the quartic through five samples that are evenly spaced in
-    a smooth parameter; NaN where there are not five.
-
-    Two Newton steps from the parabola's vertex; the uncertainty is a tenth of their correction, and 2e-3 of the
-    spacing.
-    """
-    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
-    faa, fcc, vertex, reach = lanes[FAA], lanes[FCC], lanes[VERTEX], lanes[REACH]
-    for k in range(in_blocks(count)):
-        d1 = (faa[k] - fcc[k] + 8.0 * (fc[k] - fa[k])) / 12.0
-        d2 = (16.0 * (fa[k] + fc[k]) - faa[k] - fcc[k] - 30.0 * fb[k]) / 12.0
-        d3 = 0.5 * (fcc[k] - faa[k]) + (fa[k] - fc[k])
-        d4 = fcc[k] + faa[k] - 4.0 * (fc[k] + fa[k]) + 6.0 * fb[k]
-        plain = 0.5 * (fa[k] - fc[k]) / (fa[k] + fc[k] - 2.0 * fb[k])
-        s = plain - (d1 + plain * (d2 + plain * (0.5 * d3 + plain * d4 / 6.0))) / (d2 + plain * (d3 + 0.5 * plain * d4))
-        s -= (d1 + s * (d2 + s * (0.5 * d3 + s * d4 / 6.0))) / (d2 + s * (d3 + 0.5 * s * d4))
-        step = 0.5 * (xc[k] - xa[k])
-        vertex[k] = xb[k] + s * (step + 0.5 * s * ((xc[k] - xb[k]) - (xb[k] - xa[k])))
-        reach[k] = (0.1 * abs(s - plain) + 2e-3) * step
-
-
 def place_trials(lanes, trials, count):
     """Place three trials per lane: about the vertex of its parabola, or, where the last round shrank it little,
     bisecting both sides."""
     xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
     width, first_width, far, tag = lanes[WIDTH], lanes[FIRST_WIDTH], lanes[FAR], lanes[TAG]
-    first_vertex, first_reach = lanes[VERTEX], lanes[REACH]
     x, trial_far, trial_tag, room = trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], in_blocks(count)
     for k in range(room):
         before, after, wide = xb[k] - xa[k], xc[k] - xb[k], xc[k] - xa[k]
         rise, fall = (fb[k] - fa[k]) / before, (fb[k] - fc[k]) / after
-        predicted = first_vertex[k] == first_vertex[k]
-        vertex = first_vertex[k] if predicted else xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
+        vertex = xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
         spread = 0.3 * wide * wide / first_width[k]  # a parabola's vertex errs by the square of the bracket's width
-        reach = first_reach[k] if predicted else (spread if spread < 0.2 * wide else 0.2 * wide)
+        reach = spread if spread < 0.2 * wide else 0.2 * wide
         reach = reach if reach > 1e-6 * first_width[k] else 1e-6 * first_width[k]
         sound = (wide < 0.6 * width[k]) & (vertex - reach > xa[k]) & (vertex + reach < xc[k])
         longer = -0.25 * before if before > after else 0.25 * after
@@ -221,7 +165,7 @@ def place_trials(lanes, trials, count):
         x[2 * room + k] = vertex + reach if sound else xb[k] + 0.5 * after
         trial_far[k], trial_far[room + k], trial_far[2 * room + k] = far[k], far[k], far[k]
         trial_tag[k], trial_tag[room + k], trial_tag[2 * room + k] = tag[k], tag[k], tag[k]
-        width[k], first_vertex[k] = wide, math.nan
+        width[k] = wide
 
 
 def advance(lanes, trials, count, best):

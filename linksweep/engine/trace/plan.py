@@ -76,9 +76,18 @@ class Plan:
             if node.dims == frozenset(dims) and node.operator not in ("input", "constant")
         )
 
+    def only(self, names: tuple[str, ...]) -> Plan:
+        """Return the plan of some of the outputs."""
+        return _only(self, names)
+
     def dims(self, node: Node) -> tuple[str, ...]:
         """Return a node's dims in the order of its results: loops outermost first, the index last."""
         return tuple(dim for dim in (*self.loops, self.index) if dim in node.dims)
+
+
+@lru_cache(maxsize=256)
+def _only(whole: Plan, names: tuple[str, ...]) -> Plan:
+    return Plan(whole.index, {name: whole.outputs[name] for name in names}, whole.functions)
 
 
 InputForms = tuple[tuple[str, tuple[str, ...] | float], ...]

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.writer import Reduction
-from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute

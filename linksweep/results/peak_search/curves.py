@@ -135,11 +135,7 @@ def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     lanes[[search.XA, search.XB, search.XC], :count] = brackets.x
     lanes[[search.FA, search.FB, search.FC], :count] = -brackets.sign * brackets.values
     lanes[search.FIRST_WIDTH, :count], lanes[search.WIDTH, :count] = after - before, 4.0 * (after - before)
-    lanes[search.FLOOR, :count], lanes[search.TAG, :count], lanes[search.VERTEX] = (
-        brackets.noise,
-        np.arange(count),
-        np.nan,
-    )
+    lanes[search.FLOOR, :count], lanes[search.TAG, :count] = brackets.noise, np.arange(count)
     best[search.PEAK], best[search.PEAK_X] = lanes[search.FB, :count], place
 
     def heights(tag: Array, x: Array) -> Array:

@@ -13,8 +13,8 @@ from functools import partial
 
 import numpy as np
 
+from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.peaks.find_peaks import Peak, find_peaks
-from linksweep.engine.peaks.search_kernel import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute, only_where
@@ -147,7 +147,8 @@ def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[
     request = plan(table, (*signals, NEAR_WIDTH, FAR_WIDTH), forms)
     turning = tuple(signal for signal in signals if index in request.outputs[signal].dims)
     constant = tuple(signal for signal in signals if signal not in turning)
-    peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, threads) if turning else {}
+    smooth = not (scene.jumps() or scene.mechanism.kinks())
+    peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, smooth, threads) if turning else {}
     values = compute(scene, scene.grid(1), constant) if constant else {}
     at_angles = {signal: _at_angle(scene, peak) for signal, peak in peaks.items()}
     return at_angles | {signal: _constant(field) for signal, field in values.items()}

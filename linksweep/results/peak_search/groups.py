@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.engine.peaks.search_kernel import FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.peak_search.between import (

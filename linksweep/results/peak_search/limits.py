@@ -278,7 +278,8 @@ def on_arcs(start: Array, end: Array, dense: Array, period: float) -> Array:
 def graded_samples(angles: Array, widths: Array) -> Array:
     """Return samples (design, sample) [degree] graded about near-toggles (design, nth) by their widths."""
     scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
-    steps = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
+    after = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
+    steps = np.concatenate([-after[..., :0:-1], after[..., :-1]], axis=-1)
     return (angles[..., None] + steps).reshape(len(angles), -1)
 
 

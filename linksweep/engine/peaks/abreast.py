@@ -1,0 +1,351 @@
+"""Search for the peaks of several designs side by side, one in each lane.
+
+All signals of a few designs are evaluated at the samples of the turn. One pass keeps each signal's best summit: the
+sample whose neighbours allow the highest peak. The quartic through five samples about it predicts the peak, and four
+evaluations confirm it. Where they do not, where another summit may be as high, or where signals jump, brackets about
+all summits that may be the highest are refined as in `engine.peaks.search`: those of many designs at once.
+
+`search` is plain Python that numba compiles. Arithmetic in lanes is traced and written as vector instructions. A design
+has the same bits whichever others stand beside it, and where nothing is compiled.
+"""
+
+import math
+
+from linksweep.engine.peaks.lanewise import around, lanewise
+from linksweep.engine.peaks.search import (
+    BEST_ROWS,
+    BEYOND,
+    FA,
+    FAR,
+    FB,
+    FC,
+    FIRST_WIDTH,
+    FLOOR,
+    GRADES,
+    HALF,
+    NOISE,
+    PEAK,
+    PEAK_FAR,
+    PEAK_X,
+    RISE,
+    ROUNDS,
+    SAMPLES,
+    TAG,
+    TRIAL_FAR,
+    TRIAL_TAG,
+    TRIALS,
+    VALUE,
+    WIDTH,
+    XA,
+    XB,
+    XC,
+    X,
+    advance,
+    in_blocks,
+    might_reach,
+    place_trials,
+)
+
+EVALUATIONS = BEST_ROWS
+"""Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
+DESIGNS = 256
+"""Designs whose brackets are refined together."""
+CAUTION = 3.0
+"""Third derivatives that the error of a vertex allows for, of those that the samples show."""
+
+# rows of `state`, a column for each lane of each signal: results, in the order of the rows of `best`
+FINAL, NOISE_FLOOR = BEST_ROWS, BEST_ROWS + 1  # whether they are final; the rounding noise
+# the largest magnitude; the number of the best summit, the height that it may reach, and any other
+SIZE, SUMMIT, REACH, OTHER = range(BEST_ROWS + 2, BEST_ROWS + 6)
+SAMPLED = BEST_ROWS + 6  # five samples about the summit
+PLACES = SAMPLED + 5  # the tangents at three of them
+# the half turn of the summit; the signal; the tangent of a trial
+HALF_TURN, SIGNAL, PLACE = range(PLACES + 3, PLACES + 6)
+# vertex of the quartic through the samples, curvature there, third derivative; all steps are those between samples
+VERTEX, CURVATURE, THIRD = range(PLACES + 6, PLACES + 9)
+# trials: steps from the summit, and values
+Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE, Z_LAST, F_LAST = range(PLACES + 9, PLACES + 17)
+# the rise to the parabola's vertex, and what an error of its place costs; whether that vertex is sound
+GAIN, LOSS, SOUND = range(PLACES + 17, PLACES + 20)
+STATE_ROWS = PLACES + 20
+
+FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
+TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
+
+
+def search(
+    first, last, lanes, smooth, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate,
+    inputs, constants, x, rows, state, brackets, trials, gathered, best, out
+):  # fmt: skip
+    """Write the peaks of designs `first` … `last` to `out`: rows of `best` for each signal."""
+    columns = state.shape[1]
+    signals = columns // lanes
+    for k in range(columns):
+        state[SIGNAL, k] = k // lanes
+    for start in range(first, last, DESIGNS):
+        end, count = min(start + DESIGNS, last), 0
+        for front in range(start, end, lanes):
+            own = constants[(front - start) // lanes]
+            gather(front, last, lanes, sizes, parameters, parameter_at, strides, inputs)
+            prepare(inputs, own)
+            place_samples(own, lanes, grades, x)
+            sample(own, x, rows)
+            for k in range(columns):
+                state[SIZE, k], state[SUMMIT, k], state[REACH, k], state[OTHER, k] = 0.0, 0.0, -math.inf, -math.inf
+            compare_sample(rows, SAMPLES, state, columns)
+            pick_samples(rows, x, lanes, state)
+            predict_vertices(state, columns)
+            evaluate_steps(own, lanes, evaluate, state, F_LEFT, place_left)
+            evaluate_steps(own, lanes, evaluate, state, F_RIGHT, place_right)
+            step_to_vertices(state, columns)
+            evaluate_steps(own, lanes, evaluate, state, F_MIDDLE, place_middle)
+            correct_vertices(state, columns)
+            evaluate_steps(own, lanes, evaluate, state, F_LAST, place_last)
+            settle_peaks(state, columns)
+            for row in range(BEST_ROWS):
+                for k in range(columns):
+                    best[row, k // lanes * DESIGNS + front - start + k % lanes] = state[row, k]
+            for lane in range(min(lanes, end - front)):
+                for k in range(lane, columns, lanes):
+                    tag = k // lanes * DESIGNS + front - start + lane
+                    best[EVALUATIONS, tag] = SAMPLES + 4
+                    if not smooth or state[FINAL, k] == 0.0:
+                        if count + 2 * HALF > brackets.shape[1]:
+                            count = refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
+                        count = open_brackets(rows, x, lanes, k, columns, state, tag, brackets, count, best)
+        refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
+        for row in range(best.shape[0]):
+            for signal in range(signals):
+                for design in range(end - start):
+                    out[row, signal, start + design] = best[row, signal * DESIGNS + design]
+
+
+def gather(front, last, lanes, sizes, parameters, parameter_at, strides, inputs):
+    """Copy the parameters of designs side by side, the last design into lanes without one; `strides` has a row for each
+    design dim, a column for each parameter."""
+    dims, numbers = strides.shape
+    for lane in range(lanes):
+        left = min(front + lane, last - 1)
+        for k in range(numbers):
+            inputs[k * lanes + lane] = parameter_at[k]
+        for dim in range(dims - 1, -1, -1):
+            digit = left % sizes[dim]
+            left //= sizes[dim]
+            for k in range(numbers):
+                inputs[k * lanes + lane] += digit * strides[dim, k]
+    for k in range(numbers * lanes):
+        inputs[k] = parameters[int(inputs[k])]
+
+
+def place_samples(constants, lanes, grades, x):
+    """Place the samples from the middle of each half turn on, by the widths of the near-toggles there."""
+    for half in range(2):
+        for lane in range(lanes):
+            grade = grade_of(constants[half * lanes + lane])
+            for k in range(HALF + 1):
+                x[(half * (HALF + 1) + k) * lanes + lane] = grades[grade, k]
+
+
+def grade_of(width):
+    """Return the index of the first scale that does not exceed `width`."""
+    grade, scale = 0, 1.0
+    while width < scale and grade < GRADES - 1:
+        grade += 1
+        scale *= 0.5
+    return grade
+
+
+def tangent(x, lanes, lane, half, step):
+    """Return the tangent at a sample, some steps from the middle of its half turn."""
+    size = x[(half * (HALF + 1) + abs(step)) * lanes + lane]
+    return size if step > 0 else -size
+
+
+def place_of(x, lanes, lane, j):
+    """Return the tangent at the j-th sample from the middle of its half turn."""
+    return tangent(x, lanes, lane, j // (2 * HALF), j % (2 * HALF) - HALF)
+
+
+def before(x, lanes, lane, j):
+    """Return the tangent of the sample before one, from the middle of that one's half turn: measured from the other
+    middle, 180 degrees away, a tangent is minus its inverse."""
+    inside = j % (2 * HALF) > 0
+    return place_of(x, lanes, lane, j - 1) if inside else -1.0 / place_of(x, lanes, lane, (j - 1) % SAMPLES)
+
+
+def after(x, lanes, lane, j):
+    """Return the tangent of the sample after one, from the middle of that one's half turn."""
+    return place_of(x, lanes, lane, j + 1) if (j + 1) % (2 * HALF) > 0 else 1.0
+
+
+@around(SIZE, SUMMIT, REACH, OTHER)
+def compare_sample(left, value, right, number, size, summit, reach, other):
+    """Note the largest magnitude, the best summit, and the heights that it and any other summit may reach."""
+    height = (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
+    best, less = reach < height, (height < reach).where(height, reach)
+    return (
+        (size < abs(value)).where(abs(value), size),
+        best.where(number, summit),
+        best.where(height, reach),
+        (other < less).where(less, other),
+    )
+
+
+def pick_samples(rows, x, lanes, state):
+    """Copy five samples about each best summit, and the places of three; no peak is final near the ends of a half
+    turn."""
+    columns = state.shape[1]
+    for first in range(0, columns, lanes):
+        for lane in range(lanes):
+            k = first + lane
+            j = int(state[SUMMIT, k])
+            half = 1 if j >= 2 * HALF else 0
+            step = j - half * 2 * HALF - HALF
+            inside = -HALF + 2 <= step < HALF - 2
+            j, step = (j, step) if inside else (HALF, 0)
+            state[HALF_TURN, k], state[SOUND, k] = float(half), 1.0 if inside else 0.0
+            for near in range(5):
+                state[SAMPLED + near, k] = rows[(j + near - 2) * columns + k]
+            for near in range(3):
+                state[PLACES + near, k] = tangent(x, lanes, lane, half, step + near - 1)
+
+
+@lanewise(FIVE, (VERTEX, CURVATURE, THIRD, Z_LEFT, Z_RIGHT))
+def predict_vertices(f0, f1, f2, f3, f4):
+    """Predict the vertex by the quartic through five samples: two Newton steps from that of the parabola. Place trials
+    about it, their distance by what the quartic corrected."""
+    d1 = (f0 - f4 + 8.0 * (f3 - f1)) / 12.0
+    d2 = (16.0 * (f1 + f3) - f0 - f4 - 30.0 * f2) / 12.0
+    d3, d4 = 0.5 * (f4 - f0) + (f1 - f3), f4 + f0 - 4.0 * (f3 + f1) + 6.0 * f2
+    plain = vertex = 0.5 * (f1 - f3) / (f1 + f3 - 2.0 * f2)
+    for _ in range(2):
+        slope = d1 + vertex * (d2 + vertex * (0.5 * d3 + vertex * d4 / 6.0))
+        vertex = vertex - slope / (d2 + vertex * (d3 + 0.5 * vertex * d4))
+    spread = 0.02 * abs(vertex - plain) + 5e-3
+    return vertex, d2 + vertex * (d3 + 0.5 * vertex * d4), d3, vertex - spread, vertex + spread
+
+
+def evaluate_steps(constants, lanes, evaluate, state, values, place):
+    """Evaluate each signal in its lanes where `place` puts a trial."""
+    columns = state.shape[1]
+    place(state, columns)
+    for at in range(0, columns, lanes):
+        evaluate(constants, state[PLACE], state[HALF_TURN], state[SIGNAL], state[values], at)
+
+
+def place_at(x1, x2, x3, step):
+    """Return the tangent some steps from the middle one of three samples, on the parabola through them."""
+    return x2 + step * (0.5 * (x3 - x1) + step * (0.5 * ((x3 - x2) - (x2 - x1))))
+
+
+place_left, place_right, place_middle, place_last = (
+    lanewise((*THREE, step), (PLACE,))(lambda *x: (place_at(*x),)) for step in (Z_LEFT, Z_RIGHT, Z_MIDDLE, Z_LAST)
+)
+
+
+@lanewise((VERTEX, CURVATURE, *TRIED[:4]), (Z_MIDDLE,))
+def step_to_vertices(vertex, curvature, left, f_left, right, f_right):
+    """Place a trial by a Newton step, with the slope of the two trials and the curvature of the quartic."""
+    return (vertex - (f_right - f_left) / (right - left) / curvature,)
+
+
+def parabola(x, f, y, g, z, h):
+    """Return the slope and the second difference of the parabola through three points: the slope from x to z."""
+    slope = (h - f) / (z - x)
+    return slope, ((g - h) / (y - z) - slope) / (y - x)
+
+
+@lanewise((*TRIED, VERTEX, CURVATURE, THIRD, SOUND), (Z_LAST, GAIN, LOSS, SOUND))
+def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, curvature, third, sound):
+    """Place the last trial: at the vertex of the parabola through three, where that promises more than they have."""
+    slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
+    vertex = middle - 0.5 * (slope + (middle - left) * bend) / bend
+    gain = abs(bend) * (vertex - middle) * (vertex - middle)
+    away = abs((vertex - left) * (vertex - right)) / 6.0 * (1.0 + 0.5 * CAUTION * abs(third / bend))
+    loss = abs(bend) * away * away
+    tolerance = RISE * abs(f_middle)
+    last = (gain + loss < tolerance).where(middle, vertex)
+    for condition in (bend < 0.0, curvature < 0.0, abs(vertex) < 1.0, abs(vertex - predicted) < 0.3, loss < tolerance):
+        sound = condition.where(sound, 0.0)
+    return last, gain, loss, sound
+
+
+@lanewise(
+    (*TRIED, Z_LAST, F_LAST, *THREE, SAMPLED + 2, HALF_TURN, OTHER, THIRD, GAIN, LOSS, SOUND, SIZE),
+    (PEAK, PEAK_X, PEAK_FAR, BEYOND, FINAL, NOISE_FLOOR),
+)
+def settle_peaks(
+    left, f_left, right, f_right, middle, f_middle, last, f_last, x1, x2, x3, f2, far, other, third, gain, loss, sound,
+    size
+):  # fmt: skip
+    """Note the peaks, and whether they are final: confirmed by the trials, and out of reach of other summits."""
+    slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
+    to_left, to_right = middle - left, middle - right
+    step = (slope + to_left * bend + third / 6.0 * to_left * to_right) / (
+        2.0 * bend + third / 3.0 * (to_left + to_right)
+    )
+    vertex = (abs(step) < 0.01).where(middle - step, last)
+    best = (f_last < f_middle).where(f_middle, f_last)
+    tolerance = RISE * abs(best)
+    final = (f_last < f_middle).where((gain < tolerance).where(sound, 0.0), sound)
+    final = (best < f2).where(0.0, (best + tolerance < other).where(0.0, final))
+    best = (best < f_left).where(f_left, best)
+    best = (best < f_right).where(f_right, best)
+    floor = NOISE * size
+    beyond = (gain + loss < floor).where(floor, gain + loss) + tolerance
+    return best, place_at(x1, x2, x3, vertex), far, beyond, final, floor
+
+
+def open_brackets(rows, x, lanes, k, columns, state, tag, brackets, count, best):
+    """Open brackets about all summits of a signal that may exceed its highest sample; return their number."""
+    lane, floor, top, at = k % lanes, state[NOISE_FLOOR, k], -math.inf, 0
+    for j in range(SAMPLES):
+        if rows[j * columns + k] > top:
+            top, at = rows[j * columns + k], j
+    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
+    best[PEAK_X, tag], best[PEAK_FAR, tag] = place_of(x, lanes, lane, at), 1.0 if at >= 2 * HALF else 0.0
+    if abs(top) == math.inf:
+        return count
+    for j in range(SAMPLES):
+        left = lower(rows[(j - 1 if j > 0 else SAMPLES - 1) * columns + k])
+        value, right = rows[j * columns + k], lower(rows[(j + 1 if j < SAMPLES - 1 else 0) * columns + k])
+        if value > left and value >= right and might_reach(left, value, right, 1.0) > top + 10.0 * floor:
+            brackets[XA, count], brackets[FA, count] = before(x, lanes, lane, j), left
+            brackets[XB, count], brackets[FB, count] = place_of(x, lanes, lane, j), value
+            brackets[XC, count], brackets[FC, count] = after(x, lanes, lane, j), right
+            brackets[FAR, count], brackets[TAG, count] = 1.0 if j >= 2 * HALF else 0.0, tag
+            width = brackets[XC, count] - brackets[XA, count]
+            brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
+            brackets[FLOOR, count] = floor
+            count += 1
+    return count
+
+
+def lower(value):
+    """Return a neighbour's value; −inf where there is none."""
+    return value if value == value else -math.inf
+
+
+def refine(brackets, trials, count, lanes, constants, gathered, evaluate, best):
+    """Refine all brackets, several side by side, until none is left; return their number, 0."""
+    for _ in range(ROUNDS):
+        if count == 0:
+            break
+        place_trials(brackets, trials, count)
+        room = in_blocks(count)
+        for front in range(0, count, lanes):
+            for lane in range(lanes):
+                tag = int(brackets[TAG, min(front + lane, count - 1)])
+                design = tag % DESIGNS
+                own = constants[design // lanes]
+                for row in range(len(gathered) // lanes):
+                    gathered[row * lanes + lane] = own[row * lanes + design % lanes]
+                for trial in range(TRIALS):
+                    trials[TRIAL_TAG, trial * room + front + lane] = tag // DESIGNS
+                if front + lane < count:
+                    best[EVALUATIONS, tag] += TRIALS
+            for trial in range(TRIALS):
+                at = trial * room + front
+                evaluate(gathered, trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], trials[VALUE], at)
+        count = advance(brackets, trials, count, best)
+    return 0

@@ -1,0 +1,179 @@
+"""Evaluate the signals of a plan for several designs side by side, one in each lane.
+
+    prepare(inputs, constants)                              numbers of designs from their parameters
+    sample(constants, x, rows)                              all signals at all samples of the turn
+    evaluate(constants, x, far, tag, values, at)            one signal at one place in each lane, from position `at` on
+
+Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
+`x` of `sample` has the tangents of samples from the middle of each half turn on: those before it mirror them, and share
+all operations whose results are the same there, or opposite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.engine.kernel.compile import compiled_vectors
+from linksweep.engine.kernel.vectors import WIDTH, Emitter, Values
+from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.run import interpret
+from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.plan import Plan
+
+TANGENT, FAR = "half_tangent", "far_half"
+"""Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
+NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
+"""Widths of the near-toggles in those middles."""
+
+
+class Functions(NamedTuple):
+    """The three functions, and the number of their lanes."""
+
+    lanes: int
+    prepare: Callable[..., None]
+    sample: Callable[..., None]
+    evaluate: Callable[..., None]
+
+
+class Evaluators:
+    """Evaluators of some of a plan's outputs, its signals."""
+
+    def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
+        self.plan, self.signals = plan, [plan.outputs[signal] for signal in signals]
+        place = {node.value: node for node in plan.nodes if node.operator == "input"}
+        self.tangent, self.far = place[TANGENT], place[FAR]
+        work = [node for node in plan.nodes if node.operator not in ("input", "constant")]
+        self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
+        self.of_designs = [node for node in work if not self._turns(node)]
+        self.at_samples = [node for node in work if self._turns(node)]
+        used = {x for node in self.at_samples for x in node.operands if x.operator != "constant" and not self._turns(x)}
+        widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
+        self.constants = [*widths, *sorted(used, key=lambda node: node.position)]
+        self.fixed = [node for node in plan.nodes if node.operator == "constant"]
+
+    def _turns(self, node: Node) -> bool:
+        """Return whether a node depends on the place."""
+        return self.plan.index in node.dims
+
+    # ------------------------------------------------------------------------------------------ interpreted
+
+    @cached_property
+    def interpreted(self) -> Functions:
+        """The functions by numpy, for one lane."""
+        return Functions(1, self._prepare, self._sample, self._evaluate)
+
+    def _prepare(self, inputs: np.ndarray, constants: np.ndarray) -> None:
+        values: Values = dict(zip(self.inputs, inputs, strict=True))
+        interpret([*self.fixed, *self.of_designs], values)
+        constants[:] = [float(values[node]) for node in self.constants]
+
+    def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
+        halves = x.reshape(2, HALF + 1)
+        tangents = np.concatenate([-halves[:, :0:-1], halves[:, :-1]], axis=1)
+        values = self._at(constants, tangents, np.array([[0.0], [1.0]]))
+        for k, signal in enumerate(self.signals):
+            rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
+
+    def _evaluate(self, constants, x, far, tag, values, at: int) -> None:
+        values[at] = self._at(constants, x[at], far[at])[self.signals[int(tag[at])]]
+
+    def _at(self, constants: np.ndarray, tangent: Any, far: Any) -> Values:
+        values: Values = dict(zip(self.constants, constants, strict=True)) | {self.tangent: tangent, self.far: far}
+        return interpret([*self.fixed, *self.at_samples], values)
+
+    # --------------------------------------------------------------------------------------------- compiled
+
+    @cached_property
+    def compiled(self) -> Functions:
+        """The functions as machine code, for `WIDTH` lanes."""
+        text = self._text()
+        return Functions(
+            WIDTH,
+            compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
+            compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
+            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8)", text),
+        )
+
+    def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:
+        emitter = Emitter(builder)
+        values: Values = {node: emitter.load(inputs, emitter.integer(k * WIDTH)) for k, node in enumerate(self.inputs)}
+        emitter.emit([*self.fixed, *self.of_designs], values)
+        for k, node in enumerate(self.constants):
+            emitter.store(values[node], constants, emitter.integer(k * WIDTH))
+
+    def _emit_sample(self, builder: Any, constants: Any, x: Any, rows: Any) -> None:
+        """Emit a loop over both half turns, and in it one over the samples from the middle on, each with its mirror."""
+        from numba.core import cgutils
+
+        emitter = Emitter(builder)
+        values = self._loaded(emitter, constants)
+        of, size, half = builder.mul, emitter.integer(len(self.signals) * WIDTH), emitter.integer(HALF)
+        with cgutils.for_range(builder, emitter.integer(2)) as (turn, _):
+            far = emitter.spread(builder.uitofp(turn, emitter.ir.DoubleType()))
+            with cgutils.for_range(builder, emitter.integer(HALF + 1)) as (k, _):
+                at = builder.add(of(turn, emitter.integer(HALF + 1)), k)
+                tangent = emitter.load(x, of(at, emitter.integer(WIDTH)))
+                here = emitter.emit(self.at_samples, {**values, self.tangent: tangent, self.far: far})
+                middle = builder.add(of(turn, emitter.integer(2 * HALF)), half)
+                for mirrored, place in ((True, builder.sub(middle, k)), (False, builder.add(middle, k))):
+                    there = self._mirrored(emitter, here) if mirrored else here
+                    for s, signal in enumerate(self.signals):
+                        start = builder.add(of(place, size), emitter.integer(s * WIDTH))
+                        emitter.store(there[signal], rows, start)
+
+    def _mirrored(self, emitter: Emitter, here: Values) -> Values:
+        """Return the values at the opposite tangents; only operations that are neither even nor odd are repeated."""
+        there = dict(here)
+        for node in [self.tangent, *self.at_samples]:
+            parity = self.parity[node]
+            if parity < 0:
+                there[node] = emitter.builder.fneg(here[node])
+            elif parity == 0:
+                there[node] = emitter.operation(node, [there[x] for x in node.operands])
+        return there
+
+    @cached_property
+    def parity(self) -> dict[Node, int]:
+        """1 for nodes with the same value at opposite tangents, −1 for those with opposite ones, else 0."""
+        parity: dict[Node, int] = {}
+        for node in self.plan.nodes:
+            x = [parity[operand] for operand in node.operands]
+            if not x:
+                parity[node] = -1 if node is self.tangent else 1
+            elif node.operator in ("*", "/", "product_low"):
+                parity[node] = x[0] * x[1]
+            elif node.operator == "negate" or (node.operator in ("+", "-") and x[0] == x[1]):
+                parity[node] = x[0]
+            elif node.operator == "where" and x[0] == 1 and x[1] == x[2]:
+                parity[node] = x[1]
+            elif node.operator == "abs":
+                parity[node] = x[0] * x[0]
+            else:
+                parity[node] = 1 if all(each == 1 for each in x) else 0
+        return parity
+
+    def _emit_evaluate(self, builder: Any, constants: Any, x: Any, far: Any, tag: Any, values: Any, at: Any) -> None:
+        emitter = Emitter(builder)
+        place = {self.tangent: emitter.load(x, at), self.far: emitter.load(far, at)}
+        here = emitter.emit(self.at_samples, {**self._loaded(emitter, constants), **place})
+        wanted, chosen = emitter.load(tag, at), here[self.signals[0]]
+        for k, signal in enumerate(self.signals[1:], 1):
+            chosen = builder.select(builder.fcmp_ordered("==", wanted, emitter.constant(k)), here[signal], chosen)
+        emitter.store(chosen, values, at)
+
+    def _loaded(self, emitter: Emitter, constants: Any) -> Values:
+        values = emitter.emit(self.fixed, {})
+        for k, node in enumerate(self.constants):
+            values[node] = emitter.load(constants, emitter.integer(k * WIDTH))
+        return values
+
+    def _text(self) -> str:
+        """Return a text that differs wherever the functions do."""
+        nodes = {node: k for k, node in enumerate(self.plan.nodes)}
+        lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
+        roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals)]
+        return f"{WIDTH} {HALF} {lines} {roles}"
