@@ -196,7 +196,7 @@ def _load(load: Any, mechanism: Any) -> str:
     return "; ".join(parts + _breaks(load.breaks))
 
 
-def _place(at: tuple[Any, Any], origin: str) -> str:
+def _place(at: Sequence[Any], origin: str) -> str:
     """Return a point of a link in words, by its polar coordinates from an origin."""
     distance, angle = at
     if np.all(distance == 0.0):

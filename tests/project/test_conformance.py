@@ -11,7 +11,7 @@ import inspect
 import re
 import traceback
 from collections.abc import Callable, Iterable
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -27,7 +27,7 @@ PACKAGE = Path(ls.__file__).parent
 SAMPLES = 24
 BEARING = ls.Bearing(diameter=0.02, length=0.03, friction=0.05, capacity=5e4)
 MOTOR = ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01)
-WEIGHT = ls.Counterweight("crank", mass=0.1, at=(0.05, 180.0))
+WEIGHT = {"mass": 0.1, "at": (0.05, 180.0)}
 
 
 class Subject:
@@ -40,6 +40,7 @@ class Subject:
         self.kind = type(machine if self.several else mechanism).__name__
         names = ("Fs", "T12") if self.several else mechanism.peak_quantities(self.scene.drive)
         self.force, self.drive = names[0], names[-1]
+        self.crank = (*mechanism.roles, "crank")[0]
         self.samples = {} if self.several else {mechanism.index: SAMPLES}  # peaks of several cylinders are exact
         self.word = mechanism.motion[0]
         self.value = getattr(self.scene, self.word)
@@ -126,7 +127,7 @@ CALLS = {
     "study": lambda s, path: stored(s, path),
     "sweep": lambda s, path: ls.sweep(s.machine, SAMPLES, of=[s.force, s.drive]),
     "system": lambda s, path: ls.system(s.machine, 45.0),
-    "with_counterweights": lambda s, path: ls.with_counterweights(s.machine, [WEIGHT]),
+    "with_counterweights": lambda s, path: ls.with_counterweights(s.machine, [ls.Counterweight(s.crank, **WEIGHT)]),
     "plot.animate": lambda s, path: ls.plot.animate(s.machine, frames=3),
     "plot.balance": lambda s, path: ls.plot.balance(s.machine, s.machine, theta2=SAMPLES),
     "plot.bearing": lambda s, path: s.cycle.linksweep.bearing(s.force),
@@ -192,6 +193,16 @@ LACKING: dict[str, str] = {
         command.balance
     """,
     "scotch-yoke": "counterweights position_equation plot.loop command.balance",
+    "excavator": """
+        counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
+        command.breakdown
+    """,
+    "whitworth": """
+        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
+        command.balance
+    """,
+    "geared-five-bar": "counterweights position_equation plot.loop command.balance",
+    "yoke": "counterweights position_equation plot.heat_map plot.loop command.balance",
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load
         objective open_study pin_friction position_equation quantities regressor sample scene_at speed_limit
@@ -252,7 +263,9 @@ def knuckle_press() -> ls.Scene:
     return ls.Scene(links, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("ram", force=-500.0)])
 
 
-LINKAGES = {"six-bar": six_bar, "knuckle-press": knuckle_press}
+EXAMPLES = {name: partial(ls.example, name) for name in ("excavator", "whitworth", "geared-five-bar")}
+EXAMPLES["yoke"] = partial(ls.example, "scotch-yoke")
+LINKAGES = {"six-bar": six_bar, "knuckle-press": knuckle_press, **EXAMPLES}
 
 
 @lru_cache
@@ -273,11 +286,17 @@ def subject(name: str) -> Subject:
 MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", *LINKAGES, "inline-four")
 ON_PAPER = {"press", "engine", "quick-return", "scotch-yoke", *LINKAGES, "inline-four"}
 """Machines whose report takes seconds: it is a long test."""
+BRIEFLY = {"sweep", "system", "save", "load_scene", "scene_at", "orders", "regressor", "with_counterweights", "pareto"}
+"""Functions that examples of linkages meet in quick tests; the others are long."""
+
+
+def takes_long(machine: str, name: str) -> bool:
+    return name not in BRIEFLY if machine in EXAMPLES else name == "report" and machine in ON_PAPER
 
 
 def pairs(names: Iterable[str], machines: tuple[str, ...]) -> list:
     return [
-        pytest.param(machine, name, marks=[pytest.mark.long] if name == "report" and machine in ON_PAPER else [])
+        pytest.param(machine, name, marks=[pytest.mark.long] if takes_long(machine, name) else [])
         for machine in machines
         for name in names
     ]
@@ -308,10 +327,11 @@ def sentence(call: Callable[[], object]) -> str:
 
 
 def about(machine: Subject, name: str, line: str) -> bool:
-    """Return whether a line names the machine, begins with a parameter of it, or is about a name or a Dataset."""
+    """Return whether a line names the machine, begins with a parameter of it, or is about a quantity or a Dataset."""
     path = re.findall(r"\w+", line.split()[0])
     of_results = name.startswith(OF_RESULTS) and ("Dataset" in line or path[0] in ("ds", "pin", "of"))
-    return machine.kind in line or bool({*path} & machine.numbers) or "nothing is named" in line or of_results
+    of_request = "nothing is named" in line or path[0].startswith((machine.force, machine.drive))
+    return machine.kind in line or bool({*path} & machine.numbers) or of_request or of_results
 
 
 def check_pair(machine: Subject, name: str, refusal: str) -> None:

@@ -97,7 +97,7 @@ def with_counterweights(scene: Scene, counterweights: Iterable[Counterweight]) -
     strange = [weight for weight in weights if not isinstance(weight, Counterweight)]
     refuse([f"counterweights = {quote(weight)}: must be a Counterweight" for weight in strange])
     masses = scene.mechanism.masses()
-    carriers = {role: masses[role] for role in scene.mechanism.parts}
+    carriers = {role: masses[role] for role in scene.mechanism.parts if role in masses}  # a cylinder has no mass
     refuse([p for weight in weights for p in choice_problems("counterweights.link", weight.link, carriers)])
     loaded = {weight.link for weight in weights}
     moving = [k for k, load in enumerate(scene.loads, 1) if load.on_centre_of in loaded]
