@@ -176,5 +176,6 @@ class InvertedSliderCrank(SingleDyad):
         if not np.any(self.friction):
             return ()
         a, d, e = self.by_role.values()
-        near, far = (np.where(abs(e) < reach, 0.0, np.nan) for reach in (abs(d - a), d + a))
+        with np.errstate(invalid="ignore"):  # 0/0 where the block is out of reach
+            near, far = (np.divide(0.0, abs(e) < reach) for reach in (abs(d - a), d + a))
         return self.ground_angle + near, self.ground_angle + 180.0 + far

@@ -155,12 +155,20 @@ def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[
 
 
 def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
-    """Return a peak of the fused search, which knows a half-angle tangent, with its angle [degree]."""
-    dims, value = peak.value
-    away = 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
-    angle = away + aligned(scene.mechanism.near_toggle_angle, dims)
-    angle = np.where(np.isnan(value), np.nan, angle_in_period(angle, scene.period))
-    return SignalPeak(peak.value, Field(dims, angle), peak.beyond, peak.evaluations)
+    """Return a peak of the fused search, which knows a half-angle tangent, with its angle [degree].
+
+    A signal may depend on the crank's angle from the frame alone; its angle from x has the dims of the frame's, too.
+    """
+    middle, sizes = scene.mechanism.near_toggle_angle, scene.inputs.sizes
+    dims = (*peak.value.dims, *(dim for dim in getattr(middle, "dims", ()) if dim not in peak.value.dims))
+    shape = tuple(sizes[dim] for dim in dims)
+    value, beyond, evaluations, tangent, far = (
+        Field(dims, np.broadcast_to(aligned(field, dims), shape).copy())
+        for field in (peak.value, peak.beyond, peak.evaluations, peak.tangent, peak.far)
+    )
+    angle = 2.0 * np.degrees(np.arctan(tangent.values)) + 180.0 * far.values + aligned(middle, dims)
+    angle = np.where(np.isnan(value.values), np.nan, angle_in_period(angle, scene.period))
+    return SignalPeak(value, Field(dims, angle), beyond, evaluations)
 
 
 def _constant(field: Field) -> SignalPeak:

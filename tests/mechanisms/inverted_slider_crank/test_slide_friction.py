@@ -174,6 +174,24 @@ def test_the_least_friction_that_jams(drive, ground):
 # ---- limits, mirrors, bits -----
 
 
+def test_peaks_of_many_offsets_are_those_of_each():
+    """Friction jumps where the block turns round: at angles of each design, none where the block is out of reach."""
+    offsets = [0.01, 0.2, 0.3]
+    many, quantities = machine(friction=0.1, offset=xr.DataArray(offsets, dims="offset")), ["F43n", "T12"]
+    peaks = ls.peaks(ls.Scene(many, omega2=3.0), of=quantities)
+    for k, offset in enumerate(offsets):
+        one = ls.peaks(ls.Scene(machine(friction=0.1, offset=offset), omega2=3.0), of=quantities)
+        xr.testing.assert_allclose(peaks.isel(offset=k, drop=True), one, rtol=1e-12)
+
+
+def test_peaks_that_do_not_depend_on_the_frame_lie_at_angles_that_do():
+    """The slide is longest where the crank points away from D, whichever way the frame lies."""
+    frame = xr.DataArray([0.0, 23.0, -90.0], dims="frame")
+    peaks = ls.peaks(ls.Scene(machine(friction=0.0, ground_angle=frame), omega2=3.0), of=["slide"])
+    np.testing.assert_allclose(peaks.slide_max, np.sqrt(0.48**2 - 0.04**2), rtol=1e-14)
+    np.testing.assert_allclose(peaks.slide_max_at, [180.0, 203.0, 90.0], rtol=0, atol=1e-9)
+
+
 def test_friction_that_vanishes():
     """Forces tend to those without friction in proportion to it."""
     for case in cases()[::5]:
