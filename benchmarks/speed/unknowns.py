@@ -10,7 +10,7 @@ import linksweep as ls
 from benchmarks.cases import GENERAL, NINE, Size, scene, stacked
 from benchmarks.rivals import limit, peers
 from benchmarks.speed.kernel import eliminations, kernel_of, way
-from benchmarks.timing import FASTER, SHARE, Row, race
+from benchmarks.timing import FASTER, SHARE, WALL, Row, race
 
 SWEEP, KERNEL, LAPACK, CLOSED, C = "ls.sweep", "kernel alone", "numpy + LAPACK", "numpy closed form", "limit.c"
 DENSE, ALONE, SOLVE = "ls.sweep, solver='dense'", "its 9×9 alone", "numpy.linalg.solve of the same 9×9"
@@ -49,6 +49,8 @@ def rows(size: Size) -> list[Row]:
 
     return [
         row(FASTER, SWEEP, LAPACK, 60),
+        row(WALL, SWEEP, KERNEL, 10e-9 * size.angles),
+        row(WALL, DEFAULT, SWEEP, 18e-9 * size.angles),
         row(FASTER, KERNEL, LAPACK, 250),
         row(SHARE, KERNEL, C, 1.3),
         row(FASTER, C, LAPACK),
