@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.kernel.compile import compiled_vectors
-from linksweep.engine.kernel.vectors import WIDTH, Emitter, Values
+from linksweep.engine.peaks.instructions import WIDTH, Emitter, Values
 from linksweep.engine.run import interpret
 from linksweep.engine.trace.graph import Graph, Node
 
