@@ -46,6 +46,7 @@ from linksweep.mechanisms.links import (
 )
 from linksweep.mechanisms.machine import Machine
 from linksweep.mechanisms.mechanism import register
+from linksweep.mechanisms.strokes import OF_BLOCK, OF_LINK, OF_SLIDER, Stroke
 
 GROUND_PIN = PairField(Rule("length"), Rule("length"), "(x, y) in m")
 NONE = record(GROUND_PIN, {})
@@ -214,6 +215,24 @@ class Linkage(Machine):
     def drawing(self) -> Drawing:  # type: ignore[override]
         """Linkage as plots draw it."""
         return LinkageDrawing(self.topology, self.ground, self.guides).drawing()
+
+    @property
+    def strokes(self) -> dict[str, Stroke]:
+        joined, strokes = self.topology, dict[str, Stroke]()
+        for role in (*joined.sliders, *joined.yokes):
+            x, v = f"x_{role}", f"v_{role}"
+            if role in self.sliders:
+                strokes[f"{role}.position"] = Stroke(x, v, "length", OF_SLIDER)
+                strokes[f"{role}.to_end"] = Stroke(x, v, "length", OF_SLIDER, sense=-1.0, from_end=True)
+            else:
+                strokes[f"{role}.position"] = Stroke(x, v, "length", OF_BLOCK)
+        for role in joined.cylinders:
+            strokes[f"{role}.length"] = Stroke(f"length_{role}", f"rate_{role}", "length", OF_BLOCK)
+        for body in self.bodies[1:]:
+            if body.on_ground and body.role in joined.links:
+                k = body.number
+                strokes[f"{body.role}.angle"] = Stroke(f"theta{k}", f"omega{k}", "angle", OF_LINK)
+        return strokes
 
     @property
     def geared(self) -> Geared:  # type: ignore[override]

@@ -19,6 +19,9 @@ import numpy as np
 from linksweep.base.validate import Number
 
 Angles = tuple[Number, ...]
+OF_SLIDER, OF_BLOCK = ("closing", "opening"), ("extending", "retracting")
+OF_LINK = "counter-clockwise", "clockwise"
+"""Words for the two ways: of sliders on the ground, of blocks on links and of cylinders, of links that swing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,26 +36,31 @@ class Stroke:
         Kind of the position: "length" [m] or "angle" [degree].
     words : pair of str
         Words for the two ways; on the first the quantity grows where `forward` is 1, and shrinks where it is -1.
-    crank_angles : function
-        Crank angles [degree] at which the quantity has a value, on this or the other branch; NaN for none.
-    turning : tuple of float or DataArray
+    crank_angles : function, default None
+        Crank angles [degree] at which the quantity has a value, on this or the other branch; NaN for none. None where
+        there is no closed form of it.
+    turning : tuple of float or DataArray, default ()
         Crank angles [degree] at which it turns round; NaN for none.
     forward, start, sense : float or DataArray
         Direction of the first way, and the two constants of the position.
+    from_end : bool, default False
+        True where `start` is the largest value of the quantity, without a closed form of it.
     """
 
     quantity: str
     slope: str
     kind: str
     words: tuple[str, str]
-    crank_angles: Callable[[Number], Angles]
-    turning: Angles
+    crank_angles: Callable[[Number], Angles] | None = None
+    turning: Angles = ()
     forward: Number = 1.0
     start: Number = 0.0
     sense: Number = 1.0
+    from_end: bool = False
 
     def reached(self, position: float) -> Angles:
         """Return the crank angles [degree] at which the link has a position, on either branch; NaN for none."""
+        assert self.crank_angles is not None, self.quantity
         with np.errstate(all="ignore"):
             return self.crank_angles((position - self.start) / self.sense)
 
@@ -66,9 +74,8 @@ def slider_strokes(a: Number, b: Number, e: Number, guide: Number, sign: float, 
 
     with np.errstate(invalid="ignore"):
         outermost = np.sqrt((a + b - e) * (a + b + e))
-    words = ("closing", "opening")
-    position = Stroke("x_slider", "ratio_slider", "length", words, crank_angles, turning, sign)
-    to_end = Stroke("x_slider", "ratio_slider", "length", words, crank_angles, turning, sign, outermost, -sign)
+    position = Stroke("x_slider", "ratio_slider", "length", OF_SLIDER, crank_angles, turning, sign)
+    to_end = Stroke("x_slider", "ratio_slider", "length", OF_SLIDER, crank_angles, turning, sign, outermost, -sign)
     return {"slider.position": position, "slider.to_end": to_end}
 
 
@@ -78,8 +85,8 @@ def block_stroke(a: Number, d: Number, e: Number, frame: Number, sign: float) ->
     def crank_angles(slide: Number) -> Angles:
         return _two(0.0 * slide, (a * a + d * d - e * e - slide * slide) / (2.0 * a * d), frame)
 
-    words, turning = ("extending", "retracting"), (frame, frame + 180.0)
-    return Stroke("slide", "ratio_slide", "length", words, crank_angles, turning, sign)
+    turning = frame, frame + 180.0
+    return Stroke("slide", "ratio_slide", "length", OF_BLOCK, crank_angles, turning, sign)
 
 
 def rocker_stroke(a: Number, b: Number, c: Number, d: Number, frame: Number, sign: float) -> Stroke:
@@ -94,8 +101,7 @@ def rocker_stroke(a: Number, b: Number, c: Number, d: Number, frame: Number, sig
     with np.errstate(invalid="ignore"):
         lines = [np.degrees(np.arccos((d * d + f * f - c * c) / (2.0 * d * f))) for f in (b + a, b - a)]
     stretched, folded = (frame + sign * line for line in lines)
-    words = ("counter-clockwise", "clockwise")
-    return Stroke("theta4", "ratio4", "angle", words, crank_angles, (stretched, folded + 180.0))
+    return Stroke("theta4", "ratio4", "angle", OF_LINK, crank_angles, (stretched, folded + 180.0))
 
 
 def _two(direction: Number, cosine: Number, frame: Number) -> Angles:

@@ -76,7 +76,7 @@ def in_order(grid: Grid) -> Grid:
     if (np.diff(grid.angles) > 0.0).all():
         return grid
     angles, first = np.unique(grid.angles, return_index=True)
-    return grid._replace(angles=angles, table=grid.table[:, first])
+    return grid._replace(angles=angles, table=grid.table.take(first, axis=1))
 
 
 def _grid(angles: np.ndarray, period: float, dim: str, geared: Geared) -> Grid:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -39,6 +39,7 @@ from linksweep.scene.loads.kinds import Load
 from linksweep.scene.parameters import bare
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.storable import storable_coordinate
+from linksweep.scene.strokes import stroke_of
 
 GRAVITY = PairField(Rule("acceleration"), Rule("acceleration"), "(gx, gy) in m/s^2")
 MECHANISM = PartField(MECHANISMS.values(), Mechanism, inline=True)
@@ -347,7 +348,8 @@ class Scene(ByContent):
         """
         with np.errstate(invalid="ignore"):  # designs that do not turn fully
             of_loads = (angle for load in self.loads for angle in load.jumps(self.mechanism))
-            every = (*self.mechanism.jumps(), *of_loads)
+            along_strokes = (angle for load in self.loads for angle in load.jumps_along(partial(stroke_of, self)))
+            every = (*self.mechanism.jumps(), *of_loads, *along_strokes)
         return tuple({content(angle): angle for angle in every}.values())  # friction and gas share dead centres
 
     def approaches(self) -> tuple[tuple[str, str], ...]:

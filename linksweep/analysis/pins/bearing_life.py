@@ -27,9 +27,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.peak_search.between import Array
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.quadrature import Integrand, integrals
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 MILLION = 1e6

@@ -22,9 +22,9 @@ from linksweep.base.validate import Rule, refuse
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
 from linksweep.results.dataset import design_coordinates, with_units
-from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
+from linksweep.scene.pairs import quantities_at
 from linksweep.scene.scene import Scene
 
 LIMITS = {"N": Rule("force", above=0.0), "N m": Rule("torque", above=0.0)}

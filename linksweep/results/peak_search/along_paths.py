@@ -15,10 +15,10 @@ import numpy as np
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.find_peaks import refine, search_functions
 from linksweep.engine.run import Field
-from linksweep.results.peak_search.between import Array, Places, in_period
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import QUARTER, Part, Paths
 from linksweep.results.peak_search.poles import poles
+from linksweep.scene.pairs import Array, Places, in_period
 
 NODES = 8
 """Samples near the end of an arc from which a signal is extrapolated to the end."""

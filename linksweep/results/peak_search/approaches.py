@@ -17,9 +17,10 @@ from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field, reduce_rows
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
-from linksweep.results.peak_search.between import Array, positions_at
+from linksweep.results.peak_search.between import positions_at
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.scene.dimensions import aligned
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 WIDE = np.radians(20.0)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from linksweep.results.peak_search.approaches import approaches
-from linksweep.results.peak_search.between import EVERYWHERE, Array
+from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.paths import (
     ASIDE,
@@ -30,6 +30,7 @@ from linksweep.results.peak_search.paths import (
     windows_about,
 )
 from linksweep.scene.curves.quick import STEP
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 PER_ARC = 192

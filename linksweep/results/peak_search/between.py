@@ -1,43 +1,19 @@
-"""Compute a scene's quantities at any pairs of a design and a crank angle, also between the samples of a grid.
-
-Designs are counted row-major over the scene's design dims. Each pair is one sample of a sweep whose parameters all
-change from sample to sample, so that the plan and the kernels of `sweep` serve here, too.
-"""
+"""Kinds of assembly, positions of designs at shared crank angles, and tables of numbers that belong to designs."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-
 import numpy as np
 
-from linksweep.engine.run import Field, Grid, evaluate
-from linksweep.engine.trace.plan import Plan, plan
+from linksweep.engine.run import evaluate
+from linksweep.engine.trace.plan import plan
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.inputs import Inputs
+from linksweep.scene.pairs import Array, inputs_along, places_of
 from linksweep.scene.scene import Scene
 
-Array = np.ndarray
-Places = Mapping[str, Array]
-"""Indices of some designs along each design dim."""
 EVERYWHERE, PARTLY, NEVER = 0.0, 1.0, 2.0
 """Assembly of a design: at every crank angle, at some, or at none."""
 CHOSEN = "_chosen"
 """Dim of designs that are computed at the same angles."""
-
-
-def quantities_at(
-    scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
-) -> Array:
-    """Return values (names, pairs) at pairs of a design and an angle [degree]."""
-    if not len(angles):
-        return np.empty((len(names), 0))
-    inputs, grid, sample = _inputs_at(scene, angles)
-    forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
-    request = plan(scene.table, names, forms)
-    places = places_of(inputs.sizes, designs) | {grid.dim: sample}
-    values = evaluate(request, _inputs_along(grid.dim, request, inputs, places), grid, {}, threads)
-    return np.stack([np.broadcast_to(values[name].values, angles.shape) for name in names])
 
 
 def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: Array) -> Array:
@@ -48,61 +24,6 @@ def positions_at(scene: Scene, names: tuple[str, ...], designs: Array, angles: A
         for name, form in inputs.forms
     )
     request, places = plan(scene.table, names, forms), places_of(inputs.sizes, designs)
-    values = evaluate(request, _inputs_along(CHOSEN, request, inputs, places), grid, {CHOSEN: len(designs)})
+    values = evaluate(request, inputs_along(CHOSEN, request, inputs, places), grid, {CHOSEN: len(designs)})
     shape = len(designs), len(angles)
     return np.stack([np.broadcast_to(aligned(values[name], (CHOSEN, grid.dim)), shape) for name in names])
-
-
-def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
-    """Return a scene's inputs at the distinct angles of a period, the grid of all angles, and the index of each angle
-    among the distinct ones.
-
-    Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle.
-    """
-    if scene.steady:
-        return scene.inputs, scene.grid(angles), np.empty(0, dtype=int)
-    different, sample = np.unique(angles, return_inverse=True)
-    known = scene.grid(different)
-    folded, first, place = np.unique(in_period(different, scene.period), return_index=True, return_inverse=True)
-    inputs = scene.at(known._replace(angles=folded, table=known.table[:, first])).inputs
-    return inputs, known._replace(angles=angles, table=known.table.take(sample, axis=1)), place[sample]
-
-
-def in_period(angle: Array, period: float) -> Array:
-    """Return angles reduced to [0, period)."""
-    folded = np.mod(angle, period)
-    return np.where(folded < period, folded, 0.0 * folded)  # mod rounds -1e-20 up to the period itself
-
-
-def places_of(sizes: Mapping[str, int], designs: Array) -> dict[str, Array]:
-    """Return the indices of designs along each dim."""
-    if not sizes:
-        return {}
-    return dict(zip(sizes, np.unravel_index(designs, tuple(sizes.values())), strict=True))
-
-
-def different_designs(scene: Scene, names: tuple[str, ...]) -> Array:
-    """Return the numbers of designs, one for each set of designs that share the values of all these quantities."""
-    inputs = scene.at_one_angle.inputs
-    loops = plan(scene.table, names, inputs.forms).loops
-    designs = np.arange(math.prod(inputs.sizes.values())).reshape(tuple(inputs.sizes.values()))
-    return designs[tuple(slice(None if dim in loops else 1) for dim in inputs.sizes)].ravel()
-
-
-def by_row(rows: Array, values: Array, count: int) -> Array:
-    """Return a table (row, nth value of the row, …) of values that belong to rows, NaN where others have more."""
-    order = np.argsort(rows, kind="stable")
-    rows = rows[order]
-    nth = np.arange(len(rows)) - np.searchsorted(rows, rows)
-    table = np.full((count, nth.max(initial=-1) + 1, *values.shape[1:]), np.nan)
-    table[rows, nth] = values[order]
-    return table
-
-
-def _inputs_along(dim: str, request: Plan, inputs: Inputs, places: Places) -> dict[str, Field]:
-    """Return the inputs that a plan takes, those with dims as one number for each place along `dim`."""
-    return {
-        name: Field((dim,), field.values[tuple(places[own] for own in field.dims)]) if field.dims else field
-        for name, field in inputs.fields.items()
-        if name in request.inputs
-    }

@@ -8,10 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from linksweep.engine.quantity import Limit
-from linksweep.results.peak_search.between import EVERYWHERE, Array, by_row, in_period
+from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.curves import Curves, zeros_and_extremes
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.limits import graded_samples, on_arcs, on_turns
+from linksweep.scene.pairs import Array, by_row, in_period
 
 Zeros = tuple[Array, Array]
 """The design of each zero, by its row in a group, and its angle [degree]."""

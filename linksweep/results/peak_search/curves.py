@@ -12,7 +12,8 @@ import numpy as np
 from linksweep.engine.peaks import search
 from linksweep.engine.peaks.find_peaks import refine, search_functions
 from linksweep.engine.quantity import Limit
-from linksweep.results.peak_search.between import Array, quantities_at
+from linksweep.engine.roots import roots
+from linksweep.scene.pairs import Array, quantities_at
 from linksweep.scene.scene import Scene
 
 SEAM = 40
@@ -21,8 +22,6 @@ WIDE = 0.6
 """Half-width from which on a near-toggle is as smooth as the motion of the links [rad]."""
 CLEAR = 4.0
 """Difference of neighbouring samples, in units of their noise, from which on it counts."""
-ROOT_STEPS = 100
-"""Steps towards a zero, at most: more than bisection to the last digit of an angle takes."""
 
 
 class Curves(NamedTuple):
@@ -156,7 +155,7 @@ def _crossings(curves: Curves, values: Array, noise: Array, beyond: Extremes) ->
     curve, x, heights = _changes_of_sign(curves, values, noise)
     sides = [(beyond.curve, beyond.x[k : k + 2], beyond.values[k : k + 2]) for k in (0, 1)]
     curve, x, heights = (np.concatenate(all_of, axis=-1) for all_of in zip((curve, x, heights), *sides, strict=True))
-    return curve, _roots(curves, curve, x, heights)
+    return curve, roots(lambda root, place: curves.at(curve[root], place)[0], x, heights)
 
 
 def _changes_of_sign(curves: Curves, values: Array, noise: Array) -> tuple[Array, Array, Array]:
@@ -168,23 +167,3 @@ def _changes_of_sign(curves: Curves, values: Array, noise: Array) -> tuple[Array
     curve, j = np.nonzero(change)
     ends = np.stack([j, j + 1])
     return curve, curves.x[curves.arc(curve), ends], values[curve, ends]
-
-
-def _roots(curves: Curves, curve: Array, x: Array, values: Array) -> Array:
-    """Return where curves are 0 between two places (end, root), to rounding: by the Illinois method and bisection.
-
-    Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
-    """
-    (a, b), (f_a, f_b) = x.copy(), values.copy()
-    for step in range(ROOT_STEPS):
-        live = np.flatnonzero((np.abs(b - a) > 2.0**-51 * np.abs(b)) & (f_b != 0.0))
-        if not len(live):
-            break
-        middle = b[live] - f_b[live] * (b[live] - a[live]) / (f_b[live] - f_a[live])
-        inside = (middle - a[live]) * (middle - b[live]) < 0.0
-        middle = np.where(inside & (step % 4 != 3), middle, 0.5 * (a[live] + b[live]))
-        f, _ = curves.at(curve[live], middle)
-        beyond = (f < 0.0) == (f_b[live] < 0.0)
-        a[live], f_a[live] = np.where(beyond, a[live], b[live]), np.where(beyond, 0.5 * f_a[live], f_b[live])
-        b[live], f_b[live] = middle, f
-    return b

@@ -29,12 +29,13 @@ from linksweep.results.peak_search.along_paths import (
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
-from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY, Array
+from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.groups import assembled_groups, empty, groups
 from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.poles import may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 WINDOWS_AT_ONCE = 4096

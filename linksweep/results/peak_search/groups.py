@@ -13,16 +13,9 @@ import xarray as xr
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
-from linksweep.results.peak_search.between import (
-    EVERYWHERE,
-    PARTLY,
-    Array,
-    Places,
-    different_designs,
-    places_of,
-    quantities_at,
-)
+from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
+from linksweep.scene.pairs import Array, Places, different_designs, places_of, quantities_at
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from linksweep.engine.quantity import LAST_UNJAMMED
 from linksweep.engine.run import Field
-from linksweep.results.peak_search.between import Array, by_row
 from linksweep.results.peak_search.groups import Group, empty_over_all, groups
 from linksweep.results.peak_search.paths import ASIDE, in_order, jump_angles
+from linksweep.scene.pairs import Array, by_row
 from linksweep.scene.scene import Scene
 
 STEP = 2.0

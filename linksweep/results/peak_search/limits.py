@@ -24,16 +24,9 @@ from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
-from linksweep.results.peak_search.between import (
-    EVERYWHERE,
-    NEVER,
-    PARTLY,
-    Array,
-    by_row,
-    different_designs,
-    in_period,
-)
+from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
+from linksweep.scene.pairs import Array, by_row, different_designs, in_period
 from linksweep.scene.scene import Scene
 
 AT_ONCE = 512

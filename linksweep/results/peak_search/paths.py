@@ -20,10 +20,10 @@ from linksweep.results.peak_search.approaches import (
     approaches_of_turns,
     concatenated,
 )
-from linksweep.results.peak_search.between import Array, by_row, in_period
 from linksweep.results.peak_search.contacts import contact_angles
 from linksweep.results.peak_search.groups import Group, crossing
 from linksweep.results.peak_search.limits import graded_samples
+from linksweep.scene.pairs import Array, by_row, in_period
 
 PER_TURN = 720
 """Even samples of a turn: loads over the angle may vary as quickly as an engine's indicator diagram."""

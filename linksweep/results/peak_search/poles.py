@@ -19,11 +19,12 @@ import xarray as xr
 from linksweep.chains.finding import Finding
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
-from linksweep.results.peak_search.between import PARTLY, Array
+from linksweep.results.peak_search.between import PARTLY
 from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.scene.dimensions import side_by_side
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 CLOSEST = 1e-8

@@ -19,9 +19,10 @@ import xarray as xr
 
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.arcs import arc_ends, arcs, within
-from linksweep.results.peak_search.between import EVERYWHERE, PARTLY, Array
+from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.groups import Group, assembled_groups, empty_over_all
 from linksweep.results.peak_search.paths import Part, Paths, turns
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 Power = tuple[str, int]

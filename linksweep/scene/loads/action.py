@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from linksweep.base.equality import ByContent
@@ -10,6 +10,7 @@ from linksweep.base.fields import field_problems
 from linksweep.base.validate import Number
 from linksweep.chains.rows.load_forms import Form
 from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.revolution import Revolution
 
 Kind = TypeVar("Kind", bound="type[Action]")
@@ -67,6 +68,13 @@ class Action(ByContent):
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
         """Return the crank angles [degree] at which its force or torque jumps, kinks or is narrow; NaN for none."""
+        return ()
+
+    def jumps_along(self, stroke_of: Callable[[str], Stroke]) -> tuple[Number, ...]:
+        """Return the crank angles [degree] at which a load over the position of a link jumps, kinks or is narrow.
+
+        `stroke_of` returns the stroke of a position by its name.
+        """
         return ()
 
     def approaches(self, name: str) -> tuple[tuple[str, str], ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -25,6 +25,7 @@ from linksweep.scene.curves.over_position import POSITION, at_positions, corners
 from linksweep.scene.loads.action import register
 from linksweep.scene.loads.changing_load import BREAKS, ChangingLoad
 from linksweep.scene.revolution import Revolution
+from linksweep.scene.strokes import stroke_of
 
 FORCE = Rule("force", over_angle=True)
 TORQUE = Rule("torque", over_angle=True)
@@ -62,11 +63,13 @@ class Load(ChangingLoad):
         Position that force and torque follow in place of the crank angle: of a `SliderCrank` "slider.position"
         (`x_slider`, along the guide from the foot of A on it) or "slider.to_end" (distance to the outer dead centre,
         where crank and rod are stretched) [m]; of a `FourBar` "rocker.angle" (`theta4`) [degree]; of an
-        `InvertedSliderCrank` "block.position" (`slide`) [m].
+        `InvertedSliderCrank` "block.position" (`slide`) [m]. Of a `Linkage`, by the name of the part, "ram.position"
+        and "ram.to_end" (distance to the farthest position along the guide) of a slider on the ground, "block.position"
+        of one on a link, "rocker.angle" of a link on a ground pin, "c1.length" of a cylinder.
     while_ : str, default None
-        Direction of motion in which it acts: of a slider "closing" (towards its outer dead centre) or "opening"; of a
-        block "extending" (away from the rocker's pivot) or "retracting"; of a rocker "counter-clockwise" or
-        "clockwise". None for both.
+        Direction of motion in which it acts: of a slider "closing" (towards its outer dead centre, or along its guide)
+        or "opening"; of a block (away from the rocker's pivot, or along its line) and of a cylinder "extending" or
+        "retracting"; of a rocker "counter-clockwise" or "clockwise". None for both.
 
     Warns
     -----
@@ -83,7 +86,7 @@ class Load(ChangingLoad):
     Over a position, force and torque are numbers, DataArrays over the dim "position" alone [m] or [degree], or
     functions of it. A DataArray is interpolated "linear" (by default), "pchip" or "step"; beyond its ends its end
     values hold. Each design has its own crank angles for it: exact peaks look at both sides of those where an array
-    bends or jumps, and where the link reverses.
+    bends or jumps, and where the link reverses. Of a linkage these are found between samples each quarter of a degree.
 
     Examples
     --------
@@ -149,8 +152,9 @@ class Load(ChangingLoad):
         """Return why this mechanism cannot take the load, which is valid in itself."""
         if self.over is None:
             return []
-        if "branch" in mechanism.both_branches:
-            return [f'{path}.over = {quote(self.over)}: is a position of one branch; give branch="open" or "crossed"']
+        if both := [*mechanism.both_branches.values()]:
+            advice = f'give {both[0]}="open" or "crossed"'
+            return [f"{path}.over = {quote(self.over)}: is a position of one branch; {advice}"]
         if not mechanism.strokes:
             kind = type(mechanism).__name__
             return [f"{path}.over = {quote(self.over)}: a {kind} has no positions to follow; give the load over theta2"]
@@ -177,10 +181,14 @@ class Load(ChangingLoad):
         return [*forces, (f"{path}.torque", self.torque)]
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:
-        """Return the crank angles [degree] at which its force or torque jumps, kinks or is narrow."""
+        """Return the crank angles [degree] at which a force or torque over these jumps, kinks or is narrow."""
+        return super().jumps(mechanism) if self.over is None else ()
+
+    def jumps_along(self, stroke_of: Callable[[str], Stroke]) -> tuple[Number, ...]:
+        """Return the crank angles [degree] at which a force or torque over a position jumps, kinks or is narrow."""
         if self.over is None:
-            return super().jumps(mechanism)
-        stroke = self._stroke(mechanism)
+            return ()
+        stroke = stroke_of(self.over)
         places = {*self.breaks, *(place for number in self.changing for place in corners(number, self.interpolation))}
         reached = (angle for place in sorted(places) for angle in stroke.reached(place))
         return (*reached, *(stroke.turning if self.while_ else ()))
@@ -196,12 +204,9 @@ class Load(ChangingLoad):
         values = {"force": self.force and tuple(force), "torque": torque}
         return with_sound(self, **values) if self.over is None else with_sound(self, **values, **AT_ANGLES)
 
-    def _stroke(self, mechanism: Mechanism) -> Stroke:
-        return mechanism.strokes[str(self.over)]
-
     def _positions(self, revolution: Revolution) -> tuple[str, xr.DataArray, Number]:
         """Return the kind of the positions, the positions over the angles, and 1 where the load acts, 0 elsewhere."""
-        stroke = self._stroke(revolution.mechanism)
+        stroke = stroke_of(revolution.scene, str(self.over))
         quantity, slope = revolution.kinematics(stroke.quantity, stroke.slope)
         positions = stroke.start + stroke.sense * quantity
         if self.while_ is None:

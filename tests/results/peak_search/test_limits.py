@@ -10,8 +10,8 @@ import linksweep as ls
 from benchmarks.accuracy import missed
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics.algebra import planar
-from linksweep.results.peak_search.between import quantities_at
 from linksweep.results.peak_search.limits import find_limits
+from linksweep.scene.pairs import quantities_at
 
 RRR = (Limit("C", ("low", "high"), ("low_noise", "high_noise")),)
 CLOSURES = {
