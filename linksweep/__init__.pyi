@@ -32,6 +32,7 @@ from linksweep.results.sweep import sweep
 from linksweep.results.system import system
 from linksweep.scene.curves.interpolation import OvershootWarning
 from linksweep.scene.designs.distributions import Normal, Tolerance
+from linksweep.scene.designs.drawing import draw
 from linksweep.scene.designs.sampling import sample
 from linksweep.scene.examples import example
 from linksweep.scene.loads.air_cycle import DieselCycle, OttoCycle
@@ -39,6 +40,7 @@ from linksweep.scene.loads.kinds import Damper, GasPressure, Load, Spring, Torsi
 from linksweep.scene.scene import Scene
 from linksweep.studies.checked import open_study
 from linksweep.studies.scene_at import scene_at
+from linksweep.studies.screen import screen
 from linksweep.studies.study import study
 
 __version__: str
@@ -81,6 +83,7 @@ __all__ = [
     "compare",
     "counterweights",
     "coupler_curve",
+    "draw",
     "duty",
     "example",
     "flywheel",
@@ -103,6 +106,7 @@ __all__ = [
     "sample",
     "save",
     "scene_at",
+    "screen",
     "shaking_moment",
     "speed_limit",
     "speed_separation",

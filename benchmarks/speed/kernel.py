@@ -17,7 +17,6 @@ from linksweep.engine import run
 from linksweep.engine.linear.solve import unknowns
 from linksweep.engine.peaks import find_peaks
 from linksweep.results.system import sampled_systems
-from linksweep.scene.grid import crank_grid
 
 
 class Kernel(NamedTuple):
@@ -57,7 +56,7 @@ def kernel_of(call: Call) -> Kernel:
 def eliminations(scene: ls.Scene, angles: int) -> tuple[Call, Call]:
     """Return two solutions of a scene's square systems, by linksweep from their terms and by numpy from their matrices:
     no kinematics, no labels."""
-    grid = crank_grid(angles, scene.period, scene.mechanism.index)
+    grid = scene.grid(angles)
     systems, page = sampled_systems(scene.at(grid), grid, 1), ls.system(scene, grid.angles)
     matrix, rhs = (np.ascontiguousarray(page[part].values) for part in ("matrix", "rhs"))
     ours = partial(unknowns, systems.structure, systems.values, False, 1)

@@ -65,11 +65,11 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
     if isinstance(ds, Scene) and ending_of(path, SCENES) == ".toml":
         write_text(ds.to_toml(), path)
     elif isinstance(ds, Scene):
-        _save_dataset(_as_dataset(ds), path)
+        save_dataset(_as_dataset(ds), path)
     elif ending_of(path, RESULTS) == ".csv":
         to_csv(ds, path)
     else:
-        _save_dataset(ds, path)
+        save_dataset(ds, path)
 
 
 def dataset_problems(ds: Any) -> list[str]:
@@ -77,11 +77,12 @@ def dataset_problems(ds: Any) -> list[str]:
     return [] if isinstance(ds, xr.Dataset) else [f"ds is a {type(ds).__name__}: must be a Dataset, or a Scene"]
 
 
-def _save_dataset(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
+def save_dataset(ds: xr.Dataset, path: str | os.PathLike[str], manifest: dict[str, Any] | None = None) -> None:
+    """Write a Dataset to NetCDF whole or not at all, sealed with a manifest."""
     refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
         ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
-        seal(temporary, {}, SAVED)
+        seal(temporary, manifest or {}, SAVED)
 
 
 def write_text(text: str, path: str | os.PathLike[str]) -> None:
@@ -147,10 +148,10 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
         raise ValueError(f"{path}: there is no such file{there}")
     if kind := kind_of(path):
         raise ValueError(f"{path}: cannot be read: it is {kind}, no file")
-    return scene_of(_loaded(path), str(path))
+    return scene_of(loaded(path), str(path))
 
 
-def _loaded(path: Path) -> xr.Dataset:
+def loaded(path: Path) -> xr.Dataset:
     """Return the whole of a NetCDF file; one without linksweep's seal is read in a separate process."""
     if not (mark := mark_of(path)):
         from linksweep.files.isolated import read_isolated  # here: it also runs as a program, which imports this module

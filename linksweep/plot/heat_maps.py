@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.design.pareto import has_peaks, variable_problems
+from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.plot.kit import scales, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok
 from linksweep.plot.kit.style import axes_or_new, legend_above
 from linksweep.results.compute import require_dataset
+from linksweep.results.front import has_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

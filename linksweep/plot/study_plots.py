@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.design.pareto import front as front_of
 from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import count_problems, refuse
 from linksweep.plot.kit import scales
@@ -20,6 +19,7 @@ from linksweep.plot.kit.colors import BLACK, BLUE, VERMILION
 from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, whole
 from linksweep.plot.kit.style import axes_or_new, grid, legend_above
 from linksweep.results.compute import requested, require_dataset
+from linksweep.results.front import front as front_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,6 +18,8 @@ from linksweep.results.scene_peaks import peaks_of_scene
 from linksweep.scene.scene import Scene
 
 SOLVERS = ("fast", "superposed")
+WORDS = ("peak", "max", "min", "peak_at", "max_at", "min_at")
+"""Endings of the names of peaks, behind the name of the quantity."""
 
 
 @by_blocks(of_samples=False)
@@ -99,6 +101,11 @@ def peaks(
 def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
     """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
     return peaks_of_scene(scene, requested("of", of), threads, part=part)
+
+
+def quantity_of(name: str) -> str:
+    """Return the quantity of a peak's name, F32 of F32_peak; means have names of their own in `peaks`."""
+    return next((name.removesuffix(f"_{word}") for word in WORDS if name.endswith(f"_{word}")), name)
 
 
 def _solver_problems(solver: Any, angles: Any) -> list[str]:

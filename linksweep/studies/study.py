@@ -180,7 +180,7 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
             yield block, ds
 
     try:
-        with _progress(prod(job.sizes.values())) as bar:
+        with progress_bar(prod(job.sizes.values())) as bar:
             stored = [number for number in range(len(job.blocks)) if kept.holds(number)]
             missing = sorted({*range(len(job.blocks))} - {*stored})
             with contextlib.closing(compute(missing)) as computed:
@@ -205,7 +205,7 @@ def _advising(folder: Path) -> Iterator[None]:
         raise OSError(error.errno, advice, str(folder)) from error
 
 
-def _progress(designs: int) -> Any:
+def progress_bar(designs: int) -> Any:
     """Return a progress bar that shows in a notebook and on a terminal."""
     from tqdm.auto import tqdm  # here: only studies need it
 

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.analysis.design.pareto import BATCH, front
+from linksweep.results.front import BATCH, front
 
 PRESS = ls.example("press")
 

@@ -69,13 +69,13 @@ def even(n: int, samples: int, seed: int) -> np.ndarray:
 @pytest.mark.parametrize("n", [1, 2, 9, 12])
 def test_solutions_are_those_of_fractions(n, refined, way):
     systems = even(n, 11, n)
-    found = solve.unknowns(structure(n), sources(systems), refined)
+    unknowns = solve.unknowns(structure(n), sources(systems), refined)
     cond = solve.condition(structure(n), sources(systems))
     for k, system in enumerate(systems):
         x, exact_cond = exact(system)
         assert cond[k] == pytest.approx(exact_cond, rel=10 * n * EPS * exact_cond)
         allowed = EPS * (1.0 if refined else 4.0 * exact_cond)
-        assert np.abs(found[:, k] - x).max() <= allowed * np.abs(x).max()
+        assert np.abs(unknowns[:, k] - x).max() <= allowed * np.abs(x).max()
 
 
 def test_refinement_returns_the_digits_that_an_ill_conditioned_system_loses(way):
@@ -117,11 +117,11 @@ def test_no_lane_disturbs_another(way):
 
 
 def test_zeros_have_the_sign_that_they_have_alone(way):
-    """Where row 1 is subtracted for the second system's sake, the first one's −0 would become 0: so it always is 0."""
+    """A row that is subtracted for the second system alone would turn the first one's −0 into 0: so it always is 0."""
     zero, other = [[1.0, 0.5, -1.0], [0.0, 1.0, -0.0]], [[1.0, 0.5, -1.0], [0.5, 1.0, 0.7]]
     for systems in (np.array([zero]), np.array([zero, other])):
-        found = solve.unknowns(structure(2), sources(systems))
-        assert found[1, 0] == 0.0 and not np.signbit(found[1, 0])
+        unknowns = solve.unknowns(structure(2), sources(systems))
+        assert unknowns[1, 0] == 0.0 and not np.signbit(unknowns[1, 0])
 
 
 def test_singular_systems_are_nan_and_their_condition_infinite(way):

@@ -102,6 +102,7 @@ CALLS = {
     "compare": lambda s, path: ls.compare(s.machine, s.machine, of=[f"{s.force}_peak"], theta2=SAMPLES),
     "counterweights": lambda s, path: ls.counterweights(s.machine, radius=0.06),
     "coupler_curve": lambda s, path: ls.coupler_curve(s.machine, (0.10, 15.0), theta2=SAMPLES),
+    "draw": lambda s, path: ls.draw(s.machine, s.range, designs=[2, 3]),
     "duty": lambda s, path: ls.duty(s.machine),
     "flywheel": lambda s, path: s.flywheel,
     "geometry": lambda s, path: ls.geometry(s.machine),
@@ -121,6 +122,7 @@ CALLS = {
     "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
     "scene_at": lambda s, path: ls.scene_at(s.study, design=2),
+    "screen": lambda s, path: ls.screen(s.machine, s.range, n=3, minimize=f"{s.force}_peak", **s.samples),
     "shaking_moment": lambda s, path: ls.shaking_moment(s.shaking, about=(0.1, 0.0)),
     "speed_limit": lambda s, path: ls.speed_limit(s.machine, s.force, below=1e5),
     "speed_separation": lambda s, path: ls.speed_separation(s.machine, theta2=SAMPLES),
@@ -205,8 +207,8 @@ LACKING: dict[str, str] = {
     "yoke": "counterweights position_equation plot.heat_map plot.loop command.balance",
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load
-        objective open_study pin_friction position_equation quantities regressor sample scene_at speed_limit
-        speed_separation study sweep system with_counterweights plot.balance plot.bearing plot.bearings
+        draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
+        speed_limit speed_separation study sweep system with_counterweights plot.balance plot.bearing plot.bearings
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
         plot.torque_with_flywheel accessor.mechanism accessor.scene
     """,

@@ -13,14 +13,12 @@ import xarray as xr
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import require_scene
-from linksweep.results.peaks import peaks
+from linksweep.results.peaks import peaks, quantity_of
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
 
 CANDIDATES = "candidate"
 """Dimension of the designs of one call; always of the same name, so that one kernel serves all calls."""
-WORDS = ("peak", "max", "min", "peak_at", "max_at", "min_at")
-"""Endings of the names of peaks, behind the name of the quantity."""
 
 Measure = Callable[[xr.Dataset], Any]
 
@@ -212,15 +210,10 @@ def _measured(target: Any, sign: float, results: xr.Dataset) -> Any:
 
 def _names(scene: Scene, target: Any, constraint: Measure | None, of: list[str] | None) -> list[str] | None:
     """Return the quantities that `peaks` is to compute."""
-    named = [_quantity(target)] if isinstance(target, str) else []
+    named = [quantity_of(target)] if isinstance(target, str) else []
     if of is None and (constraint is not None or not named):
         of = list(scene.mechanism.peak_quantities(scene.drive))
     return list(dict.fromkeys([*named, *(of or [])]))
-
-
-def _quantity(name: str) -> str:
-    """Return the quantity of a peak's name, F32 of F32_peak; means have names of their own in `peaks`."""
-    return next((name.removesuffix(f"_{word}") for word in WORDS if name.endswith(f"_{word}")), name)
 
 
 def _ranges(scene: Scene, parameters: Any) -> dict[str, tuple[float, float]]:

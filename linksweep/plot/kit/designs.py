@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.design.pareto import has_peaks
 from linksweep.base.validate import refuse
 from linksweep.plot.kit.signals import label_text, symbol
+from linksweep.results.front import has_peaks
 
 
 class Column(NamedTuple):

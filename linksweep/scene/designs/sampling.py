@@ -68,15 +68,21 @@ def sample(
     >>> dict(ls.peaks(drawn, of=["F32"]).F32_peak.sizes)
     {'design': 1024}
     """
-    refuse([] if isinstance(scene, Scene) else [f"scene is a {type(scene).__name__}: must be a Scene"])
-    own = free(scene)
-    refuse(_problems(scene, parameters, n, method, seed, dim, own))
+    problems = parameter_problems(scene, parameters, dim)
+    problems += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
+    refuse([*problems, *choice_problems("method", method, METHODS), *([] if seed is None else seed_problems(seed))])
     require_memory(f"n = {quote(n)}", 2.0 * 8.0 * n * len(parameters))
-    points = _points(method, len(parameters), int(n), seed)
-    values, problems = {}, []
-    for levels, (path, choice) in zip(points, parameters.items(), strict=True):
+    return with_designs(scene, parameters, _points(method, len(parameters), int(n), seed), np.arange(int(n)), dim)
+
+
+def with_designs(
+    scene: Scene, parameters: Mapping[str, Any], levels: np.ndarray, labels: np.ndarray, dim: str
+) -> Scene:
+    """Return the scene of designs whose parameters are the quantiles at these levels, of shape (parameter, design)."""
+    own, values, problems = free(scene), {}, []
+    for row, (path, choice) in zip(levels, parameters.items(), strict=True):
         try:
-            values[path] = _drawn(choice, levels, dim, *own[path])
+            values[path] = _drawn(choice, row, dim, labels, *own[path])
         except ValueError as error:
             problems.append(f"{path}: {error}")
     refuse(problems)
@@ -86,27 +92,31 @@ def sample(
         raise ValueError("\n".join(_advised(line, parameters) for line in str(error).split("\n"))) from None
 
 
-def _drawn(choice: Any, levels: np.ndarray, dim: str, own: Any, kind: str) -> xr.DataArray:
+def _drawn(choice: Any, levels: np.ndarray, dim: str, labels: np.ndarray, own: Any, kind: str) -> xr.DataArray:
     around = around_own(choice)
     if around and (own is None or (callable(own) and not hasattr(own, "dims"))):
         raise ValueError(f"{quote(choice)} is around the scene's own value, {quote(own)}: give it a number")
-    drawn = xr.DataArray(quantiles(choice, levels, kind), {dim: np.arange(len(levels))}, dim)
+    drawn = xr.DataArray(quantiles(choice, levels, kind), {dim: labels}, dim)
     return own + drawn if around else drawn
 
 
-def _problems(scene: Scene, parameters: Any, n: Any, method: Any, seed: Any, dim: Any, own: Mapping) -> list[str]:
+def parameter_problems(scene: Any, parameters: Any, dim: Any) -> list[str]:
+    """Return the problems of drawing these parameters of a scene along a dim."""
+    if not isinstance(scene, Scene):
+        return [f"scene is a {type(scene).__name__}: must be a Scene"]
     if not isinstance(parameters, Mapping) or not parameters:
         return [f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}']
-    problems = [problem for path in parameters for problem in name_problems("parameters", path, own)]
-    problems += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
-    problems += choice_problems("method", method, METHODS)
-    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
-    if seed is not None and not (whole and seed >= 0):
-        problems.append(f"seed = {quote(seed)}: must be a whole number, 0 or more, or None")
+    problems = [problem for path in parameters for problem in name_problems("parameters", path, free(scene))]
     taken = {dim for array in scene.arrays.values() for dim in array.dims}
     if dim in taken | {scene.mechanism.index, *scene.mechanism.coordinates()}:
         problems.append(f'dim = {quote(dim)}: the scene has this dimension already; give another name, as dim="other"')
     return problems
+
+
+def seed_problems(seed: Any) -> list[str]:
+    """Return the problem of a seed that is no whole number."""
+    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
+    return [] if whole and seed >= 0 else [f"seed = {quote(seed)}: must be a whole number, 0 or more, or None"]
 
 
 def _points(method: str, dims: int, n: int, seed: int | None) -> np.ndarray:
