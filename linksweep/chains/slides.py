@@ -33,6 +33,7 @@ def place_RPP(motion: Motion, step: RPP) -> None:
         sliding_of("slider", slider),
         of_force("F14", f"hold_{slider}") | of_force("F42", f"push_{slider}_{step.pin}"),
     )
+    motion.measure(step, f"acute angle between guide and slot of the {slider}")
     motion.slides_on(step, slider, "slider", step.guide)
     place = f"position from {motion.topology.ground[0]} of the point where the slot of the {slider} crosses its guide"
     motion.quantities += [Quantity(f"{centre}{axis}", "m", f"{place}, along {axis}") for axis in "xy"]

@@ -13,6 +13,9 @@ from linksweep.base.text_table import aligned
 from linksweep.mechanisms import Mechanism
 from linksweep.scene.curves.interpolation import RINGING
 
+JAMS = ("jam_start", "jam_end", "jam_place")
+"""Findings on the arcs on which friction jams a slide of a linkage."""
+
 
 def peak_table(ds: xr.Dataset, machine: Mechanism) -> str:
     """Return the peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
@@ -103,13 +106,29 @@ def check_lines(ds: xr.Dataset) -> list[str]:
     """Return the findings of a check, a line for each."""
     lines: Iterable[tuple[str, str]]
     if "grashof" not in ds:
-        others = [name for name in ds.data_vars if name != "overshoot"]
-        lines = ((str(name).replace("_", " "), _summary(ds[name])) for name in others)
+        others = [name for name in ds.data_vars if name not in ("overshoot", *JAMS)]
+        lines = (*((str(name).replace("_", " "), _summary(ds[name])) for name in others), *_of_jams(ds))
     else:
         lines = (*(_of_a_batch(ds) if ds.arc_start.ndim > 1 else _of_one(ds)), *_of_acceleration(ds))
     lines = (*lines, *_of_splines(ds))
     width = max(26, *(len(f"{title}: ") for title, _ in lines))
     return [f"{title + ':':<{width}}{text}" for title, text in lines]
+
+
+def _of_jams(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield where friction jams a slide: the arcs of one design, or the number of designs."""
+    if not ds.keys() >= {*JAMS}:
+        return
+    start, end, place = (ds[name] for name in JAMS)
+    if start.ndim == 1:
+        words = _words(place)
+        arcs = (
+            f"{a:.4f}° to {b:.4f}° ({words[k]})" for a, b, k in zip(start.values, end.values, place.values, strict=True)
+        )
+        yield "friction jams from", " and ".join(arcs) or "nowhere"
+    else:
+        jammed = start.notnull().any("jam")
+        yield "friction jams", f"{int(jammed.sum())} of {jammed.size} designs"
 
 
 def _of_splines(ds: xr.Dataset) -> Iterator[tuple[str, str]]:

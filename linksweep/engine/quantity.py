@@ -109,8 +109,9 @@ class Table:
         made |= {opposite_of(q.name): Row(operator.neg, (opposite_of(q.name),), (q.name,)) for q in self.quantities}
         if self.limits is None:
             return made
-        of_ok = {where_ok(name): Row(_where_ok, (where_ok(name),), ("status", name)) for name in made}
-        free = {unless_jammed(name): Row(_unless_jammed, (unless_jammed(name),), ("status", name)) for name in made}
+        names = {**made, **self.quantity}  # a quantity may be an input, as omega2 is
+        of_ok = {where_ok(name): Row(_where_ok, (where_ok(name),), ("status", name)) for name in names}
+        free = {unless_jammed(name): Row(_unless_jammed, (unless_jammed(name),), ("status", name)) for name in names}
         return made | of_ok | free
 
     @cached_property

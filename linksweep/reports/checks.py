@@ -22,6 +22,7 @@ KNOWN = {
     *("grashof", "rocker_motion", "assembly", "arc_start", "arc_end", "toggle_angle", "dead_centre_angle", "overshoot"),
     *(f"transmission_angle_{end}{at}" for end in ("min", "max") for at in ("", "_at")),
     *("swing", "time_ratio", "reversal_angle", "jam_angle", "friction_to_jam"),
+    *("jam_start", "jam_end", "jam_place"),
     *("alpha2_difference", "alpha2_difference_at", "slide_at_dead_centre"),
 }
 """Findings that have a row of their own here, or in the table of the geometry."""
@@ -79,6 +80,8 @@ def _checks(results: Results) -> Iterator[Check]:
         yield from _transmission_of_pins(results)
     if "friction_to_jam" in findings:
         yield from _friction(results)
+    if "jam_start" in findings:
+        yield _jams(results)
     if "alpha2_difference" in findings:
         yield _acceleration(results)
     yield from _numerical(results.cycle)
@@ -136,6 +139,20 @@ def _friction(results: Results) -> Iterator[Check]:
     if np.isfinite(least):
         text = joined("wedges the slide from ", number(least), " on; here ", number(friction, text=f"{friction:g}"))
         yield Check("friction", text, not jams)
+
+
+def _jams(results: Results) -> Check:
+    """Check at which crank angles friction jams a slide of a linkage."""
+    findings, period = results.check, results.scene.period
+    starts, ends, places = (findings[name] for name in ("jam_start", "jam_end", "jam_place"))
+    words = _meanings(places)
+    arcs = [
+        joined("at ", safe(words[int(place)]), " from ", angle(start, 2), " to ", angle(end % period, 2))
+        for start, end, place in zip(starts.values, ends.values, places.values, strict=True)
+        if np.isfinite(start)
+    ]
+    sound = not arcs or (results.part is not None and results.sound)
+    return Check("friction", joined("jams ", _listed(arcs)) if arcs else joined("jams no slide"), sound)
 
 
 def _acceleration(results: Results) -> Check:

@@ -54,7 +54,7 @@ def check(scene: Scene) -> xr.Dataset:
     [degree] and `time_ratio` [1] of a rocker that swings; with drive="cylinder" `slide_at_dead_centre` [m], its least
     and greatest size where the block stands still; with other drives `jam_angle` (side) and `friction_to_jam`.
 
-    For a Linkage, by the exact search for peaks (jams and dead centres of its drive are in the `status` of a sweep):
+    For a Linkage, by the exact search for peaks:
 
     - `assembly`, `arc_start`, `arc_end` as above, of any number of arcs
     - `toggle_angle` (pin, toggle) [degree]: theta2 at which the links that find this pin lie in one line, or a rod
@@ -62,9 +62,12 @@ def check(scene: Scene) -> xr.Dataset:
     - `transmission_angle_min`, `transmission_angle_max` (pin) [degree]: extreme acute transmission angles on those
       arcs; `transmission_angle_min_at`, `transmission_angle_max_at` (pin) [degree]: their theta2, NaN where the angle
       does not change
+    - `jam_start`, `jam_end` (jam) [degree]: arcs on which friction of a guide or slot jams, and `jam_place` (jam), the
+      pin, or link past a pin, where it does, as in `status_at`; NaN and 0 where other designs have more
 
-    Of these machines but a Linkage, with another drive than the crank, `dead_centre_angle` (dead_centre) [degree],
-    where the driving link stands still and cannot drive, labelled by branch if it differs between branches.
+    Of these machines, with another drive than the crank, `dead_centre_angle` (dead_centre) [degree], where the driving
+    link or cylinder stands still and cannot drive, labelled by branch if it differs between branches of a machine with
+    closed forms.
 
     For a scene with both alpha2 and an omega2 that changes with theta2:
 

@@ -1,4 +1,5 @@
-"""Check by search where a machine closes that has no closed form of it, and how well it transmits, pin by pin."""
+"""Check by search where a machine closes that has no closed form of it, where its drive stands still and friction jams
+it, and how well it transmits, pin by pin."""
 
 from __future__ import annotations
 
@@ -10,9 +11,11 @@ import xarray as xr
 from linksweep.chains.finding import ASSEMBLY, Array
 from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
+from linksweep.results.compute import counts_without_angles
 from linksweep.results.dataset import flags
 from linksweep.results.peak_search.exact import exact_peaks
-from linksweep.results.peak_search.limits import assembly_of, limits_of
+from linksweep.results.peak_search.jams import jam_tables, may_jam
+from linksweep.results.peak_search.limits import Limits, assembly_of, limits_of
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.scene import Scene
 
@@ -21,29 +24,70 @@ STEADY = 1e-9
 
 
 def search_checks(scene: Scene) -> dict[str, xr.Variable]:
-    """Return assembly, arcs, toggles and extreme transmission angles by pin; nothing where closed forms exist."""
+    """Return assembly, arcs, toggles and extreme transmission angles by pin, dead centres of the drive, and jams;
+    nothing where closed forms exist."""
     if scene.table.limits is None:
         return {}
-    toggles = [k for k, limit in enumerate(scene.table.limits) if limit.zeros == "toggle"]
-    pins = [scene.table.limits[k].name for k in toggles]
+    pins = [name for name in scene.mechanism.places if f"transmission_angle_{name}" in scene.table.quantity]
+    variables = _of_motion(scene, pins)
+    if pins:
+        variables |= _transmission_angles(scene.unloaded, pins)
+    if may_jam(scene) and not counts_without_angles(scene):
+        variables |= _jams(scene)
+    return variables
+
+
+def _of_motion(scene: Scene, pins: list[str]) -> dict[str, xr.Variable]:
+    """Return assembly, arcs, toggles by pin, and dead centres of a drive other than the crank."""
     sizes, limits = limits_of(scene.unloaded)
     tables = {
         "arc_start": (limits.arc_start, ("arc",), "crank angle at which an assembled arc starts"),
         "arc_end": (limits.arc_end, ("arc",), f"crank angle at which it ends (may pass {scene.period_of_motion:g})"),
-        "toggle_angle": (_numbers(limits.zeros[:, toggles]), ("pin", "toggle"), "crank angle of a toggle at this pin"),
+        "toggle_angle": (
+            _numbers(_toggles(scene, limits, pins)),
+            ("pin", "toggle"),
+            "crank angle of a toggle at this pin",
+        ),
     }
+    if scene.drive != scene.mechanism.roles[0]:
+        dead_centres = _numbers(limits.zeros_of(scene.table.limits or (), "dead_centre"))
+        tables["dead_centre_angle"] = dead_centres, ("dead_centre",), f"crank angle at which {scene.drive} stands still"
     assembly = np.reshape(limits.assembly, tuple(sizes.values())).astype(np.int8)
     meanings = flags("crank angles at which it can be assembled", ASSEMBLY)
     variables = {"assembly": xr.Variable(tuple(sizes), assembly, meanings), "pin": xr.Variable("pin", pins)}
     for name, (table, dims, words) in tables.items():
         values = table.reshape(*sizes.values(), *table.shape[1:])
         variables[name] = xr.Variable((*sizes, *dims), values, {"units": "degree", "long_name": words})
-    return variables | (_transmission_angles(scene.unloaded, pins) if pins else {})
+    return variables
+
+
+def _toggles(scene: Scene, limits: Limits, pins: list[str]) -> Array:
+    """Return the toggles (design, pin, nth) of pins; NaN for those that close at every angle, and for none."""
+    toggles = np.full((len(limits.zeros), len(pins), limits.zeros.shape[2]), np.nan)
+    for k, limit in enumerate(scene.table.limits or ()):
+        if limit.zeros == "toggle":
+            toggles[:, pins.index(limit.name)] = limits.zeros[:, k]
+    return toggles
 
 
 def _numbers(table: Array) -> Array:
     """Return a table without those columns that hold no number."""
-    return table[..., ~np.isnan(table).all(axis=(0, 1))]
+    return table[..., ~np.isnan(table).all(axis=tuple(range(table.ndim - 1)))]
+
+
+def _jams(scene: Scene) -> dict[str, xr.Variable]:
+    """Return the arcs of crank angles at which friction jams a slide, and its place."""
+    dims, start, end, place = jam_tables(scene)
+    places = flags("pin, or link past a pin, whose slide friction jams on this arc", ("none", *scene.mechanism.places))
+    degrees = {"units": "degree"}
+    words = {"start": "crank angle at which friction begins to jam a slide", "end": "crank angle at which that ends"}
+    return {
+        "jam_start": xr.Variable((*dims, "jam"), start, degrees | {"long_name": words["start"]}),
+        "jam_end": xr.Variable(
+            (*dims, "jam"), end, degrees | {"long_name": f"{words['end']} (may pass {scene.period:g})"}
+        ),
+        "jam_place": xr.Variable((*dims, "jam"), np.nan_to_num(place).astype(np.int8), places),
+    }
 
 
 def _transmission_angles(scene: Scene, pins: Iterable[str]) -> dict[str, xr.Variable]:

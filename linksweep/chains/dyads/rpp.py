@@ -12,7 +12,7 @@ from linksweep.chains.dyads.rrr import Rows
 from linksweep.engine.quantity import Limit, Row
 from linksweep.physics import coulomb
 from linksweep.physics.algebra import planar
-from linksweep.physics.closures import dyad_rpp, moving_guide, pins, slider_crank
+from linksweep.physics.closures import dyad_prp, dyad_rpp, moving_guide, pins, slider_crank
 
 SLIDE = (Limit("C", ("ratio_slider",), ("noise",), "jump"),)
 SLOT = (Limit("C", ("ratio_in_slot",), ("noise",), "jump"),)
@@ -34,6 +34,7 @@ def between_pin_and_guide() -> Rows:
         Row(moving_guide.along_and_across, ("B_along", "B_across"), ("OBx", "OBy", *GUIDE)),
         Row(dyad_rpp.rpp_positions, ("x_slider", "in_slot"), ("B_along", "B_across", "offset", *SLOT_AXIS)),
         Row(dyad_rpp.rpp_status, ("closure",)),
+        Row(dyad_prp.crossing_angle, ("transmission_angle",), SLOT_AXIS),
         Row(moving_guide.relative_velocity, relative, ("uBx", "uBy", "uOx", "uOy", "guide_ratio", "OBx", "OBy")),
         Row(moving_guide.along_and_across, ("u_B_along", "u_B_across"), (*relative, *GUIDE)),
         Row(dyad_rpp.rpp_positions, ("ratio_slider", "ratio_in_slot"), ("u_B_along", "u_B_across", 0.0, *SLOT_AXIS)),

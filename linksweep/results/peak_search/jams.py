@@ -68,7 +68,7 @@ def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
         found.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
     row, *numbers = map(np.concatenate, zip(*found, strict=True))
     tables = (by_row(row, number.astype(float), values.size) for number in numbers)
-    start, end, place = (table.reshape(*values.shape, -1) if row.size else table for table in tables)
+    start, end, place = (table.reshape(*values.shape, table.shape[1]) for table in tables)
     return dims, start, end, place
 
 
