@@ -19,6 +19,7 @@ import numpy as np
 
 from linksweep.base.memory import require_memory
 from linksweep.base.product_low import product_low
+from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
@@ -167,9 +168,10 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
     block, single = _execute(ready, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
-    stored |= {node: Field((), np.asarray(node.value)) for node in plan.nodes if node.operator == "constant"}
+    stored |= {node: Field((), np.asarray(node.value)) for node in plan.constants}
     if plan.late:
-        values = interpret(plan.late, {node: _align(plan, node.dims, field) for node, field in stored.items()})
+        operands = {x for node in plan.late for x in node.operands if x in stored}
+        values = interpret(plan.late, {x: _align(plan, x.dims, stored[x]) for x in operands})
         stored |= {node: _field(plan, node, values[node], grid, sizes) for node in plan.late}
     return {name: stored[node] for name, node in plan.outputs.items()}
 
@@ -247,7 +249,7 @@ def _execute(
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
     numbers = block_rows * samples + single_size
     require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
-    block, single = np.empty((block_rows, samples)), np.empty(single_size)
+    block, single = new_block(block_rows, samples), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
         scratch, working = np.empty(fused.scratch_size), np.empty(reduce.WORK)
@@ -266,7 +268,8 @@ def _execute(
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:
     """Run work(first, last) over 0 … length by at most `workers` threads, as cores and `threads` allow."""
-    workers = min(threads or os.cpu_count() or 1, workers, length)
+    workers = min(workers, length)
+    workers = min(workers, threads or os.cpu_count() or 1) if workers > 1 else workers
     if workers <= 1:
         work(0, length)
         return
@@ -308,6 +311,8 @@ def _profiles(plan: Plan, nodes: tuple[Node, ...], inputs: Fields, grid: Grid):
 
 
 def _rows_of(slot: Slot, block: np.ndarray, grid: Grid) -> Field:
+    if not slot.dims:
+        return Field((grid.dim,), block[slot.start])
     rows = block[slot.start : slot.start + slot.size]
     return Field((*slot.dims, grid.dim), rows.reshape(*slot.shape, len(grid.angles)))
 

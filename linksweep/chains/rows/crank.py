@@ -60,7 +60,8 @@ def between_rows(middle_cos: str | float, middle_sin: str | float) -> tuple[Row,
 
 def in_range(length: Number) -> bool:
     """Return whether the square of a length is far from the least and the largest number in every design."""
-    return bool(np.all((length > 1e-140) & (length < 1e140)))
+    inside = (length > 1e-140) & (length < 1e140)
+    return inside is True or bool(np.all(inside))
 
 
 def turned(frame_angle: Number) -> bool:

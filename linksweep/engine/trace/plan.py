@@ -43,6 +43,10 @@ class Plan:
         return tuple(node.value for node in self.nodes if node.operator == "input")
 
     @cached_property
+    def constants(self) -> tuple[Node, ...]:
+        return tuple(node for node in self.nodes if node.operator == "constant")
+
+    @cached_property
     def loops(self) -> tuple[str, ...]:
         """Return the design dims, outermost first: dims that most operations depend on are outside, to share those
         operations."""

@@ -1,0 +1,48 @@
+"""Memory for large results, used again once nobody holds them: fresh pages cost more time than the numbers in them."""
+
+from __future__ import annotations
+
+import weakref
+
+import numpy as np
+
+LEAST, MOST = 2**22, 2**28
+"""Bytes from which memory is kept for the next result, and bytes that are kept in all."""
+
+_free: dict[int, np.ndarray] = {}
+"""Memory that nobody holds, by identity, the oldest first."""
+
+
+def block(rows: int, columns: int) -> np.ndarray:
+    """Return an array of any numbers. While it, or a view of it, lives, its memory is nobody else's."""
+    size = 8 * rows * columns
+    if not LEAST <= size <= MOST:
+        return np.empty((rows, columns))
+    memory = _taken(size)
+    # numpy lets a view of a view hold the owner of the memory; of a buffer's array it holds that array itself
+    leased = np.frombuffer(memory.data, dtype=np.float64, count=rows * columns)
+    weakref.finalize(leased, _give_back, memory).atexit = False
+    return leased.reshape(rows, columns)
+
+
+def _taken(size: int) -> np.ndarray:
+    """Return free memory of this size, or not much larger; new memory where there is none."""
+    for key, memory in [*_free.items()]:
+        if size <= memory.nbytes <= 1.25 * size and _free.pop(key, None) is not None:  # else another thread took it
+            return memory
+    return np.empty(size, dtype=np.uint8)
+
+
+def _give_back(memory: np.ndarray) -> None:
+    """Keep memory that nobody holds any more, and let go of the oldest beyond `MOST` bytes.
+
+    Called wherever an array happens to die, in any thread: so there is no lock, only single operations on a dict.
+    """
+    _free[id(memory)] = memory
+    kept = [*_free.items()]
+    excess = sum(each.nbytes for _, each in kept) - MOST
+    for key, each in kept:
+        if excess <= 0:
+            return
+        if _free.pop(key, None) is not None:
+            excess -= each.nbytes
