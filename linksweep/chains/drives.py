@@ -78,18 +78,6 @@ def hosts(topology: Topology, step: Step) -> list[str]:
     return [topology.crank]
 
 
-def guides_of(step: Step) -> tuple[str, ...]:
-    """Return the names of the guides of a dyad's slides."""
-    match step:
-        case RRP(guide=guide) | RPR(guide=guide):
-            return (guide,)
-        case PRP(first_guide=first_guide, second_guide=second_guide):
-            return (first_guide, second_guide)
-        case RPP(slider=slider, guide=guide):
-            return (guide, f"{slider}_slot")
-    return ()
-
-
 def friction_problems(topology: Topology, drive: Drive, rubbing: Collection[str]) -> list[str]:
     """Return the problem of each slide whose friction depends on the drive, and the drive on it."""
     bearing = [] if drive.is_crank else [*steps_that_bear(topology, drive.roles)]
@@ -97,6 +85,6 @@ def friction_problems(topology: Topology, drive: Drive, rubbing: Collection[str]
         f'drive = "{drive.name}": the drive loads the slide on {guide}, whose friction then decides it in turn; '
         f'drive by "{topology.crank}", or take the friction of {guide} away'
         for step in bearing
-        for guide in guides_of(step)
+        for guide in step.slides
         if guide in rubbing
     ]

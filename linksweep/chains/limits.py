@@ -14,6 +14,13 @@ from linksweep.engine.quantity import Limit
 
 TOGGLES = {RRR: rrr.TOGGLE, RRP: rrp.TOGGLE, RPR: rpr.TOGGLE, PRP: prp.TOGGLE}
 """Limit of each dyad that does not close everywhere, in its own names."""
+SLIDES: dict[type[Step], tuple[tuple[Limit, ...], ...]] = {
+    RRP: (rrp.SLIDE,),
+    RPR: (rpr.SLIDE,),
+    PRP: (prp.SLIDE, prp.SECOND_SLIDE),
+    RPP: (rpp.SLIDE, rpp.SLOT),
+}
+"""Limits of friction in each slide of a dyad, in its own names."""
 GRIPS = {RRP: rrp.grip(), RPR: rpr.grip(), PRP: [*prp.grip(), *prp.edges()], RPP: rpp.edges()}
 """Rows of each dyad with a slide that may rub, in its own names."""
 CONTACTS = {PRP: prp.BOTH, RPP: rpp.BOTH}
@@ -37,23 +44,13 @@ def limits(motion: Motion, rubbing: Collection[str]) -> Limits:
         names = motion.names[step.name]
         if type(step) in TOGGLES:
             toggles.append(_placed(TOGGLES[type(step)], step.name, names))
-        limited = [limit for slide, of_slide in _slides(step) if slide in rubbing for limit in of_slide]
+        of_each = zip(step.slides, SLIDES.get(type(step), ()), strict=True)
+        limited = [limit for slide, of_slide in of_each if slide in rubbing for limit in of_slide]
         if limited:
             rows += names.placed(GRIPS[type(step)])
             of_slides += [_placed(limit, step.name, names) for limit in dict.fromkeys(limited)]
             of_contacts += [_placed(CONTACTS[type(step)], step.name, names)] if type(step) in CONTACTS else []
     return Limits(rows, (*toggles, *of_slides), tuple(of_contacts))
-
-
-def _slides(step: Step) -> list[tuple[str, tuple[Limit, ...]]]:
-    """Return the slides of a dyad, by their guides, and the limits of friction in each."""
-    if isinstance(step, RRP | RPR):
-        return [(step.guide, rrp.SLIDE if isinstance(step, RRP) else rpr.SLIDE)]
-    if isinstance(step, RPP):
-        return [(step.guide, rpp.SLIDE), (f"{step.slider}_slot", rpp.SLOT)]
-    if isinstance(step, PRP):
-        return [(step.first_guide, prp.SLIDE), (step.second_guide, prp.SECOND_SLIDE)]
-    return []
 
 
 def _placed(limit: Limit, name: str, names: Names) -> Limit:

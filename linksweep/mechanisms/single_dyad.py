@@ -106,7 +106,7 @@ class SingleDyad(Machine):
         first, *_, last = lengths = [length for name, length in self.by_role.items() if name != "offset"]
         size = sum(map(abs, self.by_role.values()))
         wide = (np.all((reach - other) * (reach + other) > 1e-9 * size * size) for reach, other in self._narrowest)
-        return all(map(in_range, (*lengths, size / first * (size / last)))) and all(wide)
+        return all(map(in_range, lengths)) and in_range(size / first * (size / last)) and all(wide)
 
     def always_ok(self, drive: str) -> bool:
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""

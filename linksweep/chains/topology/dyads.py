@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import ClassVar
 
 
 @dataclass(frozen=True)
@@ -24,24 +25,43 @@ class Side:
 
 
 @dataclass(frozen=True)
-class RRR:
+class Step:
+    """A dyad, or a gear: links that find their places together."""
+
+    places: ClassVar[str] = "pin"
+    """What it gives a place, which names it."""
+
+    @property
+    def name(self) -> str:
+        return _role(getattr(self, self.places))
+
+    @property
+    def roles(self) -> tuple[str, ...]:
+        """The links that find their places."""
+        links = (vars(self).get(word) for word in ("first", "second", "link", "slider", "block"))
+        return tuple(_role(link) for link in links if link)
+
+    @property
+    def slides(self) -> tuple[str, ...]:
+        """Names of the slides: guides, and slots such as yoke_slot."""
+        return tuple(guide for word, guide in vars(self).items() if word.endswith("guide"))
+
+
+def _role(link: Side | str) -> str:
+    return link.role if isinstance(link, Side) else link
+
+
+@dataclass(frozen=True)
+class RRR(Step):
     """Two links that meet at a pin; the first is that named first. One of them may be a cylinder of given length."""
 
     first: Side
     second: Side
     pin: str
 
-    @property
-    def name(self) -> str:
-        return self.pin
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return self.first.role, self.second.role
-
 
 @dataclass(frozen=True)
-class RRP:
+class RRP(Step):
     """A link with a slider at its other pin; the guide is on the ground or on a link that has its place."""
 
     link: Side
@@ -49,35 +69,20 @@ class RRP:
     pin: str
     guide: str
 
-    @property
-    def name(self) -> str:
-        return self.pin
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return self.link.role, self.slider
-
 
 @dataclass(frozen=True)
-class RPR:
+class RPR(Step):
     """A link whose guide passes a pin that has its place; `block` is the link that slides there, "" without mass."""
 
+    places: ClassVar[str] = "link"
     link: Side
     block: str
     pin: str
     guide: str
 
-    @property
-    def name(self) -> str:
-        return self.link.role
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return (self.link.role, self.block) if self.block else (self.link.role,)
-
 
 @dataclass(frozen=True)
-class PRP:
+class PRP(Step):
     """Two sliders that share a pin, on two guides that have their places."""
 
     first: str
@@ -86,46 +91,25 @@ class PRP:
     first_guide: str
     second_guide: str
 
-    @property
-    def name(self) -> str:
-        return self.pin
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return self.first, self.second
-
 
 @dataclass(frozen=True)
-class RPP:
+class RPP(Step):
     """A slider on a guide that has its place, with a slot for a pin that has its own."""
 
+    places: ClassVar[str] = "slider"
     slider: str
     guide: str
     pin: str
 
     @property
-    def name(self) -> str:
-        return self.slider
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return (self.slider,)
+    def slides(self) -> tuple[str, ...]:
+        return (self.guide, f"{self.slider}_slot")
 
 
 @dataclass(frozen=True)
-class Gear:
+class Gear(Step):
     """A second crank on a ground pin, turned by gears."""
 
+    places: ClassVar[str] = "link"
     link: Side
     ratio: Fraction
-
-    @property
-    def name(self) -> str:
-        return self.link.role
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        return (self.link.role,)
-
-
-Step = RRR | RRP | RPR | PRP | RPP | Gear
