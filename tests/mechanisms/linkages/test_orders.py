@@ -1,0 +1,111 @@
+"""The order of links in the text, and of pins in a link, decides names and axes alone: forces on each link stay."""
+
+import itertools
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from long import long_but
+from random_linkages import swept
+
+import linksweep as ls
+from linksweep.chains.topology import RRR
+
+ORDERS = list(itertools.permutations(("coupler", "rocker", "rod", "output")))
+PINS = ["coupler C-B", "rod F-E", "output F-G", *(f"rocker {'-'.join(pins)}" for pins in itertools.permutations("DCE"))]
+THETA2 = np.array([10.0, 77.0, 160.0, 233.0, 310.0])
+OTHER = {"open": "crossed", "crossed": "open"}
+LOADED = ls.Load("output", torque=-12.0)
+
+
+def watt() -> ls.Scene:
+    """Return a Watt II six-bar, its centres of gravity beside the lines of pins."""
+    lengths = {"crank": 0.08, "coupler": 0.22, "rocker": 0.18, "rod": 0.2, "output": 0.15}
+    parts = {role: ls.Link(x, 9.0 * x, x**3, 0.4 * x, 300.0 * x) for role, x in lengths.items()}
+    text = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F"
+    ground = {"A": (0.0, 0.0), "D": (0.20, 0.0), "G": (0.42, 0.05)}
+    machine = ls.Linkage(text, ground=ground, points={"E": (0.12, -35.0)}, branch={"F": "crossed"}, **parts)
+    return ls.Scene(machine, 30.0, 11.0, (0.3, -9.81), [LOADED])
+
+
+def knuckle() -> ls.Scene:
+    scene = ls.example("knuckle-press")
+    return replace(scene, loads=[ls.Load("ram", force=(0.0, 3e5))])
+
+
+def reordered(scene: ls.Scene, order: tuple[str, ...]) -> ls.Scene:
+    """Return a scene with the links of its text in another order; a pin of two links that change places turns sides."""
+    machine = scene.mechanism
+    written = {text.split()[0]: text for text in machine.links.split(", ")}
+    links = ", ".join(written[role] for role in (machine.roles[0], *order))
+    unsided = replace(machine, links=links, branch={})
+    before = {step.pin: step.first.role for step in machine.topology.steps if isinstance(step, RRR)}
+    branch = {step.name: machine.branch.get(step.name, "open") for step in unsided.topology.steps}
+    for step in unsided.topology.steps:
+        if isinstance(step, RRR) and step.first.role != before[step.pin]:
+            branch[step.pin] = OTHER[branch[step.pin]]
+    return replace(scene, mechanism=replace(unsided, branch=branch))
+
+
+def turned(scene: ls.Scene, role: str, pins: str) -> ls.Scene:
+    """Return a scene with the pins of a link in another order: its axes begin at another pin, and lie otherwise."""
+    machine = scene.mechanism
+    part, old = machine.parts[role], machine.topology.links[role]
+    places = {old[0]: 0.0, old[1]: part.length} | {pin: polar(*machine.points[pin]) for pin in old[2:]}
+    first, second, *others = pins.split("-")
+    start, line = places[first], places[second] - places[first]
+
+    def own(place: complex) -> tuple[float, float]:
+        seen = (place - start) / line * abs(line)
+        return float(abs(seen)), float(np.degrees(np.angle(seen)))
+
+    distance, angle = own(polar(part.cg_distance, part.cg_angle))
+    link = ls.Link(float(abs(line)), part.mass, part.inertia, distance, angle)
+    points = {pin: place for pin, place in machine.points.items() if pin not in old[2:]}
+    points |= {pin: own(places[pin]) for pin in others}
+    links = machine.links.replace(f"{role} {'-'.join(old)}", f"{role} {pins}")
+    return replace(scene, mechanism=replace(machine, links=links, points=points, **{role: link}))
+
+
+def polar(distance: float, angle: float) -> complex:
+    return distance * np.exp(1j * np.radians(angle))
+
+
+def forces_on_links(scene: ls.Scene) -> dict[tuple[str, str], np.ndarray]:
+    """Return the whole force (components along x and y) at each pin or slide on each of its links; and the torque."""
+    joined, cycle = scene.mechanism.topology, swept(scene, THETA2)
+    assert not cycle.status.any()
+    role_of = {joined.number(role): role for role in joined.roles}
+    whole: dict[tuple[str, str], np.ndarray] = {("", "torque"): np.array([cycle.T12.values])}
+    for joint, (i, j) in {**joined.pins, **joined.slides}.items():
+        force = np.array([cycle[f"F{i}{j}x"], cycle[f"F{i}{j}y"]])
+        for number, sign in ((i, -1.0), (j, 1.0)):
+            key = role_of.get(number, "ground"), joint.partition(":")[0]
+            whole[key] = whole.get(key, 0.0) + sign * force
+    return whole
+
+
+def assert_equal_forces(scene: ls.Scene, expected: ls.Scene) -> None:
+    result, reference = forces_on_links(scene), forces_on_links(expected)
+    largest = max(float(abs(force).max()) for key, force in reference.items() if key[0])
+    assert result.keys() == reference.keys()
+    for key, force in reference.items():
+        np.testing.assert_allclose(result[key], force, rtol=1e-11, atol=1e-13 * largest, err_msg=str(key))
+
+
+@pytest.mark.parametrize("order", long_but(ORDERS, ORDERS[9], ORDERS[-1]))
+def test_order_of_the_links_of_a_six_bar(order):
+    assert_equal_forces(reordered(watt(), order), watt())
+
+
+@pytest.mark.parametrize("seed", long_but(range(4), 1))
+def test_order_of_links_that_share_a_pin(seed):
+    """Whichever link carries pin C, the whole force on each of the three stays."""
+    order = random.Random(seed).sample(("rod", "upper", "lower", "ram"), 4)
+    assert_equal_forces(reordered(knuckle(), tuple(order)), knuckle())
+
+
+@pytest.mark.parametrize("link", long_but(PINS, "rocker E-C-D", "rod F-E"))
+def test_order_of_the_pins_of_a_link(link):
+    assert_equal_forces(turned(watt(), *link.split()), watt())
