@@ -80,10 +80,11 @@ def search(
     """Write the peaks of designs `first` … `last` to `out`: rows of `best` for each signal."""
     columns = state.shape[1]
     signals = columns // lanes
+    none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
     for k in range(columns):
         state[SIGNAL, k] = k // lanes
     for start in range(first, last, DESIGNS):
-        end, count = min(start + DESIGNS, last), 0
+        end, count = min(start + DESIGNS, last), none
         for front in range(start, end, lanes):
             own = constants[(front - start) // lanes]
             gather(front, last, lanes, sizes, parameters, parameter_at, strides, inputs)
@@ -95,12 +96,16 @@ def search(
             compare_sample(rows, SAMPLES, state, columns)
             pick_samples(rows, x, lanes, state)
             predict_vertices(state, columns)
-            evaluate_steps(own, lanes, evaluate, state, F_LEFT, place_left)
-            evaluate_steps(own, lanes, evaluate, state, F_RIGHT, place_right)
+            place_left(state, columns)
+            evaluate_places(own, lanes, evaluate, state, state[F_LEFT])
+            place_right(state, columns)
+            evaluate_places(own, lanes, evaluate, state, state[F_RIGHT])
             step_to_vertices(state, columns)
-            evaluate_steps(own, lanes, evaluate, state, F_MIDDLE, place_middle)
+            place_middle(state, columns)
+            evaluate_places(own, lanes, evaluate, state, state[F_MIDDLE])
             correct_vertices(state, columns)
-            evaluate_steps(own, lanes, evaluate, state, F_LAST, place_last)
+            place_last(state, columns)
+            evaluate_places(own, lanes, evaluate, state, state[F_LAST])
             settle_peaks(state, columns)
             for row in range(BEST_ROWS):
                 for k in range(columns):
@@ -111,7 +116,8 @@ def search(
                     best[EVALUATIONS, tag] = SAMPLES + 4
                     if not smooth or state[FINAL, k] == 0.0:
                         if count + 2 * HALF > brackets.shape[1]:
-                            count = refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
+                            refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
+                            count = none
                         count = open_brackets(rows, x, lanes, k, columns, state, tag, brackets, count, best)
         refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
         for row in range(best.shape[0]):
@@ -225,12 +231,10 @@ def predict_vertices(f0, f1, f2, f3, f4):
     return vertex, d2 + vertex * (d3 + 0.5 * vertex * d4), d3, vertex - spread, vertex + spread
 
 
-def evaluate_steps(constants, lanes, evaluate, state, values, place):
-    """Evaluate each signal in its lanes where `place` puts a trial."""
-    columns = state.shape[1]
-    place(state, columns)
-    for at in range(0, columns, lanes):
-        evaluate(constants, state[PLACE], state[HALF_TURN], state[SIGNAL], state[values], at)
+def evaluate_places(constants, lanes, evaluate, state, values):
+    """Evaluate each signal in its lanes at the places of their trials."""
+    for at in range(0, state.shape[1], lanes):
+        evaluate(constants, state[PLACE], state[HALF_TURN], state[SIGNAL], values, at)
 
 
 def place_at(x1, x2, x3, step):
@@ -327,7 +331,7 @@ def lower(value):
 
 
 def refine(brackets, trials, count, lanes, constants, gathered, evaluate, best):
-    """Refine all brackets, several side by side, until none is left; return their number, 0."""
+    """Refine all brackets, several side by side, until none is left."""
     for _ in range(ROUNDS):
         if count == 0:
             break
@@ -348,4 +352,3 @@ def refine(brackets, trials, count, lanes, constants, gathered, evaluate, best):
                 at = trial * room + front
                 evaluate(gathered, trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], trials[VALUE], at)
         count = advance(brackets, trials, count, best)
-    return 0
