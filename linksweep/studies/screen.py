@@ -131,7 +131,7 @@ def screen(
     task = screening_of(scene, parameters, minimize, maximize, subject_to, keep, bins, seed, options)
     refuse([*counts_problems(n=n, chunk=chunk, threads=threads)])
     client = client_of(client)
-    task, manifest = ready(task, int(n), further)
+    task, manifest = ready(task, int(n), further, threads)
     target, progress = None, None
     if path is not None:
         ending_of(path, (".nc",))

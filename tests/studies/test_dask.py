@@ -20,6 +20,7 @@ from linksweep.scene.parameters import replaced
 from linksweep.studies import cluster as cluster_module
 from linksweep.studies.job import Job
 from linksweep.studies.partial import Partial
+from linksweep.studies.screening import Screening
 
 
 def lazy(scene: ls.Scene, chunk: int = 2) -> ls.Scene:
@@ -355,6 +356,16 @@ def test_workers_of_another_version_are_refused(client, tmp_path, monkeypatch):
         message
         == f"a worker has linksweep {ls.peaks(PRESS).linksweep_version}, and this is 9.9: install the same on all"
     )
+
+
+def test_a_screening_on_the_cluster_equals_that_of_one_process(client, monkeypatch):
+    request = {"n": 500, "minimize": ["F32_peak", "T12_peak"], "keep": 3, "chunk": 64, "theta2": 12}
+    lengths = {"coupler.length": (0.2, 0.24), "rocker.length": ls.Normal(0.18, 1e-3)}
+    with monkeypatch.context() as patch:
+        without_a_cluster(patch)
+        alone = ls.screen(PRESS, lengths, **request)
+    monkeypatch.setattr(Screening, "tally", None)  # in this process
+    assert ls.screen(PRESS, lengths, client=client, **request).identical(alone)
 
 
 def test_lazy_results_are_computed_on_the_cluster(client):
