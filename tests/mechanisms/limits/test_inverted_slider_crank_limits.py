@@ -116,6 +116,15 @@ def test_scene_file_and_dataset_give_the_scene_back(tmp_path):
     assert ls.load_scene(tmp_path / "cycle.nc") == scene
 
 
+@pytest.mark.parametrize("turn", [0.0, 30.0, -90.0])
+def test_a_single_toggle_where_the_block_passes_the_rockers_pin_leaves_a_whole_turn(turn):
+    """Crank and ground are as long as each other, the rocker's line goes through D: the arc is all but that angle."""
+    limits = ls.check(machine(1.0, 1.0, ground_angle=turn))
+    assert limits.assembly.item() == 1
+    assert limits.arc_start.item() == turn % 360.0 and limits.arc_end.item() == turn % 360.0 + 360.0
+    np.testing.assert_array_equal(limits.toggle_angle, 2 * [turn % 360.0])
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
