@@ -26,13 +26,13 @@ from benchmarks.accuracy.missed import ALLOWED, shortfall
 from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import completed
 from benchmarks.stress.linkages.sketch import Sketch
-from benchmarks.stress.linkages.topologies import TODAY, Family, Topology, shaper_with_two_slides
+from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES, Family, Topology, shaper_with_two_slides
 
 Array = np.ndarray
 Random = np.random.Generator
 Point = tuple[Array, Array]
 
-SHAPER = TODAY["shaper with two slides"].topology.text
+SHAPER = AWAY_FROM_TOGGLES["shaper with two slides"].topology.text
 SAMPLES, STATUS_SAMPLES = 5760, 36_000
 AT_ONCE = 250
 CANNOT_ASSEMBLE, TOGGLE = 1, 2
@@ -146,14 +146,14 @@ def yoke_on_a_shaper(sketch: Sketch) -> None:
 
 
 RUB_TWICE = {
-    "scotch yoke": TODAY["scotch yoke"],
-    "shaper with two slides": TODAY["shaper with two slides"],
+    "scotch yoke": AWAY_FROM_TOGGLES["scotch yoke"],
+    "shaper with two slides": AWAY_FROM_TOGGLES["shaper with two slides"],
     "yoke on a shaper": Family(Topology(f"{SHAPER}, yoke on rail past E", yoke_on_a_shaper)),
 }
 """Families with dyads of two slides."""
 KINDS: dict[str, Callable[[Random, int], ls.Scene]] = {"watt": watt, "stephenson": stephenson, "slider": slider}
 OTHERS: dict[str, Callable[[Random, int], ls.Scene]] = {
-    **{name: partial(any_linkage, family) for name, family in TODAY.items()},
+    **{name: partial(any_linkage, family) for name, family in AWAY_FROM_TOGGLES.items()},
     "geared by a fraction": geared,
     **{f"{name}, both slides rub": partial(any_linkage, family, rubs=True) for name, family in RUB_TWICE.items()},
 }

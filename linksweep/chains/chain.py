@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.coupling import JAM
 from linksweep.chains.cylinders import force_quantity
 from linksweep.chains.drives import Drive, friction_problems
 from linksweep.chains.dyads.rrr import Rows
@@ -87,9 +88,9 @@ class Chain:
         return [] if self.motion.plain else friction_problems(self.topology, self.drive(name), rubbing)
 
     @lru_cache(maxsize=16)  # noqa: B019
-    def forces(self, name: str = "") -> Forces:
+    def forces(self, name: str = "", rubbing: frozenset[str] = frozenset()) -> Forces:
         """Return the rows of the forces with a drive; with that of the crank where none is named."""
-        return Forces(self.motion, self.drive(name) if name and not self.motion.plain else None)
+        return Forces(self.motion, self.drive(name) if name and not self.motion.plain else None, rubbing)
 
     @property
     def unknowns(self) -> tuple[str, ...]:
@@ -125,8 +126,11 @@ class Chain:
 
     def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
         """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
-        limited = None if self.motion.plain else limits(self.motion, rubbing)
-        forces, driven = self.forces(own.name), self.drive(own.name) if own.name else None
+        driven = self.drive(own.name) if own.name else None
+        forces = self.forces(own.name, frozenset() if driven is None or driven.is_crank else rubbing)
+        coupling, limited = forces.coupling, None
+        if not self.motion.plain:
+            limited = limits(self.motion, rubbing, forces.coupled)
         rows = [
             *self.motion.rows,
             *forces.rows,
@@ -141,6 +145,7 @@ class Chain:
             *gear_rows(self.motion),
             *(limited.rows if limited else []),
             *own.rows,
+            *(coupling.rows(forces.rows, [*self.motion.work, *forces.work]) if coupling else []),
             *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
         ]
         friction = "drive, friction, loads, gravity and inertia" if self.topology.slides else ""
@@ -158,19 +163,22 @@ class Chain:
         table = Table("theta2", tuple(rows), tuple(last.values()), own.between)
         if not limited:
             return table
-        of_drive = driven.limits() if driven else ()
-        return replace(table, limits=(*limited.of_motion, *of_drive), contacts=limited.of_contacts)
+        of_drive = (coupling or driven).limits() if driven else ()
+        contacts = (*limited.of_contacts, *(coupling.contacts() if coupling else ()))
+        return replace(table, limits=(*limited.of_motion, *of_drive), contacts=contacts)
 
     def _status(self, forces: Forces, drive: Drive | None) -> Rows:
         """Return rows of the status and its step: of the first dyad that does not close, else of the first jam.
 
-        Where the driven part stands still, jams have no meaning.
+        Where the driven part stands still, jams have no meaning; those that the drive decides come after the others,
+        on which they depend.
         """
         rows: Rows = []
         status: Source = 0.0
         at: Source = 0.0
         steps = [*enumerate(forces.statuses, 1)]
-        jams = [(k, jam) for k, (closure, jam) in steps if jam != closure]
+        jams = [(k, jam) for k, (closure, jam) in steps if jam not in (closure, JAM)]
+        jams += [(k, JAM) for k, (_, jam) in steps if jam == JAM][:1]
         standing = drive is not None and not drive.is_crank
         closures = [(k, closure) for k, (closure, _) in steps if len(steps) > 1 or standing or not jams]
         if drive and standing:

@@ -61,7 +61,10 @@ def force_strut(forces: Forces, side: Side, pin: str, push: str) -> None:
     forces.row(outward, (f"force_{role}",), f"force_{role}_outward")
     forces.row(planar.product, (f"work_of_{role}",), f"force_{role}", f"{role}_length_slope")
     forces.row(planar.product, (f"power_of_{role}",), f"force_{role}", f"rate_{role}")
-    forces.work.append(f"work_of_{role}")
+    if forces.coupling is not None and any(role in step.roles for step in forces.bearing):
+        forces.coupling.struts.append(role)
+    else:
+        forces.work.append(f"work_of_{role}")
     forces.powers.append(f"power_of_{role}")
 
 

@@ -1,7 +1,8 @@
 """Drives of a machine of dyads other than the crank: any link on a ground pin, and any cylinder that follows.
 
 Torque or force follow from the virtual work of all that acts on the links. It is applied to the driven links before
-their dyads' forces are computed; the torque that the crank then needs is zero.
+their dyads' forces are computed; the torque that the crank then needs is zero. Where the drive decides some of this
+work, see `linksweep.chains.coupling`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from linksweep.physics import crank_driven
 from linksweep.physics.algebra import planar
 from linksweep.physics.algebra.arithmetic import NOISE
 from linksweep.physics.closures import cylinder
+
+MOST_SLIDES = 4
+"""Slides whose friction and the drive may decide each other: for four, 16 choices of their signs are tried."""
 
 
 class Drive(NamedTuple):
@@ -34,12 +38,13 @@ class Drive(NamedTuple):
     def is_crank(self) -> bool:
         return self.unknown.name == "T12"
 
-    def rows(self) -> Rows:
-        """Return the rows of torque or force, and of the status where the driven part stands still."""
+    def rows(self, work: str = "work") -> Rows:
+        """Return the rows of torque or force from the virtual work of all else, and of the status where the driven part
+        stands still."""
         if self.is_crank:
             return [Row(planar.opposite, (self.unknown.name,), ("work",))]
         return [
-            Row(crank_driven.balancing_drive, (self.unknown.name,), ("work", self.ratio)),
+            Row(crank_driven.balancing_drive, (self.unknown.name,), (work, self.ratio)),
             Row(cylinder.standing_status, ("drive_status",), (self.ratio, self.size)),
             Row(planar.product, ("drive_noise",), (NOISE, self.size)),
         ]
@@ -79,12 +84,12 @@ def hosts(topology: Topology, step: Step) -> list[str]:
 
 
 def friction_problems(topology: Topology, drive: Drive, rubbing: Collection[str]) -> list[str]:
-    """Return the problem of each slide whose friction depends on the drive, and the drive on it."""
+    """Return the problem of a drive that loads more slides with friction than are solved together."""
     bearing = [] if drive.is_crank else [*steps_that_bear(topology, drive.roles)]
+    guides = [guide for step in bearing for guide in step.slides if guide in rubbing]
+    if len(guides) <= MOST_SLIDES:
+        return []
     return [
-        f'drive = "{drive.name}": the drive loads the slide on {guide}, whose friction then decides it in turn; '
-        f'drive by "{topology.crank}", or take the friction of {guide} away'
-        for step in bearing
-        for guide in step.slides
-        if guide in rubbing
+        f'drive = "{drive.name}": it loads {len(guides)} slides with friction ({", ".join(guides)}), which decide '
+        f'it in turn; at most {MOST_SLIDES} may: drive by "{topology.crank}", or take the friction of others away'
     ]

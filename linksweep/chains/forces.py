@@ -8,10 +8,12 @@ the force of the rod on pin B, and `hold_ram` the force of the guide, or of a pi
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from types import ModuleType
 
 from linksweep.chains import cylinders, gears, lines, slides
 from linksweep.chains.between_links import name_between
+from linksweep.chains.coupling import JAM, Coupling, Rub
 from linksweep.chains.drives import Drive, steps_that_bear
 from linksweep.chains.dyads import rrp, rrr
 from linksweep.chains.dyads.names import Slide
@@ -19,15 +21,19 @@ from linksweep.chains.dyads.rrr import Rows
 from linksweep.chains.equations import Contact
 from linksweep.chains.motion import Motion
 from linksweep.chains.rows.bodies import Source, xy
-from linksweep.chains.topology import GROUND, RRP, RRR, Side
+from linksweep.chains.topology import GROUND, RRP, RRR, Side, Step
 from linksweep.engine.quantity import Row, Total
 from linksweep.physics.algebra import planar
 
 
 class Forces:
-    """Rows of the forces at all pins and slides of a machine whose motion is known."""
+    """Rows of the forces at all pins and slides of a machine whose motion is known; slides on guides `rubbing` rub.
 
-    def __init__(self, motion: Motion, drive: Drive | None = None):
+    Friction that depends on a drive decides it in turn: the `coupling` finds both, and then such a slide's friction is
+    given as are loads.
+    """
+
+    def __init__(self, motion: Motion, drive: Drive | None = None, rubbing: Collection[str] = ()):
         self.motion, self.topology = motion, motion.topology
         self.rows: Rows = []
         self.statuses: list[tuple[Source, Source]] = []
@@ -37,10 +43,12 @@ class Forces:
         self.work: list[str] = []
         self.applied: dict[str, list[tuple[str, str]]] = defaultdict(list)
         self.pushes: dict[str, dict[str, str]] = defaultdict(dict)
-        self.frictionless = frozenset[str]()  # friction that depended on the drive, whose work it enters, is refused
+        self.rubbing, self.bearing = rubbing, frozenset[Step]()
+        self.coupling: Coupling | None = None
         if drive and not drive.is_crank:
             self._drive(drive)
-            self.frictionless = frozenset(step.name for step in steps_that_bear(self.topology, drive.roles))
+            self.bearing = frozenset(steps_that_bear(self.topology, drive.roles))
+            self.coupling = Coupling(drive) if self._is_coupled() else None
         for step in reversed(self.topology.steps):
             getattr(self, f"_force_{type(step).__name__}")(step)
         self._crank()
@@ -62,7 +70,7 @@ class Forces:
         coupler, rocker = self.motion.sides[step.name]
         self.act_about(coupler)
         self.act_about(rocker)
-        self.solve(step.name, rrr.forces(), "closure")
+        self.solve(step.name, rrr.forces())
         self.meet(coupler.role, rocker.role, step.pin)
         for side in (coupler, rocker):
             if side.role in self.topology.struts:
@@ -73,8 +81,7 @@ class Forces:
     def _force_RRP(self, step: RRP) -> None:
         self.act_about(step.link)
         self.act(step.slider)
-        self.solve(step.name, rrp.forces(), "jam_status")
-        self.rub(step.name, "ratio_slider")
+        self.contact(step, rrp, (step.guide, rrp.CONTACT, "ratio_slider"))
         self.meet(step.link.role, step.slider, step.pin)
         if step.link.role in self.topology.struts:
             cylinders.force_strut(self, step.link, step.pin, f"push_{step.link.role}_{step.pin}")
@@ -98,19 +105,43 @@ class Forces:
 
     # ------------------------------------------------------------------------------------------------ actions
 
-    def solve(self, name: str, rows: Rows, status: str) -> None:
+    def solve(self, name: str, rows: Rows, status: str = "closure") -> None:
         """Add the rows of a dyad's forces, and its status."""
         names = self.motion.names[name]
         self.rows += names.placed(rows)
         self.statuses.append((str(names["closure"]), str(names[status])))
 
-    def rub(self, name: str, ratio: str, friction: str = "friction_force", power: str = "friction_power") -> None:
+    def contact(self, step: Step, dyad: ModuleType, *slides: tuple[str, Slide, str]) -> None:
+        """Add the rows of a dyad with slides, each by its guide and the name of its velocity per rate of the crank."""
+        if self.coupled(step):
+            self.solve(step.name, dyad.forces_from_friction())
+        else:
+            self.solve(step.name, dyad.forces(), "jam_status")
+        for guide, slide, ratio in slides:
+            self._rub(step, guide, slide, ratio)
+
+    def _is_coupled(self) -> bool:
+        """Return whether the drive loads a slide that rubs, or a cylinder of given length."""
+        rubs = any(guide in self.rubbing for step in self.bearing for guide in step.slides)
+        return rubs or any(role in self.topology.struts for step in self.bearing for role in step.roles)
+
+    def coupled(self, step: Step) -> bool:
+        """Return whether the friction of a dyad's slides is found together with the drive."""
+        return self.coupling is not None and step in self.bearing
+
+    def _rub(self, step: Step, guide: str, slide: Slide, ratio: str) -> None:
         """Add the work of a slide's friction, and the power that it loses."""
-        names = self.motion.names[name]
-        self.losses.append(str(names[power]))
-        if name not in self.frictionless:
-            self.row(planar.product, (f"work_of_{names[friction]}",), names[ratio], names[friction])
-            self.work.append(f"work_of_{names[friction]}")
+        names = self.motion.names[step.name]
+        normal, friction, direction = (str(names[own]) for own in (slide.normal, slide.friction, slide.acts[0]))
+        self.losses.append(str(names[slide.power]))
+        if step not in self.bearing:
+            self.row(planar.product, (f"work_of_{friction}",), names[ratio], friction)
+            self.work.append(f"work_of_{friction}")
+        elif self.coupling is not None and guide in self.rubbing:
+            self.coupling.rubs.append(Rub(normal, friction, direction, f"{guide}_friction", names[ratio]))
+            self.statuses[-1] = (self.statuses[-1][0], JAM)
+        elif self.coupling is not None:
+            self.row(planar.identity, (friction,), 0.0)
 
     def act(self, role: str) -> None:
         """Add up all that acts on a link: force E, and moment L about its first pin; nothing acts on a strut."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from linksweep.chains.dyads import prp, rpp, rpr, rrp, rrr
@@ -36,8 +36,11 @@ class Limits(NamedTuple):
     of_contacts: tuple[Limit, ...]
 
 
-def limits(motion: Motion, rubbing: Collection[str]) -> Limits:
-    """Return the limits of a chain whose slides on these guides rub."""
+def limits(motion: Motion, rubbing: Collection[str], coupled: Callable[[Step], bool]) -> Limits:
+    """Return the limits of a chain whose slides on these guides rub.
+
+    The slides of a `coupled` dyad jam only together with the drive, whose limits those are.
+    """
     rows: Rows = []
     toggles, of_slides, of_contacts = [], [], []
     for step in motion.topology.steps:
@@ -46,7 +49,9 @@ def limits(motion: Motion, rubbing: Collection[str]) -> Limits:
             toggles.append(_placed(TOGGLES[type(step)], step.name, names))
         of_each = zip(step.slides, SLIDES.get(type(step), ()), strict=True)
         limited = [limit for slide, of_slide in of_each if slide in rubbing for limit in of_slide]
-        if limited:
+        if coupled(step):
+            of_slides += [_placed(limit, step.name, names) for limit in limited if limit.zeros == "jump"]
+        elif limited:
             rows += names.placed(GRIPS[type(step)])
             of_slides += [_placed(limit, step.name, names) for limit in dict.fromkeys(limited)]
             of_contacts += [_placed(CONTACTS[type(step)], step.name, names)] if type(step) in CONTACTS else []

@@ -63,8 +63,7 @@ def force_RPR(forces: Forces, step: RPR) -> None:
     forces.act_about(step.link)
     if step.block:
         forces.act(step.block)
-    forces.solve(step.name, rpr.forces(), "jam_status")
-    forces.rub(step.name, "ratio_slide")
+    forces.contact(step, rpr, (step.guide, rpr.CONTACT, "ratio_slide"))
     forces.push(Side(slider, step.pin))
     forces.release(step.link)
     slide = rpr.CONTACT if step.block else rpr.CONTACT._replace(moment="")

@@ -43,9 +43,8 @@ def force_RPP(forces: Forces, step: RPP) -> None:
     """Add rows of the forces of a slider with a slot."""
     slider, host = step.slider, forces.topology.members[step.pin][0]
     forces.act(slider)
-    forces.solve(step.name, rpp.forces(), "jam_status")
-    forces.rub(step.name, "ratio_slider", "friction_force", "friction_power")
-    forces.rub(step.name, "ratio_in_slot", "slot_friction_force", "slot_friction_power")
+    in_slot = (f"{slider}_slot", rpp.SLOT_CONTACT, "ratio_in_slot")
+    forces.contact(step, rpp, (step.guide, rpp.CONTACT, "ratio_slider"), in_slot)
     forces.push(Side(slider, step.pin))
     forces.slide(slider, step.guide, f"hold_{slider}", step.name, rpp.CONTACT)
     forces.between(slider, host, f"push_{slider}_{step.pin}", step.name, rpp.SLOT_CONTACT)
@@ -80,9 +79,8 @@ def force_PRP(forces: Forces, step: PRP) -> None:
     """Add rows of the forces of two sliders that share a pin."""
     for slider in step.roles:
         forces.act(slider)
-    forces.solve(step.name, prp.forces(), "jam_status")
-    forces.rub(step.name, "ratio_slider", "friction_force", "friction_power")
-    forces.rub(step.name, "ratio_second", "second_friction_force", "second_friction_power")
+    second = (step.second_guide, prp.SECOND_CONTACT, "ratio_second")
+    forces.contact(step, prp, (step.first_guide, prp.CONTACT, "ratio_slider"), second)
     forces.meet(step.first, step.second, step.pin)
     forces.slide(step.first, step.first_guide, f"hold_{step.first}", step.name, prp.CONTACT)
     forces.slide(step.second, step.second_guide, f"hold_{step.second}", step.name, prp.SECOND_CONTACT, ("PCx", "PCy"))

@@ -81,14 +81,22 @@ def two_sliding_contacts(
             inverse = 1.0 / (pushed_along - k * pushed_across)
             one = -(along * pushed_across + across * pushed_along) * inverse
             other = (along + k * across) * inverse
-            confirmed = _confirmed(one, sign, least) * _confirmed(other, second_sign, least)
+            confirmed = has_sign(one, sign, least) * has_sign(other, second_sign, least)
             normal, second = where(confirmed > 0.0, one, normal), where(confirmed > 0.0, other, second)
             count = count + confirmed
     normal, second = (where(abs(count - 1.0) < 0.5, force, math.nan) for force in (normal, second))
     return normal, friction(normal, direction), second, friction(second, second_direction), count
 
 
-def _confirmed(force: Number, sign: float, least: Number) -> Number:
+def two_contacts_from_friction(
+    along: Number, across: Number, friction: Number, cos: Number, sin: Number, second_friction: Number
+) -> tuple[Number, Number]:
+    """Return the normal forces of two guides on what slides on both, where the friction of both is known."""
+    second = (along + friction + second_friction * cos) / sin
+    return -(across + second_friction * sin + second * cos), second
+
+
+def has_sign(force: Number, sign: float, least: Number) -> Number:
     """Return 1 where a force has the sign that was assumed for it, else 0; one of next to nothing is positive."""
     return where(force < least, 1.0 if sign < 0.0 else 0.0, 0.0 if sign < 0.0 else 1.0)
 

@@ -14,7 +14,7 @@ from benchmarks.stress.decimals import Array
 from benchmarks.stress.linkages.errors import Errors, errors_of
 from benchmarks.stress.linkages.multibody import Solution
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import FAMILIES, GEARED_BY_FRACTIONS, NEAR_A_TOGGLE, TODAY
+from benchmarks.stress.linkages.topologies import ALL, NEAR_A_TOGGLE
 
 RESULTS = Path(__file__).parents[2] / "LINKAGES.md"
 AT_ONCE = 50
@@ -48,7 +48,7 @@ HEADER = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Check random linkages of every family and print their figures; return 1 where a goal is missed."""
     options = _parser().parse_args(arguments)
-    names = [name for name in (*TODAY, *NEAR_A_TOGGLE) if options.only in name]
+    names = [name for name in ALL if options.only in name]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         errors = {name: checked(name, options.designs, options.seed) for name in names}
@@ -69,8 +69,8 @@ def checked(name: str, designs: int, seed: int) -> Errors:
 def solutions(name: str, designs: int, seed: int, at_once: int = AT_ONCE) -> Iterator[Solution]:
     """Draw and solve linkages, part by part."""
     for part, first in enumerate(range(0, designs, at_once)):
-        random = np.random.default_rng([seed, [*FAMILIES, *NEAR_A_TOGGLE, *GEARED_BY_FRACTIONS].index(name), part])
-        yield drawn((TODAY | NEAR_A_TOGGLE)[name], random, min(at_once, designs - first))
+        random = np.random.default_rng([seed, [*ALL].index(name), part])
+        yield drawn(ALL[name], random, min(at_once, designs - first))
 
 
 def missed(name: str, errors: Errors) -> list[str]:

@@ -201,8 +201,6 @@ NEAR_A_TOGGLE = {
 }
 """Families of which a pin is near a toggle."""
 
-RUBBED = (*(name for name in FAMILIES if name.endswith("arm drives")), "block on a coupler, rod drives")
-"""Families whose drive loads a slide with friction, which linksweep refuses."""
 GEARED_BY_FRACTIONS = {
     f"geared five-bar, {ratio}": Family(
         Topology(
@@ -216,5 +214,38 @@ GEARED_BY_FRACTIONS = {
 }
 """Families whose motion repeats only after several turns of the crank."""
 
-TODAY = {name: family for name, family in FAMILIES.items() if name not in RUBBED} | GEARED_BY_FRACTIONS
-"""Families that linksweep computes."""
+JACKS = {
+    "six-bar with a slider": "F", "knuckle-joint press": "E", "block on a coupler": "F", "arm past a coupler": "H",
+    "Whitworth": "F", "shaper with a block of mass": "F", "shaper with two slides": "F",
+}  # fmt: skip
+"""Pin of each topology that a cylinder pushes."""
+
+
+def with_jack(name: str, pin: str) -> Family:
+    """Return a topology driven by a cylinder from the ground to one of its pins."""
+    text, draw, _ = TOPOLOGIES[name]
+
+    def with_its_pin(sketch: Sketch) -> None:
+        draw(sketch)
+        sketch.ground("J", pin)
+
+    return Family(Topology(f"{text}, jack J~{pin}", with_its_pin), "jack")
+
+
+def held_arm(sketch: Sketch) -> None:
+    """An arm on the ground, held at the rocker by a cylinder of given length."""
+    four_bar(sketch)
+    sketch.carried("E", "D", "C")
+    sketch.ground("G", "E")
+    sketch.rrr("K", "E", "G")
+    sketch.cylinder("held", "E", "K")
+
+
+COUPLED = {f"{name}, jack drives": with_jack(name, pin) for name, pin in JACKS.items()} | {
+    "held arm, arm drives": Family(Topology("crank A-B, coupler B-C, rocker D-C-E, held E~K, arm G-K", held_arm), "arm")
+}
+"""Families whose drive loads one slide with friction or more, or a cylinder of given length, and depends on them."""
+
+ALL = FAMILIES | NEAR_A_TOGGLE | GEARED_BY_FRACTIONS | COUPLED
+AWAY_FROM_TOGGLES = {name: family for name, family in ALL.items() if name not in NEAR_A_TOGGLE}
+"""All families; and those that are near toggles only by chance."""

@@ -29,6 +29,11 @@ class Slide(NamedTuple):
     moment: str
     acts: tuple[str, str, str, str, str]
 
+    @property
+    def power(self) -> str:
+        """The power of its friction."""
+        return self.friction.replace("force", "power")
+
 
 class Names(dict[str, Source]):
     """Actual names, or numbers, of a dyad's own names; those not listed get the dyad's suffix."""

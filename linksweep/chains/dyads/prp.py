@@ -111,12 +111,37 @@ def forces() -> Rows:
     contacts = ("normal_force", "friction_force", "second_normal_force", "second_friction_force", "solutions")
     pressing = ("Q_along", "Q_across", "direction", "crossing_cos", "crossing_sin", "second_direction")
     return [
+        *_pressing(),
+        Row(coulomb.two_sliding_contacts, contacts, pressing),
+        *_by_addition(),
+        Row(coulomb.solutions_status, ("jam_status",), ("closure", "solutions")),
+    ]
+
+
+def forces_from_friction() -> Rows:
+    """Return the rows of the same forces where the friction of both is known."""
+    pressing = ("Q_along", "Q_across", "friction_force", "crossing_cos", "crossing_sin", "second_friction_force")
+    return [
+        *_pressing(),
+        Row(coulomb.two_contacts_from_friction, ("normal_force", "second_normal_force"), pressing),
+        *_by_addition(),
+    ]
+
+
+def _pressing() -> Rows:
+    """Return the rows of μ·sign(v) of both guides, and of what presses on both, in the axes of the first."""
+    return [
         Row(dyad_rpp.standing_noise, ("noise",), ("OCx", "OCy", "offset")),
         Row(coulomb.direction_of_sliding, ("direction",), ("friction", "v_slider", "omega2", "noise")),
         Row(coulomb.direction_of_sliding, ("second_direction",), ("second_friction", "v_second", "omega2", "noise")),
         Row(planar.vector_sum, ("Qx", "Qy"), ("Q3x", "Q3y", "Q4x", "Q4y")),
         Row(moving_guide.along_and_across, ("Q_along", "Q_across"), ("Qx", "Qy", *GUIDE)),
-        Row(coulomb.two_sliding_contacts, contacts, pressing),
+    ]
+
+
+def _by_addition() -> Rows:
+    """Return the rows of forces, moments and powers from normal forces and friction."""
+    return [
         Row(slider_crank.from_guide_axes, ("F13x", "F13y"), ("normal_force", "friction_force", *GUIDE)),
         Row(
             slider_crank.from_guide_axes,
@@ -126,7 +151,6 @@ def forces() -> Rows:
         Row(planar.vector_sum, ("F43x", "F43y"), ("F14x", "F14y", "Q4x", "Q4y")),
         Row(planar.opposite, ("T13",), ("N3",)),
         Row(planar.opposite, ("T14",), ("N4",)),
-        Row(coulomb.solutions_status, ("jam_status",), ("closure", "solutions")),
         Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
         Row(planar.product, ("second_friction_power",), ("second_friction_force", "v_second")),
     ]

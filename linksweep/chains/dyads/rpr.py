@@ -102,6 +102,15 @@ def forces() -> Rows:
     ]
 
 
+def forces_from_friction() -> Rows:
+    """Return the rows of the contact where its friction is known."""
+    return [
+        Row(planar.identity, ("line_force",), ("friction_force",)),
+        Row(inverted_slider_crank.normal_force_on_block, ("F43n",)),
+        *from_contact(),
+    ]
+
+
 def from_contact() -> Rows:
     """Return the rows of the forces of rocker on block, of the block on pin B, and of pin D on the rocker."""
     return [

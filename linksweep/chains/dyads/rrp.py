@@ -167,7 +167,22 @@ def forces() -> Rows:
     ]
 
 
+def forces_from_friction() -> Rows:
+    """Return the rows of the same forces where the friction is known."""
+    along = ("rod_force_across", "rod_force_along")
+    return [
+        Row(slider_crank.moment_on_rod, ("moment_r3",)),
+        Row(slider_crank.guide_force_from_friction, ("normal_force", *along)),
+        *by_addition(),
+    ]
+
+
 def from_guide() -> Rows:
+    """Return the rows of the forces by addition, and of the status."""
+    return [*by_addition(), Row(coulomb.jammed_status, ("jam_status",), ("closure", "wedging"))]
+
+
+def by_addition() -> Rows:
     """Return the rows of the forces by addition, and of the guide's moment about C."""
     return [
         Row(coulomb.direction_of_sliding, ("direction",), ("friction", "v_slider", "omega2", "noise")),
@@ -175,6 +190,5 @@ def from_guide() -> Rows:
         Row(slider_crank.from_guide_axes, ("F43x", "F43y"), ("rod_force_across", "rod_force_along", *GUIDE)),
         Row(crank_driven.coupler_balance, ("F32x", "F32y")),
         Row(planar.opposite, ("T14",), ("N4",)),
-        Row(coulomb.jammed_status, ("jam_status",), ("closure", "wedging")),
         Row(planar.product, ("friction_power",), ("friction_force", "v_slider")),
     ]

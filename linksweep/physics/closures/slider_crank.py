@@ -121,6 +121,23 @@ def guide_force(
     return normal, friction, wedging, lever_force + slope * friction, Q4_along + friction
 
 
+def guide_force_from_friction(
+    inverse_rod_along: Number,
+    rod_across: Number,
+    moment_r3: Number,
+    Q4x: Number,
+    Q4y: Number,
+    guide_cos: Number,
+    guide_sin: Number,
+    friction_force: Number,
+) -> tuple[Number, Number, Number]:
+    """Return the guide's normal force on the slider, then F43 across and along, where the friction is known."""
+    Q4_along, Q4_across = dot(Q4x, Q4y, guide_cos, guide_sin), cross(guide_cos, guide_sin, Q4x, Q4y)
+    along = Q4_along + friction_force
+    across = (moment_r3 + rod_across * along) * inverse_rod_along
+    return across - Q4_across, across, along
+
+
 def from_guide_axes(across: Number, along: Number, guide_cos: Number, guide_sin: Number) -> tuple[Number, Number]:
     """Return in ground axes a force with these components across and along the guide."""
     return along * guide_cos - across * guide_sin, along * guide_sin + across * guide_cos

@@ -9,17 +9,17 @@ import linksweep as ls
 from benchmarks.speed.kernel import way
 from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import TODAY
+from benchmarks.stress.linkages.topologies import AWAY_FROM_TOGGLES
 from linksweep.scene.parameters import replaced
 
 FIRST = ("pins in other orders", "Whitworth", "shaper with two slides", "held cylinder")
-random_linkages = pytest.mark.parametrize("name", long_but(TODAY, *FIRST))
+random_linkages = pytest.mark.parametrize("name", long_but(AWAY_FROM_TOGGLES, *FIRST))
 unwarned = pytest.mark.filterwarnings("ignore:held.length")
 
 
 def random_case(name: str, designs: int = 2) -> tuple[ls.Scene, np.ndarray]:
     """Return linkages along "design" with loads, and the crank angle at which they are away from toggles."""
-    linkages = drawn(TODAY[name], np.random.default_rng([len(name), 7]), designs).assembly.linkages
+    linkages = drawn(AWAY_FROM_TOGGLES[name], np.random.default_rng([len(name), 7]), designs).assembly.linkages
     return scene_of(linkages), np.array([linkages.theta2])
 
 

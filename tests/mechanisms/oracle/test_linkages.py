@@ -14,7 +14,7 @@ from benchmarks.speed.kernel import way
 from benchmarks.stress.linkages import __main__ as front_door
 from benchmarks.stress.linkages import errors
 from benchmarks.stress.linkages.scene import scene_of
-from benchmarks.stress.linkages.topologies import NEAR_A_TOGGLE, TODAY
+from benchmarks.stress.linkages.topologies import ALL, COUPLED
 
 
 @pytest.fixture(autouse=True)
@@ -25,13 +25,13 @@ def uncompiled():
 
 
 @pytest.mark.parametrize("designs", long_but([10, 50], 10))
-@pytest.mark.parametrize("name", TODAY | NEAR_A_TOGGLE)
+@pytest.mark.parametrize("name", ALL)
 def test_linkages_reach_the_goals(name, designs):
     figures = [errors.errors_of(solution) for solution in front_door.solutions(name, designs, 2026, at_once=5)]
     total = front_door.joined(figures)
     assert front_door.missed(name, total) == []
     assert total.designs == designs
-    assert len(total.force) > 0.6 * designs
+    assert len(total.force) > (0.4 if name in COUPLED else 0.6) * designs  # friction jams many of them
 
 
 @pytest.mark.parametrize("wrong_by", [3e-12, -3e-12])
@@ -52,7 +52,7 @@ def test_the_command_prints_a_row_for_each_family(capsys):
     assert front_door.main(["--designs", "4", "--only", "Watt"]) == 0
     printed = capsys.readouterr().out
     rows = [line.split(" | ")[:2] for line in printed.splitlines() if line.startswith("| Watt")]
-    assert rows == [[f"| {name}", "4"] for name in TODAY | NEAR_A_TOGGLE if "Watt" in name]
+    assert rows == [[f"| {name}", "4"] for name in ALL if "Watt" in name]
     assert "Goals missed: none." in printed
 
 
