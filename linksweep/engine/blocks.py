@@ -16,6 +16,8 @@ _free: dict[int, np.ndarray] = {}
 def block(rows: int, columns: int) -> np.ndarray:
     """Return an array of any numbers. While it, or a view of it, lives, its memory is nobody else's."""
     size = 8 * rows * columns
+    if size > MOST:
+        _free.clear()  # a result this large may need it
     if not LEAST <= size <= MOST:
         return np.empty((rows, columns))
     memory = _taken(size)

@@ -30,7 +30,8 @@ def engine_inputs(scene: Scene) -> Inputs:
     fields = {name: as_field(value) for name, value in _named_values(scene).items()}
     grid_rows = tuple((name, (scene.mechanism.index,)) for name in rows(scene.mechanism.geared))
     forms = (*((name, form_of(field)) for name, field in fields.items()), *grid_rows)
-    sizes = {dim: n for field in fields.values() for dim, n in zip(field.dims, field.values.shape, strict=True)}
+    arrays = (field for field in fields.values() if field.dims)
+    sizes = {dim: n for field in arrays for dim, n in zip(field.dims, field.values.shape, strict=True)}
     sizes.pop(scene.mechanism.index, None)
     return Inputs(fields, forms, sizes)
 

@@ -96,8 +96,9 @@ def test_no_more_is_kept_than_allowed_and_small_or_huge_blocks_are_not(monkeypat
     held = [blocks.block(ROWS, COLUMNS) for _ in range(5)]
     del held
     assert sum(memory.nbytes for memory in blocks._free.values()) == 3 * blocks.LEAST
-    blocks._free.clear()
-    blocks.block(1, 100), blocks.block(ROWS, 4 * COLUMNS)
+    blocks.block(1, 100)
+    assert len(blocks._free) == 3
+    blocks.block(ROWS, 4 * COLUMNS)
     assert blocks._free == {}
 
 
