@@ -4,7 +4,7 @@
 
 Half of the designs turn fully, both dyads coming near to a toggle by margins of 1e-7 to 1 of their lengths, anywhere in
 the revolution; the others have any lengths. A peak is missed where a sample exceeds it by more than 1e-10 of it. Arcs
-are checked against the status of 36 000 samples. `--only "Jansen leg"` checks linkages of another topology.
+and jams are checked against the status of 36 000 samples. `--only "Jansen leg"` checks linkages of another topology.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Point = tuple[Array, Array]
 SHAPER = AWAY_FROM_TOGGLES["shaper with two slides"].topology.text
 SAMPLES, STATUS_SAMPLES = 5760, 36_000
 AT_ONCE = 250
-CANNOT_ASSEMBLE, TOGGLE = 1, 2
+CANNOT_ASSEMBLE, TOGGLE, JAMMED = 1, 2, (4, 6)
 """Statuses of a sample."""
 TURN = 2.0 * np.pi
 RATIOS = ("1/2", "3/2", "-2/3", "-5/4")
@@ -287,14 +287,22 @@ def _off_round(scene: ls.Scene, per_turn: int) -> Array:
 
 
 def wrong_arcs(scene: ls.Scene) -> int:
-    """Return the number of designs that some sample's status contradicts: on an arc it closes, if friction allows."""
+    """Return the number of designs that some sample's status contradicts: on an arc it closes, and is jammed where
+    friction is said to jam it."""
     limits = ls.check(scene)
     theta2 = _off_round(scene, STATUS_SAMPLES)
     status = ls.sweep(scene, theta2, of=["status"]).status.transpose("design", "theta2").values
     closes = (status != CANNOT_ASSEMBLE) & (status != TOGGLE)
-    start, end = limits.arc_start.values[..., None], limits.arc_end.values[..., None]
-    inside = (np.mod(theta2 - start, scene.period) < end - start).any(axis=1)
-    return int((closes != inside).any(axis=1).sum())
+    wrong = (closes != _inside(limits, "arc", theta2, scene.period)).any(axis=1)
+    if "jam_start" in limits:
+        wrong |= (np.isin(status, JAMMED) != _inside(limits, "jam", theta2, scene.period)).any(axis=1)
+    return int(wrong.sum())
+
+
+def _inside(limits: xr.Dataset, arc: str, theta2: Array, period: float) -> Array:
+    """Return whether each crank angle lies on an arc of each design."""
+    start, end = (limits[f"{arc}_{side}"].values[..., None] for side in ("start", "end"))
+    return (np.mod(theta2 - start, period) < end - start).any(axis=1)
 
 
 def chunks(kinds: Sequence[str], designs: int, seed: int) -> Iterator[tuple[str, int, list[int]]]:
