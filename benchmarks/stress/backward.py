@@ -19,7 +19,6 @@ import linksweep as ls
 from benchmarks.stress.decimals import Array
 from benchmarks.stress.designs import FORCES, LINKS, Designs
 from linksweep.results.compute import compute
-from linksweep.results.system import equilibrated
 from linksweep.scene.grid import crank_grid
 
 LEAST = 2.0**-1022
@@ -50,6 +49,27 @@ def _normwise(A: Array, b: Array, x: Array, residual: Array) -> Array:
     residual, b, x = np.ldexp(residual, -rows), np.ldexp(b, -rows), np.ldexp(np.abs(x), columns)
     size = np.abs(balanced).max(axis=(-2, -1)) * x.sum(axis=-1) + b.max(axis=-1)
     return (residual.max(axis=-1) / np.maximum(size, LEAST)).astype(float)
+
+
+def equilibrated(matrix: np.ndarray, unknowns: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Scale rows, then columns by powers of two, so that their largest entries lie in [1/2, 1) and no digit changes.
+
+    Columns of torques are first scaled by the largest arm of a force in the same row, so that the unit of length does
+    not decide the pivots either. Return the matrix with the exponents of its rows and of its columns.
+    """
+    torques = np.array([name.startswith("T") for name in unknowns])
+    beside = (matrix[..., torques] != 0.0).any(axis=-1)[..., None] & ~torques
+    arm = _exponent(np.where(beside, matrix, 0.0), axis=(-2, -1))
+    units = np.where(torques, arm[..., None], 0)
+    balanced = np.ldexp(matrix, units[..., None, :])
+    rows = _exponent(balanced, axis=-1)
+    balanced = np.ldexp(balanced, -rows[..., :, None])
+    columns = _exponent(balanced, axis=-2)
+    return np.ldexp(balanced, -columns[..., None, :]), rows, columns - units
+
+
+def _exponent(matrix: np.ndarray, axis: int | tuple[int, ...]) -> np.ndarray:
+    return np.frexp(np.abs(matrix).max(axis=axis))[1]
 
 
 def sizes(designs: Designs, A: Array, b: Array) -> tuple[Array, Array]:
