@@ -141,6 +141,31 @@ def test_dense_system_and_single_requests_agree(drive, friction):
     assert 0.0 < fast.error_bound.max() < 1e-7
 
 
+def test_friction_and_a_cylinder_that_moves_together():
+    """The lever's torque decides the friction of the arm and the force of a cylinder, and depends on both."""
+    machine = ls.Linkage(
+        "crank A-B, arm D-E past B, held E~K, lever G-K",
+        ground={"A": A, "D": D, "G": (0.6, 0.0)},
+        crank=ls.Bar(CRANK, **BAR),
+        arm=ls.Bar(0.5, **BAR),
+        lever=ls.Bar(0.4, **BAR),
+        held=ls.Cylinder(length=lambda theta2: 0.6 + 0.03 * np.cos(np.radians(theta2))),
+        guides={"arm": ls.Guide(of="arm", friction=0.1)},
+    )
+    loads = [ls.Load("crank", torque=-5.0)]
+    scene = ls.Scene(machine, omega2=3.0, alpha2=1.0, gravity=(0.0, -9.81), drive="lever", loads=loads)
+    names = machine.unknowns("lever")
+    fast, dense = (
+        ls.sweep(scene, STROKE, of=[*names, "power_residual"], solver=solver) for solver in ("fast", "dense")
+    )
+    np.testing.assert_array_equal(dense.status, fast.status)
+    assert 0.5 * len(STROKE) < (fast.status == OK).sum() < len(STROKE)
+    assert abs(fast.power_residual).max() < 1e-13
+    scale = max(float(abs(fast[name]).max()) for name in names)
+    for name in names:
+        np.testing.assert_allclose(dense[name], fast[name], rtol=0, atol=1e-10 * scale)
+
+
 def test_without_friction_the_drive_is_that_of_work_alone():
     """As friction tends to 0, drive and forces tend to those without, in proportion to it."""
     plain, small, twice = (ls.sweep(shaper(mu), STROKE, of=["force_jack", "F12x"]) for mu in (0.0, 1e-7, 2e-7))
