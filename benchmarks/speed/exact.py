@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 import linksweep as ls
-from benchmarks.cases import ALL, LENGTHS, Size, batch, scene
+from benchmarks.cases import ALL, GENERAL, LENGTHS, Size, batch, few, scene
 from benchmarks.rivals import peers
 from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import FASTER, SHARE, Race, Row, race
@@ -29,7 +29,9 @@ def rows(size: Size) -> list[Row]:
             _over_angle(size),
             _lapack(size),
             *_shared(size),
-            _memory(size),
+            _screening(size),
+            _memory("ls.peaks", "ls.peaks(exact.crank_rockers({designs}, 0.0))", size, 1.0),
+            _memory("ls.screen", "exact.screening({designs})", size, 0.5),
         ]
 
 
@@ -146,20 +148,35 @@ def _against_first(timed: Race, goals: Iterable[float | None]) -> list[Row]:
     return [timed.row(SHARE, name, theirs, goal) for name, goal in zip(ours, goals, strict=True)]
 
 
-MILLION = """
+MAY_BE = {"coupler.length": (0.20, 0.24), "rocker.length": ls.Normal(0.18, 1e-3), "omega2": (20.0, 30.0)}
+
+
+def screening(designs: int) -> xr.Dataset:
+    """Screen designs of the general four-bar."""
+    return ls.screen(scene(GENERAL), MAY_BE, n=designs, minimize=["F32_peak", "T12_peak"], threads=1)
+
+
+def _screening(size: Size) -> Row:
+    """Compare a screening with the peaks of the same designs, drawn before."""
+    count = 100 * size.designs
+    drawn = ls.draw(scene(GENERAL), MAY_BE, designs=range(count))
+    ours, theirs = "ls.screen, designs drawn by it", "ls.peaks of the same designs"
+    calls = {ours: partial(screening, count), theirs: partial(ls.peaks, drawn, ["F32", "T12"], threads=1)}
+    return race(calls, few(size), count).row(SHARE, ours, theirs)
+
+
+IN_ALL = """
 import linksweep as ls
 from benchmarks.speed import exact
 from benchmarks.speed import growth
-scene = exact.crank_rockers({designs}, 0.0)
-ls.peaks(scene)
+{call}
 print(growth.peak_memory())
 """
 
 
-def _memory(size: Size) -> Row:
-    """Measure the largest memory of a fresh process that computes the peaks of a million designs [GB]."""
+def _memory(name: str, call: str, size: Size, goal: float) -> Row:
+    """Measure the largest memory of a fresh process that computes a million designs [GB]."""
     designs = 1000 * size.designs
-    made = subprocess.run(
-        [sys.executable, "-c", MILLION.format(designs=designs)], capture_output=True, text=True, check=True
-    )
-    return Row(f"ls.peaks of {designs:,} designs", "", "GB in all", float(made.stdout), goal=1.0)
+    code = IN_ALL.format(call=call.format(designs=designs))
+    made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return Row(f"{name} of {designs:,} designs", "", "GB in all", float(made.stdout), goal=goal)

@@ -58,13 +58,29 @@ def best(costs: Array, keep: int) -> Array:
 
     Of equal rows or costs the first come first, and of equal rows one alone is on the front.
     """
-    chosen = [np.argsort(column, kind="stable")[:keep] for column in costs.T]
-    if costs.shape[1] > 1:
-        rows = front(costs)  # equal rows in their order, one behind the other
-        different = np.ones(len(rows), dtype=bool)
-        different[1:] = (costs[rows[1:]] != costs[rows[:-1]]).any(axis=1)
-        chosen.append(rows[different])
+    chosen = [_least(column, keep) for column in costs.T] if len(costs) else []
+    if len(costs) and costs.shape[1] > 1:
+        chosen.append(_front(costs))
     return np.unique(np.concatenate([*chosen, np.empty(0, dtype=np.int64)]))
+
+
+def _least(column: Array, keep: int) -> Array:
+    """Return the positions of the least values; only those up to the last of them are sorted."""
+    last = min(keep, len(column)) - 1
+    among = np.flatnonzero(column <= np.partition(column, last)[last])
+    return among[np.argsort(column[among], kind="stable")[:keep]]
+
+
+def _front(costs: Array) -> Array:
+    """Return the positions of the Pareto front; only rows that one good row does not dominate are compared."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        from_best = costs - costs.min(axis=0)
+        good = np.argmin((from_best / from_best.max(axis=0)).sum(axis=1))
+    among = np.flatnonzero((costs <= costs[good]).any(axis=1))
+    rows = among[front(costs[among])]  # equal rows in their order, one behind the other
+    different = np.ones(len(rows), dtype=bool)
+    different[1:] = (costs[rows[1:]] != costs[rows[:-1]]).any(axis=1)
+    return rows[different]
 
 
 def bin_counts(values: Array, edges: Array) -> Array:

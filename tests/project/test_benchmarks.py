@@ -18,7 +18,7 @@ CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "li
 GOALS = {
     "unknowns": {60, 250, 1.3, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
     "peaks": {200, 1.4},
-    "exact": {0.35, 0.7, 1.0, 400},
+    "exact": {0.35, 0.5, 0.7, 1.0, 400},
     "missed": set(),
     "skipping": {0.35, 0.75},
     "solves": set(),

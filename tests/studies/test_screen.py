@@ -148,6 +148,17 @@ def test_of_equal_designs_the_first_is_kept():
     assert best(costs, 1).tolist() == [0, 1]
 
 
+@pytest.mark.parametrize("objectives", [1, 2, 3])
+def test_the_best_of_many_are_those_of_their_definition(objectives):
+    rng = np.random.default_rng(objectives)
+    for costs in (rng.normal(size=(300, objectives)), rng.integers(0, 5, (300, objectives)).astype(float)):
+        dominated = [(np.all(costs <= row, axis=1) & np.any(costs < row, axis=1)).any() for row in costs]
+        first = [not (costs[:k] == row).all(axis=1).any() for k, row in enumerate(costs)]
+        front = np.flatnonzero(~np.array(dominated) & first) if objectives > 1 else []
+        least = [sorted(range(300), key=lambda k: (column[k], k))[:5] for column in costs.T.tolist()]
+        assert best(costs, 5).tolist() == sorted({*front, *np.ravel(least).tolist()})
+
+
 def test_designs_that_do_not_close_have_no_part_in_it():
     may_be = {"crank.length": (0.01, 0.9)}
     screening = ls.screen(
