@@ -261,6 +261,13 @@ class Linkage(Machine):
         return guides | {f"{role}_slot_friction": self.parts[role].slot_friction for role in self.topology.yokes}
 
     @property
+    def teeth(self) -> dict[str, Number]:
+        numbers = {
+            role: gear_numbers(role, gears) for role, gears in self.gears.items() if gears.pressure_angle is not None
+        }
+        return {slope: own[slope] for role, own in numbers.items() for slope in [f"{role}_pressure_slope"]}
+
+    @property
     def rubbing(self) -> tuple[str, ...]:
         rubs = {name: is_lazy(friction) or np.any(friction) for name, friction in self.frictions.items()}
         return tuple(name.removesuffix("_friction") for name in rubs if rubs[name])

@@ -212,6 +212,17 @@ class Mechanism(ByContent, ABC):
         return {"friction": self.friction}
 
     @property
+    def teeth(self) -> Mapping[str, Number]:
+        """Tangents of the pressure angles of gears, under the names that the physics takes."""
+        return {}
+
+    @property
+    def not_linear(self) -> str:
+        """Reasons for which forces are not linear in masses and loads, in words; empty where they are."""
+        reasons = {"friction": self.rubs, "pressure angles of gears": bool(self.teeth)}
+        return " and ".join(reason for reason, holds in reasons.items() if holds)
+
+    @property
     def rubs(self) -> bool:
         """True where some part slides with friction."""
         return any(np.any(coefficient) for coefficient in self.frictions.values())

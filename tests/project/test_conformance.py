@@ -203,7 +203,10 @@ LACKING: dict[str, str] = {
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
         command.balance
     """,
-    "geared-five-bar": "counterweights position_equation plot.loop command.balance",
+    "geared-five-bar": """
+        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
+        command.balance
+    """,
     "yoke": "counterweights position_equation plot.heat_map plot.loop command.balance",
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load

@@ -59,7 +59,8 @@ def regressor(scene: Scene, of: Iterable[str], *, theta2: Any = 720, threads: in
     Raises
     ------
     ValueError
-        If a quantity is not linear in the masses, the scene has friction, or the machine has no links.
+        If a quantity is not linear in the masses, the scene has friction or gears with a pressure angle, or the machine
+        has no links.
 
     Notes
     -----
@@ -103,8 +104,11 @@ def _checked(scene: Scene, of: Iterable[str]) -> list[str]:
     linear = [name for name, q in scene.table.quantity.items() if q.units in LINEAR_UNITS and not q.squared]
     refuse([problem for name in names for problem in quantity_problems("of", name, linear, scene)])
     kind = type(scene.mechanism).__name__
-    problem = f"scene is of a {kind} with friction: forces are not linear in the masses then; make it 0"
-    refuse([problem] if scene.mechanism.rubs else [])
+    reason = scene.mechanism.not_linear
+    problem = (
+        f"scene is of a {kind} with {reason}: forces are not linear in the masses then; make it 0, or leave it out"
+    )
+    refuse([problem] if reason else [])
     return names
 
 

@@ -1,8 +1,9 @@
 """Breakdown of a pin's load: the share of each link's inertia, of gravity, each load, and friction.
 
 Forces are linear in these sources, so each share comes from the same plan with the other sources set to zero. Friction
-alone is not: its share is the force with friction less the force without, the effect of the acting friction force as a
-load on a slider without friction.
+is not: its share is the force with friction less the force without, the effect of the acting friction force as a load
+on a slider without friction. Nor are teeth, which part whichever way they drive: their share is likewise the effect of
+their force's component across the pitch circle.
 """
 
 from __future__ import annotations
@@ -43,9 +44,9 @@ def breakdown(
     -------
     Dataset
         Shares over `source` and the dims of a sweep. Sources are "crank inertia", "coupler inertia", …, "gravity", each
-        load ("load1 (coupler)", …) and "friction", as the scene has them. The shares of a component or a torque add up
-        to it. Of a magnitude F32 they are the sources' forces along the direction of the whole force, so that they add
-        up to it too; a negative share relieves the pin. `status` as in `linksweep.sweep`.
+        load ("load1 (coupler)", …), "friction" and "teeth", as the scene has them. The shares of a component or a
+        torque add up to it. Of a magnitude F32 they are the sources' forces along the direction of the whole force, so
+        that they add up to it too; a negative share relieves the pin. `status` as in `linksweep.sweep`.
 
     Raises
     ------
@@ -55,7 +56,8 @@ def breakdown(
     Notes
     -----
     Inertia is that at the scene's own omega2 and alpha2. Friction's share is the force with friction less the force
-    without. Sums agree with `linksweep.sweep` to 1e-13 of the largest share.
+    without, and so is that of teeth with a pressure angle. Sums agree with `linksweep.sweep` to 1e-13 of the largest
+    share.
 
     Examples
     --------
@@ -82,11 +84,12 @@ def breakdown(
         source: quantities_with(changed, single, grid, parts, threads)
         for source, (single, changed) in _sources(sampled).items()
     }
-    if scene.mechanism.rubs:
-        whole, smooth = (
-            quantities_with(changed, sampled, grid, parts, threads) for changed in ({}, frictionless(scene))
-        )
-        shares["friction"] = {part: whole[part] - smooth[part] for part in parts}
+    silent: dict[str, float] = {}
+    for source, silenced in _beside(scene).items():
+        before = quantities_with(silent, sampled, grid, parts, threads)
+        silent = silent | silenced
+        after = quantities_with(silent, sampled, grid, parts, threads)
+        shares[source] = {part: before[part] - after[part] for part in parts}
     stacked = {part: joined([forces[part] for forces in shares.values()], "source", shares) for part in parts}
     described = {name: _described(cycle[name], _share(cycle, name, stacked)) for name in names}
     ds = cycle[["status"]].assign(described).transpose("source", ...)
@@ -108,6 +111,12 @@ def forces_of(scene: Scene) -> list[str]:
     return list(dict.fromkeys([*numbered, drive, "reduced_torque"]))
 
 
+def _beside(scene: Scene) -> dict[str, dict[str, float]]:
+    """Return the sources in which forces are not linear, and the parameters that silence each."""
+    teeth = {"teeth": dict.fromkeys(scene.mechanism.teeth, 0.0)} if scene.mechanism.teeth else {}
+    return ({"friction": frictionless(scene)} if scene.mechanism.rubs else {}) | teeth
+
+
 def frictionless(scene: Scene) -> dict[str, float]:
     """Return the parameters that silence friction."""
     return dict.fromkeys(scene.mechanism.frictions, 0.0)
@@ -116,7 +125,7 @@ def frictionless(scene: Scene) -> dict[str, float]:
 def _sources(sampled: Scene) -> dict[str, tuple[Scene, dict[str, float]]]:
     """Return for each source a scene with its loads alone, and the parameters that silence the other sources."""
     links = sampled.mechanism.roles
-    smooth = frictionless(sampled)
+    smooth = frictionless(sampled) | dict.fromkeys(sampled.mechanism.teeth, 0.0)
     weightless = smooth | {"gravity_x": 0.0, "gravity_y": 0.0}
     bare = replace(sampled, loads=())
     sources = {f"{link} inertia": (bare, weightless | _massless({*links} - {link})) for link in links}

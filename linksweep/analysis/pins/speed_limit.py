@@ -164,6 +164,8 @@ def _problems(scene: Scene) -> list[str]:
     """Return why the forces of a scene are not A·omega2² + B·alpha2 + C."""
     advice = "take ls.peaks with an array of omega2 instead"
     problems = [f"mechanism.friction: its force does not grow with omega2²; {advice}"] if scene.mechanism.rubs else []
+    if scene.mechanism.teeth:
+        problems.append(f"mechanism.gears: teeth with a pressure angle part whichever way they drive; {advice}")
     dampers = [k for k, load in enumerate(scene.loads, 1) if load.form.damps]
     return problems + [f"loads[{k}] is a damper, whose force grows with omega2; {advice}" for k in dampers]
 
