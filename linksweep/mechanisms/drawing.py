@@ -15,6 +15,7 @@ from linksweep.chains.topology import GROUND, Topology
 from linksweep.mechanisms.links import Guide
 
 Points = dict[str, np.ndarray]
+Wheels = list[tuple[str, float]]
 
 
 class Frame(NamedTuple):
@@ -163,9 +164,6 @@ def direction(angle: Any) -> np.ndarray:
 def ground_pins(mechanism: Any) -> Points:
     """Return the pins A and D [m] of a machine with a frame of length `ground` at `ground_angle`."""
     return {"A": np.zeros(2), "D": float(mechanism.ground) * direction(mechanism.ground_angle)}
-
-
-Wheels = list[tuple[str, float]]
 
 
 class LinkageDrawing(NamedTuple):

@@ -37,7 +37,7 @@ class SingleDyad(Machine):
     frame: ClassVar[tuple[str, str]] = ("ground", "ground_angle")
     """Name of the frame link in physics, and the parameter with its angle to x."""
     first: ClassVar[tuple[str, ...]]
-    """Names in physics of the numbers whose dims come first in results."""
+    """Names in physics of the numbers whose dims come first in results, before those of the links."""
 
     @property
     def drives(self) -> dict[str, str]:  # type: ignore[override]

@@ -67,9 +67,8 @@ CRANK = Driven(drive_torque("T12", "crank"), "omega2")
 MOMENT_ON_CRANK = Row(crank_driven.moment_on_crank, ("moment_r2",))
 WEDGED = Row(coulomb.jammed_status, ("jam_status",), ("leverage_status", "wedging"))
 FROM_GROUND, FROM_GUIDE = between_rows("ground_cos", "ground_sin"), between_rows("upright_cos", "upright_sin")
-GROUND_PIN = Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin"))
 OF_ROCKER = (
-    GROUND_PIN,
+    Row(planar.along, ("Dx", "Dy"), ("ground_length", "ground_cos", "ground_sin")),
     Row(planar.identity, ("velocity_ratio",), ("ratio4",)),
     Row(advantage.torque_ratio, ("torque_ratio",)),
 )
