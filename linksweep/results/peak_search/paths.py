@@ -181,10 +181,10 @@ def jump_angles(group: Group) -> Array:
     angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
     located = [group.zeros(kind) + start for kind in JUMPS for start in _starts_of_motion(group)]
     jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
-    return _distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
+    return distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
 
 
-def _distinct(angles: Array) -> Array:
+def distinct(angles: Array) -> Array:
     """Return angles (design, nth) in order, those made equal that differ by rounding, as where two slides turn round
     together: between samples so close a signal shows no slope."""
     x = np.sort(angles, axis=1)

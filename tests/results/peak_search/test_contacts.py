@@ -7,7 +7,7 @@ import linksweep as ls
 from benchmarks.speed.kernel import way
 from linksweep.results.peak_search.groups import groups
 from linksweep.results.peak_search.jams import jammed_designs
-from linksweep.results.peak_search.paths import jump_angles
+from linksweep.results.peak_search.paths import distinct, jump_angles
 
 CRANK = ls.Link(0.08, 0.4, 3e-4)
 STEEL = {"width": 0.02, "thickness": 0.02, "density": 7750.0}
@@ -35,17 +35,17 @@ def yoke(friction, slot_friction, push, slot_angle=90.0):
     return ls.Scene(machine, omega2=20.0, loads=[ls.Load("yoke", force=push)])
 
 
-def shaper(friction=0.3):
+def shaper(friction=0.3, pivot=(0.0, -0.2), angle=0.0):
     """Return a shaper of which block, ram and arm turn round together."""
     machine = ls.Linkage(
         "crank A-B, arm D-E past B, block F on arm, ram F on slide",
-        ground={"A": (0.0, 0.0), "D": (0.0, -0.2)},
+        ground={"A": (0.0, 0.0), "D": pivot},
         crank=CRANK,
         arm=ls.Bar(0.5, **STEEL),
         block=ls.Slider(0.5),
         ram=ls.Slider(3.0),
         guides={
-            "slide": ls.Guide((0.0, 0.2), 0.0, friction),
+            "slide": ls.Guide((0.0, 0.2), angle, friction),
             "arm": ls.Guide((0.0, 0.0), 0.0, friction, of="arm"),
         },
     )
@@ -80,7 +80,10 @@ def test_peaks_of_a_yoke_that_jams_exceed_those_of_dense_samples_by_little(slot_
 
 def test_slides_that_turn_round_together_hide_no_peak_beside():
     """At the same angle but for rounding: samples on both sides of each show no slope between them."""
-    exact, dense = (ls.peaks(shaper(), **angles) for angles in ({}, {"theta2": OFF_ROUND}))
+    scene = shaper(pivot=(0.031, -0.187), angle=7.0)
+    merged = distinct(np.array([[10.0, 50.0, 10.0 + 1e-12, np.nan, 10.0 - 1e-13, 50.0 + 1e-6]]))
+    np.testing.assert_array_equal(merged, [[10.0 - 1e-13] * 3 + [50.0, 50.0 + 1e-6, np.nan]])
+    exact, dense = (ls.peaks(scene, **at) for at in ({}, {"theta2": OFF_ROUND}))
     peaks = [name for name in exact if name.endswith("_peak")]
     assert len(peaks) > 5
     for name in peaks:
