@@ -1,5 +1,6 @@
 """Wheels that gears turn p/q as fast as the crank: cycles of q turns, beside closed forms and dense samples."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -231,6 +232,20 @@ def test_arcs_lie_in_any_turn():
     peaks = ls.peaks(scene, of=["theta4"])
     cycle = ls.sweep(scene, theta2, of=["theta4"]).theta4
     assert peaks.theta4_max >= cycle.max() - 1e-9 and peaks.theta4_min <= cycle.min() + 1e-9
+
+
+def test_narrow_loads_anywhere_on_a_long_arc():
+    """A push over a hundredth of a degree on an arc of 581 degrees, near its start, middle and end."""
+    for start in (300.0, 500.0, 850.0):
+        pulse = ls.Load(
+            "crank",
+            torque=lambda theta2, a=start: np.where(abs(theta2 % 1440.0 - a) < 0.005, 500.0, 0.0),
+            breaks=[start - 0.005, start + 0.005],
+        )
+        scene = replace(five_bar("1/4", left=0.11, right=0.11, loads=[pulse]), omega2=0.0, gravity=(0.0, 0.0))
+        peaks = ls.peaks(scene, of=["T12"])
+        assert peaks.T12_min.item() == -500.0
+        assert abs(peaks.T12_min_at.item() - start) < 0.006
 
 
 def test_means_are_over_all_turns():

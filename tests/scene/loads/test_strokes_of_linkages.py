@@ -9,6 +9,7 @@ import xarray as xr
 import linksweep as ls
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.file.writing import write_scene
+from linksweep.scene.strokes import stroke_of
 
 CRANK, ROD = ls.Link(0.04, 1.0, 1e-3, 0.01), ls.Link(0.14, 0.5, 1e-3, 0.05)
 PUSH = xr.DataArray([-50e3, 0.0], {"position": [0.0, 0.012]}, "position")
@@ -78,6 +79,18 @@ def test_a_rocker_as_a_linkage():
     own = ls.Scene(ls.Linkage(text, ground=ground, **links), 30.0, loads=[load])
     other = ls.Scene(ls.FourBar(**links, ground=0.2, ground_angle=45.0), 30.0, loads=[load])
     close(ls.peaks(own, of=OF), ls.peaks(other, of=OF), 1e-12)
+
+
+def test_a_link_that_turns_fully_has_each_angle_once():
+    lengths = {"crank": 0.2, "coupler": 0.22, "rocker": 0.21}
+    links = {name: ls.Link(length, 0.5, 1e-3) for name, length in lengths.items()}
+    machine = ls.Linkage("crank A-B, coupler B-C, rocker D-C", ground={"A": (0.0, 0.0), "D": (0.05, 0.0)}, **links)
+    scene = ls.Scene(machine, 10.0)
+    for position in (-170.0, 30.0, 180.0):
+        reached = [float(angle) for angle in stroke_of(scene, "rocker.angle").reached(position)]
+        assert len(reached) == 1
+        theta4 = ls.sweep(scene, reached, of=["theta4"]).theta4.item()
+        assert abs((theta4 - position + 180.0) % 360.0 - 180.0) < 1e-12
 
 
 def test_a_cylinder_as_a_linkage():
