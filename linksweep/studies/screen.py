@@ -85,7 +85,7 @@ def screen(
         Seed of the designs.
     path : str or PathLike, default None
         NetCDF file to write, "screen.nc". Until it is finished, ``screen.nc.progress`` beside it holds what is done:
-        after a stop or a kill, the same call resumes. A finished file is read, and nothing computed.
+        after a stop or a kill, the same call resumes. A finished file of the same request is read instead.
     chunk : int, default None
         Number of designs computed at a time; None for 50 000, or 1000 where loads or speeds change with the angle.
     threads : int, default None
@@ -154,27 +154,27 @@ def screen(
 
 def _run(task: Screening, n: int, chunk: int, threads: int | None, client: Any, progress: Progress | None) -> Tally:
     """Return the tally of all designs, from where the progress file stands."""
-    done, tally = (progress and progress.load()) or (0, _nothing(task))
-    starts = range(done, n, chunk)
+    state = (progress and progress.load()) or (0, _nothing(task))  # one name, so that no stop can divide it
+    starts = range(state[0], n, chunk)
     parts = _in_turn(task, starts, n, threads) if client is None else _on_cluster(client, task, starts, n, threads)
     written = monotonic()
     try:
         with progress_bar(n) as bar, contextlib.closing(parts):
-            bar.update(done)
-            for part in parts:
-                last = min(done + chunk, n)
-                bar.update(last - done)
-                done, tally = last, tally.plus(part, task.keep)
+            bar.update(state[0])
+            for start, part in zip(starts, parts, strict=True):
+                last = min(start + chunk, n)
+                state = last, state[1].plus(part, task.keep)
+                bar.update(last - start)
                 if progress and monotonic() - written >= INTERVAL:
-                    progress.keep(done, tally)
+                    progress.keep(*state)
                     written = monotonic()
     except KeyboardInterrupt:
         if progress is None:
             raise
-        progress.keep(done, tally)
-        message = f"stopped; {done} of {n} designs are done: to go on from there, run the same again"
+        progress.keep(*state)
+        message = f"stopped; {state[0]} of {n} designs are done: to go on from there, run the same again"
         raise KeyboardInterrupt(message) from None
-    return tally
+    return state[1]
 
 
 def _nothing(task: Screening) -> Tally:
