@@ -17,6 +17,10 @@ JAMS = ("jam_start", "jam_end", "jam_place")
 """Findings on the arcs on which friction jams a slide of a linkage."""
 
 
+ENDS = ("min", "max")
+"""Extremes of a transmission angle, as the names of their findings end."""
+
+
 def peak_table(ds: xr.Dataset, machine: Mechanism) -> str:
     """Return the peaks of a scene as a table: quantity, value, unit, angle; of a batch, the worst design of each."""
     rows = [("quantity", "value", "unit", f"at {machine.index}", *(f"worst {dim}" for dim in ds.sizes))]
@@ -106,13 +110,27 @@ def check_lines(ds: xr.Dataset) -> list[str]:
     """Return the findings of a check, a line for each."""
     lines: Iterable[tuple[str, str]]
     if "grashof" not in ds:
-        others = [name for name in ds.data_vars if name not in ("overshoot", *JAMS)]
-        lines = (*((str(name).replace("_", " "), _summary(ds[name])) for name in others), *_of_jams(ds))
+        of_pins = [*_of_pins(ds)]
+        others = [str(name) for name in ds.data_vars if name not in ("overshoot", *JAMS)]
+        others = [name for name in others if not (of_pins and name.startswith("transmission_angle"))]
+        lines = (*((name.replace("_", " "), _summary(ds[name])) for name in others), *of_pins, *_of_jams(ds))
     else:
         lines = (*(_of_a_batch(ds) if ds.arc_start.ndim > 1 else _of_one(ds)), *_of_acceleration(ds))
     lines = (*lines, *_of_splines(ds))
     width = max(26, *(len(f"{title}: ") for title, _ in lines))
     return [f"{title + ':':<{width}}{text}" for title, text in lines]
+
+
+def _of_pins(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield the range of the transmission angle at each pin of one design, with its crank angles where it changes."""
+    if "transmission_angle_min_at" not in ds or ds.transmission_angle_min.dims != ("pin",):
+        return
+    for pin in ds.pin.values:
+        one = ds.sel(pin=pin)
+        ends = [(float(one[f"transmission_angle_{end}"]), float(one[f"transmission_angle_{end}_at"])) for end in ENDS]
+        texts = [f"{value:.6g}° at {at:.6g}°" if np.isfinite(at) else f"{value:.6g}°" for value, at in ends]
+        if np.isfinite(ends[0][0]):
+            yield f"transmission angle of {pin}", " to ".join(dict.fromkeys(texts))
 
 
 def _of_jams(ds: xr.Dataset) -> Iterator[tuple[str, str]]:

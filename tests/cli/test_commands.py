@@ -65,6 +65,16 @@ def test_an_example_is_taken_by_its_name_unless_a_file_has_it(table, capsys):
         ls.load_scene("watt-2")
 
 
+def test_check_states_the_transmission_angle_of_each_pin_in_a_line(capsys):
+    assert main(["check", "whitworth"]) == 0
+    lines = dict(line.split(":") for line in capsys.readouterr().out.splitlines())
+    assert lines["transmission angle of arm"].strip() == "90°"
+    limits = ls.check(ls.example("whitworth")).sel(pin="E")
+    least, where, most, *_ = map(float, re.findall("[0-9.]+", lines["transmission angle of E"]))
+    for value, name in ((least, "min"), (where, "min_at"), (most, "max")):
+        assert value == pytest.approx(float(limits[f"transmission_angle_{name}"]), rel=1e-5)
+
+
 def test_bearings_over_part_of_a_turn_and_of_a_machine_with_toggles(table):
     rows = table("bearings", "press.toml", "--capacity", "5 kN", "--theta2", "10", "60")
     bearings = ls.bearings(PRESS, dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0)), theta2=(10, 60))
