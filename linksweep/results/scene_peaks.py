@@ -147,10 +147,10 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     known = known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
     searched = tuple(known[signal] for signal in signals)
     if part is not None:
-        found = peaks_within(scene, searched, part, threads)
+        peaks = peaks_within(scene, searched, part, threads)
     else:
-        found = exact_peaks(scene, searched, assembly, threads) if signals else {}
-    largest = {signal: found[known[signal]] for signal in signals}
+        peaks = exact_peaks(scene, searched, assembly, threads) if signals else {}
+    largest = {signal: peaks[known[signal]] for signal in signals}
     sampled = scene.at_one_angle
     averages = _means(scene, powers, known, threads) if part is None else {}
     return Result(sampled, grid, with_dead_centres(scene, assembly), largest, averages)

@@ -85,9 +85,9 @@ def test_jams_lie_between_the_angles_at_which_a_slider_crank_wedges():
     )
     limits = ls.check(ls.Scene(machine, omega2=10.0, loads=[ls.Load("ram", force=(-900.0, 0.0))]))
     expected = np.sort(ls.check(ls.Scene(engine, omega2=10.0)).jam_angle.values, axis=1)
-    found = np.sort(np.mod(np.concatenate([limits.jam_start, limits.jam_end], axis=1), 360.0), axis=1)
-    np.testing.assert_allclose(found, expected[:, : found.shape[1]], rtol=0, atol=1e-9)
-    assert np.isfinite(found).sum(axis=1).tolist() == [0, 0, 2, 4]
+    angles = np.sort(np.mod(np.concatenate([limits.jam_start, limits.jam_end], axis=1), 360.0), axis=1)
+    np.testing.assert_allclose(angles, expected[:, : angles.shape[1]], rtol=0, atol=1e-9)
+    assert np.isfinite(angles).sum(axis=1).tolist() == [0, 0, 2, 4]
 
 
 def test_jams_have_the_dims_of_loads_and_each_its_own():
@@ -114,15 +114,15 @@ def test_dead_centres_of_a_driven_rocker_are_those_of_the_closed_form():
         coupler=ROD,
         rocker=ROCKER,
     )
-    found = ls.check(ls.Scene(linkage, omega2=10.0, drive="rocker")).dead_centre_angle
-    np.testing.assert_allclose(found, np.sort(expected), rtol=0, atol=1e-9)
+    angles = ls.check(ls.Scene(linkage, omega2=10.0, drive="rocker")).dead_centre_angle
+    np.testing.assert_allclose(angles, np.sort(expected), rtol=0, atol=1e-9)
     assert "dead_centre_angle" not in ls.check(ls.Scene(linkage, omega2=10.0))
 
 
 def test_dead_centres_of_a_cylinder_are_nearest_and_farthest():
     linkage = ls.Linkage("crank A-B, jack D~B", ground={"A": (0.0, 0.0), "D": (0.3, 0.3)}, crank=CRANK)
-    found = ls.check(ls.Scene(linkage, omega2=10.0, drive="jack")).dead_centre_angle
-    np.testing.assert_allclose(found, [45.0, 225.0], rtol=0, atol=1e-9)
+    angles = ls.check(ls.Scene(linkage, omega2=10.0, drive="jack")).dead_centre_angle
+    np.testing.assert_allclose(angles, [45.0, 225.0], rtol=0, atol=1e-9)
 
 
 def test_transmission_angle_of_a_slot_is_its_angle_to_the_guide():

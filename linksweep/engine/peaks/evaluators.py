@@ -160,9 +160,9 @@ class Evaluators:
         emitter = Emitter(builder)
         place = {self.tangent: emitter.load(x, at), self.far: emitter.load(far, at)}
         here = emitter.emit(self.at_samples, {**self._loaded(emitter, constants), **place})
-        wanted, chosen = emitter.load(tag, at), here[self.signals[0]]
+        number, chosen = emitter.load(tag, at), here[self.signals[0]]
         for k, signal in enumerate(self.signals[1:], 1):
-            chosen = builder.select(builder.fcmp_ordered("==", wanted, emitter.constant(k)), here[signal], chosen)
+            chosen = builder.select(builder.fcmp_ordered("==", number, emitter.constant(k)), here[signal], chosen)
         emitter.store(chosen, values, at)
 
     def _loaded(self, emitter: Emitter, constants: Any) -> Values:

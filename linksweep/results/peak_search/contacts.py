@@ -25,7 +25,7 @@ def contact_angles(group: Group, jumps: Array) -> Array:
         return np.empty((designs, 0))
     row, nth = np.nonzero(np.isfinite(group.limits.arc_start))
     whole = group.limits.assembly[row] == EVERYWHERE
-    period, found = group.scene.period_of_motion, [(np.empty(0, dtype=int), np.empty(0))]
+    period, zeros = group.scene.period_of_motion, [(np.empty(0, dtype=int), np.empty(0))]
     for turns in (True, False):
         own, which = row[whole == turns], nth[whole == turns]
         if not len(own):
@@ -33,18 +33,18 @@ def contact_angles(group: Group, jumps: Array) -> Array:
         dense = np.concatenate([graded_samples(*group.some(own).near_toggles()), jumps[own]], axis=1)
         start, end = (table[own, which] for table in (group.limits.arc_start, group.limits.arc_end))
         x = on_turns(dense, period) if turns else on_arcs(start, end, dense, period)
-        found += [_zeros(group, contact, own, x, turns) for contact in contacts]
-    rows, angles = map(np.concatenate, zip(*found, strict=True))
+        zeros += [_zeros(group, contact, own, x, turns) for contact in contacts]
+    rows, angles = map(np.concatenate, zip(*zeros, strict=True))
     return by_row(rows, angles, designs)
 
 
 def _zeros(group: Group, contact: Limit, row: Array, x: Array, turns: bool) -> Zeros:
     """Return the zeros of a limit's signals along arcs with samples x (arc, sample), in every period of the motion."""
-    found = []
+    zeros = []
     for start in np.arange(0.0, group.scene.period, group.scene.period_of_motion):
         curves = Curves(group.scene, contact, group.designs[row], x + start, turns)
         curve, angle, turning = zeros_and_extremes(curves)
         touching = turning.some(np.abs(turning.height) <= turning.noise)
-        found += [(row[curves.arc(curve)], angle), (row[curves.arc(touching.curve)], touching.x[1])]
-    rows, angles = map(np.concatenate, zip(*found, strict=True))
+        zeros += [(row[curves.arc(curve)], angle), (row[curves.arc(touching.curve)], touching.x[1])]
+    rows, angles = map(np.concatenate, zip(*zeros, strict=True))
     return rows, in_period(angles, group.scene.period)

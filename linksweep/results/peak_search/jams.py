@@ -61,12 +61,12 @@ def jammed_designs(scene: Scene) -> Field:
 def jam_tables(scene: Scene) -> tuple[tuple[str, ...], Array, Array, Array]:
     """Return the design dims of jams, and tables (design dims…, jam) of their starts, ends and places; NaN for none."""
     dims, values = empty_over_all(scene, STATUS)
-    found = [Jams(*(np.empty(0, dtype=kind) for kind in (int, float, float, int)))]
+    parts = [Jams(*(np.empty(0, dtype=kind) for kind in (int, float, float, int)))]
     for group in groups(scene, STATUS):
         jams = _jams(group)
         places = tuple(group.places[dim][jams.row] for dim in dims)
-        found.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
-    row, *numbers = map(np.concatenate, zip(*found, strict=True))
+        parts.append(jams._replace(row=np.ravel_multi_index(places, values.shape) if dims else jams.row))
+    row, *numbers = map(np.concatenate, zip(*parts, strict=True))
     tables = (by_row(row, number.astype(float), values.size) for number in numbers)
     start, end, place = (table.reshape(*values.shape, table.shape[1]) for table in tables)
     return dims, start, end, place

@@ -169,8 +169,8 @@ def both_sides(angles: Array) -> Array:
 
 def kinks(group: Group) -> Array:
     """Return the angles (design, kink) of kinks, nearly: too inexact to cut an integral at."""
-    found = [_changes_of_sign(group, name) for name in group.scene.mechanism.kinks()]
-    return np.concatenate([np.empty((len(group.designs), 0)), *found], axis=1)
+    changes = [_changes_of_sign(group, name) for name in group.scene.mechanism.kinks()]
+    return np.concatenate([np.empty((len(group.designs), 0)), *changes], axis=1)
 
 
 def jump_angles(group: Group) -> Array:

@@ -60,8 +60,8 @@ def test_a_contact_bears_nothing_where_the_force_lies_on_the_edge_of_the_others_
     angles = np.degrees(np.arccos(-(along + shares) / INERTIA))
     turns_round = [0.0, 90.0, 180.0, 270.0]
     expected = np.sort(np.concatenate([angles, 360.0 - angles, turns_round]))
-    found = np.unique(np.round(np.mod(jump_angles(group)[0] + 1e-9, 360.0), 7))
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
+    angles = np.unique(np.round(np.mod(jump_angles(group)[0] + 1e-9, 360.0), 7))
+    np.testing.assert_allclose(angles, expected, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("slot_friction", [0.8, 2.5])
