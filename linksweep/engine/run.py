@@ -23,15 +23,13 @@ from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
+from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
 COMPILE_AFTER = 100_000
 """Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 0.1 s of numpy."""
-
-AT_ONCE = 2048
-"""Samples of a call without design dims that writes rows to scratch."""
 
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
@@ -113,13 +111,12 @@ class Runner:
 
     plan: Plan
     reductions: tuple[Reduction, ...]
-    room: int
     interpreted: int = 0
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
     @cached_property
     def fused(self) -> Writer:
-        return fuse(self.plan, self.reductions, self.room)
+        return fuse(self.plan, self.reductions)
 
     def should_interpret(self, samples: int) -> bool:
         self.interpreted += samples
@@ -149,17 +146,9 @@ runner = lru_cache(maxsize=256)(Runner)
 """Return the `Runner` of these arguments, one for all requests."""
 
 
-def room_for(samples: int) -> int:
-    """Return the length of a row of scratch, at least `samples`.
-
-    Lengths are few, so that kernels are few. None is a power of two: all rows would compete for the same cache sets.
-    """
-    return max(1024, 1 << (samples - 1).bit_length()) + 8
-
-
 def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
-    ready = runner(plan, (), room_for(len(grid.angles) if plan.loops else AT_ONCE))
+    ready = runner(plan, ())
     if ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
@@ -181,7 +170,7 @@ def reduce_rows(
 ) -> dict[Reduction, tuple[Field, Field]]:
     """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
     index."""
-    ready = runner(plan, reductions, room_for(len(grid.angles)))
+    ready = runner(plan, reductions)
     if plan.late or ready.should_interpret(_samples(plan, grid, sizes)):
         values = interpret(plan.nodes, aligned(plan, inputs, grid))
         fields = {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
@@ -243,27 +232,27 @@ def _execute(
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused, layout = ready.plan, ready.fused, ready.layout(sizes)
     kernel = compiled(fused.source, REDUCTIONS_SOURCE if ready.reductions else "")
-    samples = len(grid.angles)
+    samples, room = len(grid.angles), max(len(grid.angles), LANES)
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
+    profiles = np.pad(profiles, ((0, 0), (0, room - samples))) if samples < room else profiles
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
-    numbers = block_rows * samples + single_size
+    numbers = block_rows * room + single_size
     require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
-    block, single = new_block(block_rows, samples), np.empty(single_size)
+    block, single = new_block(block_rows, room), np.empty(single_size)
 
     def work(first: int, last: int) -> None:
-        scratch, working = np.empty(fused.scratch_size), np.empty(reduce.WORK)
-        step = AT_ONCE if fused.surplus and not plan.loops else max(last - first, 1)
-        for start in range(first, last, step):
-            kernel(
-                start, min(start + step, last), samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
-                block, block_at, single, single_at, scratch, grid.angles, working,
-            )  # fmt: skip
+        apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
+        scratch, values = np.empty((fused.scratch_rows, apart)), np.empty(fused.value_count)
+        kernel(
+            first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
+            block, block_at, single, single_at, scratch, values, grid.angles, np.empty(reduce.WORK),
+        )  # fmt: skip
 
     length = int(layout.sizes[0]) if plan.loops else samples
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD
     over_threads(work, length, 1 if ready.reductions and not plan.loops else workers, threads)
-    return block, single
+    return block[:, :samples], single
 
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:

@@ -11,9 +11,9 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.base.product_low import product_low
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
+from linksweep.engine.kernel.vectors import IN_PYTHON
 from linksweep.engine.peaks import find_peaks
 
 PRESS = ls.example("press")
@@ -25,7 +25,7 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | {"sqrt": np.sqrt, "math": math, "product_low": product_low}
+        namespace = vars(reduce) | IN_PYTHON
         exec(source, namespace)
         return namespace["kernel"]
 

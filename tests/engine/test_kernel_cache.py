@@ -15,7 +15,7 @@ from linksweep.engine import run
 from linksweep.engine.kernel import compile as kernels
 from linksweep.engine.trace.plan import plan
 
-SOURCE = "def kernel(x):\n    x[0] = sqrt(x[0])\n"
+SOURCE = "import math\n\n\ndef kernel(x):\n    x[0] = math.sqrt(x[0])\n"
 
 
 @pytest.fixture
@@ -190,7 +190,7 @@ def test_a_new_folder_is_the_users_alone(folder, umask):
 
 def test_the_name_covers_all_that_enters_the_kernel(folder, monkeypatch):
     scene = ls.example("press")
-    kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms), (), 1024).fused.source
+    kernel = run.runner(plan(scene.table, ("T12",), scene.inputs.forms), ()).fused.source
     kernels.compiled(kernel, "")
     kernels.compiled(kernel.replace("sqrt(", "1.0 * sqrt("), "")
     kernels.compiled(kernel, "import math\n\n\ndef unused():\n    return 1.0\n")

@@ -6,10 +6,22 @@ import numpy as np
 import pytest
 
 from linksweep.base.product_low import product_low
-from linksweep.engine.kernel import compile, fma
+from linksweep.engine.kernel import compile, vectors
 from linksweep.engine.trace.graph import Graph
 
-KERNEL = "def kernel(x, y, low):\n    for j in range(len(x)):\n        low[j] = product_low(x[j], y[j])\n"
+KERNEL = """
+@vectorised
+def rows(samples, x, y, low):
+    for j in in_vectors(0, samples, samples):
+        p = x[j]
+        q = y[j]
+        pq = product_low(p, q)
+        low[j] = pq
+
+
+def kernel(x, y, low):
+    rows(len(x), x, y, low)
+"""
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 2.0, -0.5, 3.0, 2.0**27 + 1.0, 1.0 + 2.0**-52, float("nan"), float("inf"))
 
 
@@ -22,9 +34,10 @@ def factors() -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("instruction", [True, False])
 def test_compiled_and_plain_have_equal_bits(instruction, monkeypatch):
-    if instruction and not fma.has_fma():
+    width, has_one = vectors.processor()
+    if instruction and not has_one:
         pytest.skip("no fused multiply-add on this machine")
-    monkeypatch.setattr(fma, "has_fma", lambda: instruction)
+    monkeypatch.setattr(vectors, "processor", lambda: (width, instruction))
     kernel = compile.compiled.__wrapped__(KERNEL, "", "void(f8[::1], f8[::1], f8[::1])")
     x, y = factors()
     result = np.empty(len(x))

@@ -1,4 +1,4 @@
-"""The compiled kernels take square roots eight or four at a time, where the machine can.
+"""The compiled kernels work on the samples that the processor's registers hold side by side, with the bits of numpy.
 
 A lost vectorisation is silent and costs a factor of eight: nothing but the machine code shows it.
 """
@@ -14,21 +14,21 @@ import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, batch, scene
 from benchmarks.speed.kernel import kernel_of, way
 from linksweep.base import cache
-from linksweep.engine.kernel import compile
+from linksweep.engine.kernel import compile, vectors
 
 PINS = ("F12", "F32", "F43", "F14")
 general, designs, six_bar = scene(GENERAL), scene(batch(3, *ALL)), ls.example("watt-2")
 CALLS = {
     "nine unknowns": (partial(ls.sweep, general, 72, of=NINE), 1),
     "nine unknowns of many designs": (partial(ls.sweep, designs, 72, of=NINE, threads=1), 1),
-    "more rows than one loop compares": (partial(ls.sweep, general, 72), 2 + len(PINS)),
-    "more rows than one loop compares, of many designs": (partial(ls.sweep, designs, 72, threads=1), 2 + len(PINS)),
-    "rows that are copied": (partial(ls.sweep, six_bar, 72, of=six_bar.mechanism.unknowns("crank")), 2),
+    "default quantities": (partial(ls.sweep, general, 72), 1 + len(PINS)),
+    "default quantities of many designs": (partial(ls.sweep, designs, 72, threads=1), 1 + len(PINS)),
+    "six-bar": (partial(ls.sweep, six_bar, 72, of=six_bar.mechanism.unknowns("crank")), 2),
     "T12 alone": (partial(ls.sweep, general, 72, of=("T12",)), 1),
     "magnitudes": (partial(ls.sweep, general, 72, of=PINS), 1 + len(PINS)),
     "peaks": (partial(ls.peaks, designs, theta2=72, threads=1), 1),
 }
-"""Calls, and how many square roots their kernels take per sample."""
+"""Calls, and how many square roots their kernels take per sample, once each."""
 
 
 def width() -> str:
@@ -37,7 +37,7 @@ def width() -> str:
     features = binding.get_host_cpu_features()
     if not features.get("avx2"):
         pytest.skip("neither AVX-512 nor AVX2 on this machine")
-    return "[yz]mm" if features.get("avx512f") else "ymm"
+    return "zmm" if features.get("avx512f") else "ymm"
 
 
 @pytest.fixture
@@ -57,17 +57,31 @@ def test_square_roots_are_packed(name, assembly):
     registers = width()
     call, roots = CALLS[name]
     packed = re.findall(rf"\bvsqrtpd\s.*%{registers}", assembly(call))
-    assert len(packed) >= roots
+    assert len(packed) == 2 * roots  # two registers side by side
 
 
-@pytest.mark.parametrize("threads", [1, 2])
-def test_rows_that_are_copied_have_the_bits_of_numpy(threads):
-    """More angles than one call of the kernel takes."""
-    ways = {}
-    for name in ("compiled", "interpreted"):
-        with way(name):
-            ways[name] = ls.sweep(six_bar, 5001, of=six_bar.mechanism.unknowns("crank"), threads=threads)
-    xr.testing.assert_identical(ways["compiled"], ways["interpreted"])
+REQUESTS = {
+    "two toggles": partial(ls.sweep, six_bar),
+    "guides with friction": partial(ls.sweep, ls.example("engine")),
+    "designs": partial(ls.sweep, designs, of=(*NINE, "transmission_angle")),
+    "largest samples": partial(ls.peaks, designs),
+    "largest samples, masses side by side": partial(ls.peaks, scene(batch(5, "m3", "m4")), of=NINE),
+}
+
+
+@pytest.mark.parametrize("processor", [(4, False), (8, True), (16, False)], ids=str)
+@pytest.mark.parametrize("request_name", REQUESTS)
+def test_any_width_has_the_bits_of_numpy(request_name, processor, monkeypatch):
+    """Of rows shorter than a vector, of whole vectors, and of others; with a fused multiply-add and without."""
+    monkeypatch.setattr(vectors, "processor", lambda: processor)
+    compile.compiled.cache_clear()
+    for samples in (1, 3, 16, 37):
+        ways = {}
+        for name in ("compiled", "interpreted"):
+            with way(name):
+                ways[name] = REQUESTS[request_name](theta2=samples, threads=1)
+        xr.testing.assert_identical(ways["compiled"], ways["interpreted"])
+    compile.compiled.cache_clear()
 
 
 def test_the_search_for_the_largest_is_packed(assembly):

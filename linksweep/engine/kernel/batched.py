@@ -7,7 +7,7 @@ for all of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import Node
@@ -32,22 +32,40 @@ def shares_rows(writer: Writer) -> bool:
 class BatchedWriter(Writer):
     """Writer of a kernel whose innermost loop does `BATCH` designs; names of a design's values end in its number."""
 
-    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...], room: int) -> None:
-        super().__init__(plan, reductions, room)
-        self.own = [node for node in self.scratch if self.level(node) == self.innermost]
-        self.scratch_size += (BATCH - 1) * len(self.own) * room
+    def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
+        super().__init__(plan, reductions)
         self.design = 0
 
+    @property
+    def scratch_rows(self) -> int:
+        return len(self.scratch) + (BATCH - 1) * len(self._own(self.scratch))
+
+    @property
+    def value_count(self) -> int:
+        return len(self.values) + (BATCH - 1) * len(self._own(self.values))
+
+    def _own(self, kept: Mapping[Node, int]) -> list[Node]:
+        """Return the nodes kept for each design of a batch."""
+        return [node for node in kept if self.level(node) == self.innermost]
+
+    def _number(self, kept: Mapping[Node, int], node: Node) -> int:
+        own = self._own(kept)
+        if self.design and node in own:
+            return len(kept) + (self.design - 1) * len(own) + own.index(node)
+        return kept[node]
+
+    def row_number(self, node: Node) -> int:
+        return self._number(self.scratch, node)
+
+    def value_number(self, node: Node) -> int:
+        return self._number(self.values, node)
+
     def name(self, node: Node) -> str:
-        return super().name(node) + (f"_{self.design}" if self.level(node) == self.innermost else "")
+        own = self.level(node) == self.innermost and node.operator != "constant"
+        return super().name(node) + (f"_{self.design}" if own else "")
 
     def counter(self, loop: int) -> str:
         return super().counter(loop) + (f"_{self.design}" if loop == self.innermost - 1 else "")
-
-    def row_number(self, node: Node) -> int:
-        if self.design and node in self.own:
-            return len(self.scratch) + (self.design - 1) * len(self.own) + self.own.index(node)
-        return super().row_number(node)
 
     def _design_loop(self, level: int) -> None:
         if level < self.innermost:
@@ -55,31 +73,10 @@ class BatchedWriter(Writer):
             return
         first, last = self._bounds(level)
         self.write(level, f"for front in range({first}, {last}, {BATCH}):")
-        for _ in self._designs(level):
+        for _ in self.designs(level):
             self.write(level + 1, f"{self.counter(level - 1)} = min(front + {self.design}, {last} - 1)")
 
-    def _single_values(self, level: int) -> None:
-        for _ in self._designs(level):
-            super()._single_values(level)
-
-    def _views(self, depth: int, read: list[Node], written: list[Node]) -> None:
-        for _ in self._designs(self.level(written[0])):
-            super()._views(depth, self._once(read), written)
-
-    def _one_sample(self, depth: int, read: list[Node], work: list[Node], written: list[Node]) -> None:
-        for _ in self._designs(self.level(written[0])):
-            super()._one_sample(depth, self._once(read), work, written)
-
-    def _reductions(self, level: int) -> None:
-        for _ in self._designs(level):
-            super()._reductions(level)
-
-    def _designs(self, level: int) -> Iterator[int]:
-        """Yield the designs of a batch; names belong to the current one."""
+    def designs(self, level: int) -> Iterator[int]:
         for design in range(BATCH if level == self.innermost else 1):
             self.design = design
             yield design
-
-    def _once(self, read: list[Node]) -> list[Node]:
-        """Return the nodes to read: shared rows only with the first design."""
-        return [node for node in read if self.design == 0 or self.level(node) == self.innermost]

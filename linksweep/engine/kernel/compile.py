@@ -18,7 +18,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
-from linksweep.engine.kernel import fma
+from linksweep.engine.kernel import vectors
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -26,7 +26,7 @@ arrays, so numba's reference counting (`_nrt`) is off: in a search its cost show
 
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "
-    "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[::1], f8[::1], f8[::1])"
+    "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8[::1], f8[::1])"
 )
 
 SEARCH_SIGNATURE = (
@@ -36,16 +36,12 @@ SEARCH_SIGNATURE = (
     "f8[::1], f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1])"
 )
 
-IMPORTS = "import math\nfrom math import atan2, sqrt\n\n\n"
-
 
 @cache
 def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now."""
-    exact = {"product_low": fma.product_low()} if fma.has_fma() else compiled_functions(fma.DEKKER)
-    helpers = {**compiled_functions(helpers_source), **exact}
-    context = f"{signature} {helpers_source} {fma.SOURCE}"
-    kernel = _jitted(IMPORTS + kernel_source, helpers, context)["kernel"]
+    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.processor()}"
+    kernel = _jitted(kernel_source, compiled_functions(helpers_source), context)["kernel"]
     kernel.compile(signature)
     kernel.disable_compile()
     return kernel
@@ -107,12 +103,13 @@ def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
 
 
 def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
-    """Run a module's text and hand its functions to numba; its name covers all that enters their machine code."""
+    """Run a module's text and hand its functions to numba, `@vectorised` ones as instructions; its name covers all that
+    enters their machine code."""
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
     module = sys.modules[name] = ModuleType(name)  # where a cached kernel looks for it
-    vars(module).update(helpers)
+    vars(module).update({"vectorised": vectors.intrinsic, **helpers})
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
     jitted = {key: numba.njit(**SETTINGS)(function) for key, function in functions.items()}

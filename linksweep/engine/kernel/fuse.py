@@ -12,7 +12,7 @@ from linksweep.engine.trace.plan import Plan
 REDUCTIONS_SOURCE = inspect.getsource(reduce)
 
 
-def fuse(plan: Plan, reductions: tuple[Reduction, ...], room: int) -> Writer:
-    """Return the kernel that stores the plan's outputs or reduces them row by row, for at most `room` samples."""
-    writer = Writer(plan, reductions, room)
-    return BatchedWriter(plan, reductions, room) if shares_rows(writer) else writer
+def fuse(plan: Plan, reductions: tuple[Reduction, ...]) -> Writer:
+    """Return the kernel that stores the plan's outputs or reduces them row by row."""
+    writer = Writer(plan, reductions)
+    return BatchedWriter(plan, reductions) if shares_rows(writer) else writer
