@@ -6,6 +6,7 @@ A lost vectorisation is silent and costs a factor of eight: nothing but the mach
 import re
 from functools import partial
 
+import numpy as np
 import pytest
 import xarray as xr
 from long import long_but
@@ -89,3 +90,32 @@ def test_the_search_for_the_largest_is_packed(assembly):
     registers = width()
     call, _ = CALLS["peaks"]
     assert len(re.findall(rf"\bvmaxpd\s.*%{registers}", assembly(call))) >= 8
+
+
+CONDITIONS = """
+@vectorised
+def rows(samples, x, y, values, flags, result):
+    values[2] = values[0] < values[1]
+    for j in in_vectors(0, samples, samples):
+        flags[j] = x[j] < y[j]
+    above = values[2]
+    for j in in_vectors(0, samples, samples):
+        smaller = where(flags[j], x[j], y[j])
+        result[j] = where(above, smaller, -1.0)
+
+
+def kernel(x, y, values, flags, result):
+    rows(len(x), x, y, values, flags, result)
+"""
+
+
+@pytest.mark.parametrize("values", [(1.0, 2.0), (2.0, 1.0)])
+def test_conditions_are_stored_as_one_and_zero(values):
+    x, y = np.random.default_rng(3).standard_normal((2, 37))
+    compiled, (flags, result) = np.array([*values, np.nan]), np.empty((2, 37))
+    kernel = compile.compiled.__wrapped__(CONDITIONS, "", "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])")
+    kernel(x, y, compiled, flags, result)
+    above = values[0] < values[1]
+    assert compiled[2] == above
+    np.testing.assert_array_equal(flags, x < y)
+    np.testing.assert_array_equal(result, np.minimum(x, y) if above else -np.ones(37))
