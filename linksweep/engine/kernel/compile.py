@@ -47,10 +47,10 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
     return kernel
 
 
-def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature: str) -> Callable:
-    """Return one function of a module of plain functions, compiled for these types of its arguments."""
-    context = f"{signature} {sorted((key, repr(value)) for key, value in helpers.items() if not callable(value))}"
-    entry = _jitted("import math\n\n\n" + source, helpers, context)[name]
+def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature: str, enters: str) -> Callable:
+    """Return one function of a module of plain functions, compiled for these types of its arguments; `enters` is the
+    source of all that enters its machine code by the helpers."""
+    entry = _jitted("import math\n\n\n" + source, helpers, f"{signature} {enters}")[name]
     entry.compile(signature)
     entry.disable_compile()
     return entry

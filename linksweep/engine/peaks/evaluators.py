@@ -11,6 +11,9 @@ all operations whose results are the same there, or opposite.
 
 from __future__ import annotations
 
+import inspect
+import math
+import sys
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -18,16 +21,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.compile import compiled_vectors
+from linksweep.engine.peaks import instructions
 from linksweep.engine.peaks.instructions import WIDTH, Emitter, Values
 from linksweep.engine.peaks.search import HALF, SAMPLES
-from linksweep.engine.run import interpret
+from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
+SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
+"""All that enters the machine code besides the nodes."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
+
+
+BETWEEN_SAMPLES = {**OPERATORS, "atan2": np.vectorize(math.atan2, otypes=[float])}
+"""Operations on numbers or arrays; numpy's own arctangent differs in the last bit from that of machine code."""
 
 
 class Functions(NamedTuple):
@@ -83,7 +93,7 @@ class Evaluators:
 
     def _at(self, constants: np.ndarray, tangent: Any, far: Any) -> Values:
         values: Values = dict(zip(self.constants, constants, strict=True)) | {self.tangent: tangent, self.far: far}
-        return interpret([*self.fixed, *self.at_samples], values)
+        return interpret([*self.fixed, *self.at_samples], values, BETWEEN_SAMPLES)
 
     # --------------------------------------------------------------------------------------------- compiled
 
@@ -176,4 +186,4 @@ class Evaluators:
         nodes = {node: k for k, node in enumerate(self.plan.nodes)}
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals)]
-        return f"{WIDTH} {HALF} {lines} {roles}"
+        return f"{SOURCE} {HALF} {lines} {roles}"

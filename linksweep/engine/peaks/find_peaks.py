@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled_entry, compiled_functions
-from linksweep.engine.peaks import abreast, search
+from linksweep.engine.peaks import abreast, lanewise, search
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.peaks.lanewise import Lanewise
 from linksweep.engine.run import Field, Fields, Sizes, flat, ordered, over_threads
@@ -74,7 +74,8 @@ def compiled_search() -> Callable:
     numbers = {name: value for name, value in vars(abreast).items() if isinstance(value, int | float)}
     vectors = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
     helpers = {**compiled_functions(SEARCH_SOURCE), **numbers, **vectors}
-    return compiled_entry("search", "\n\n".join(functions), helpers, SEARCH_SIGNATURE)
+    enters = f"{inspect.getsource(abreast)} {SEARCH_SOURCE} {lanewise.SOURCE}"
+    return compiled_entry("search", "\n\n".join(functions), helpers, SEARCH_SIGNATURE, enters)
 
 
 @lru_cache(maxsize=1)

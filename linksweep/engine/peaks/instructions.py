@@ -6,7 +6,9 @@ is emitted as it stands in the graph: none is contracted or reordered, so result
 
 from __future__ import annotations
 
+import inspect
 import math
+import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -14,6 +16,9 @@ from linksweep.engine.trace.graph import Node
 
 WIDTH = 8
 """Lanes of a vector: 8 doubles fill a 512-bit register."""
+
+SOURCE = inspect.getsource(sys.modules[__name__])
+"""All that enters the instructions besides the nodes."""
 
 Values = dict[Node, Any]
 """Emitted values of nodes: vectors of doubles, or of bits for comparisons."""

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from linksweep.engine.kernel.compile import compiled_vectors
+from linksweep.engine.peaks import instructions
 from linksweep.engine.peaks.instructions import WIDTH, Emitter, Values
 from linksweep.engine.run import interpret
 from linksweep.engine.trace.graph import Graph, Node
 
+SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
+"""All that enters the machine code besides the nodes."""
 ABREAST = 3
 """Vectors of lanes that go around a turn together: one alone waits for its own results."""
 
@@ -46,7 +51,7 @@ class Lanewise:
         """A text that differs wherever the function does."""
         place = {node: k for k, node in enumerate([*self.inputs, *self.nodes])}
         lines = [(node.operator, node.value, [place[x] for x in node.operands]) for node in self.nodes]
-        return f"{WIDTH} {self.rows} {self.outputs} {lines} {[place[node] for node in self.results]}"
+        return f"{SOURCE} {self.rows} {self.outputs} {lines} {[place[node] for node in self.results]}"
 
     def _emit(self, builder: Any, table: Any, columns: Any) -> None:
         from numba.core import cgutils

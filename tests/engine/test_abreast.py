@@ -1,0 +1,134 @@
+"""Designs side by side: the same bits compiled and interpreted, alone and in company."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.engine.peaks import abreast
+from linksweep.engine.peaks.evaluators import Evaluators
+from linksweep.engine.peaks.find_peaks import grades
+from linksweep.engine.peaks.lanewise import Around, Lanewise
+from linksweep.engine.peaks.search import BEST_ROWS, HALF, LANE_ROWS, PEAK, PEAK_FAR, PEAK_X, SAMPLES, TRIAL_ROWS
+from linksweep.engine.trace.plan import plan
+
+LANEWISE = {name: value for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
+SPECIAL = (0.0, -0.0, 1.0, np.inf, -np.inf, np.nan)
+
+
+def table(seed: int, columns: int = 24) -> np.ndarray:
+    random = np.random.default_rng(seed)
+    numbers = random.normal(size=(abreast.STATE_ROWS, columns)) * 10.0 ** random.integers(-3, 4, columns)
+    special = random.random(numbers.shape) < 0.05
+    numbers[special] = random.choice(SPECIAL, special.sum())
+    return numbers
+
+
+@pytest.mark.parametrize("name", LANEWISE)
+def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
+    function, columns = LANEWISE[name], 24
+    compiled, interpreted = table(3), table(3)
+    samples = (np.random.default_rng(4).normal(size=SAMPLES * columns), SAMPLES) if isinstance(function, Around) else ()
+    function.compiled()(*samples, compiled, columns)
+    with np.errstate(all="ignore"):
+        function(*samples, interpreted, columns)
+    np.testing.assert_array_equal(compiled, interpreted)
+    assert not np.array_equal(compiled, table(3), equal_nan=True)
+
+
+def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
+    """Against a plain loop over the samples of each signal."""
+    columns, state = 8, np.zeros((abreast.STATE_ROWS, 8))
+    rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
+    state[abreast.REACH] = state[abreast.OTHER] = -np.inf
+    abreast.compare_sample(rows.ravel(), SAMPLES, state, columns)
+    before, after = np.roll(rows, 1, axis=0), np.roll(rows, -1, axis=0)
+    reach = np.where((before < rows) & (after <= rows), 3.0 * rows - before - after, -np.inf)
+    ranked = np.sort(reach, axis=0)
+    np.testing.assert_array_equal(state[abreast.SUMMIT], reach.argmax(axis=0))
+    np.testing.assert_allclose(state[abreast.REACH], ranked[-1], rtol=1e-15)
+    np.testing.assert_allclose(state[abreast.OTHER], ranked[-2], rtol=1e-15)
+    np.testing.assert_array_equal(state[abreast.SIZE], np.abs(rows).max(axis=0))
+
+
+def four_bars(designs: int) -> ls.Scene:
+    random = np.random.default_rng(7)
+
+    def link(shortest: float, longest: float) -> ls.Link:
+        length, mass, inertia = (
+            random.uniform(*ends, designs) for ends in ((shortest, longest), (0.5, 2.0), (1e-3, 5e-3))
+        )
+        numbers = (length, mass, inertia, 0.4 * length, random.uniform(-30.0, 30.0, designs))
+        return ls.Link(*(xr.DataArray(number, dims="design") for number in numbers))
+
+    mechanism = ls.FourBar(link(0.05, 0.1), link(0.2, 0.25), link(0.18, 0.22), ground=0.22)
+    return ls.Scene(mechanism, omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81))
+
+
+def test_evaluators_have_the_same_bits_compiled_and_interpreted():
+    """Also at the samples that share operations with those on the other side of the middle."""
+    scene = four_bars(8)
+    forms = tuple((name, form) for name, form in scene.inputs.forms if name not in scene.grid(1).names)
+    forms += (("half_tangent", ("theta2", "design")), ("far_half", ("theta2",)))
+    signals = ("F32", "T12", "theta4")
+    request = plan(scene.table.between_samples, (*signals, "near_toggle_near", "near_toggle_far"), forms)
+    evaluators = Evaluators(request, signals)
+    compiled, interpreted = evaluators.compiled, evaluators.interpreted
+    lanes, of_turn = compiled.lanes, np.repeat(grades()[[3, 0], :].ravel(), compiled.lanes)
+    inputs = np.array([np.broadcast_to(scene.inputs.fields[node.value].values, lanes) for node in evaluators.inputs])
+    constants, rows = np.empty(len(evaluators.constants) * lanes), np.empty((SAMPLES + 1) * len(signals) * lanes)
+    compiled.prepare(inputs.ravel(), constants)
+    compiled.sample(constants, of_turn, rows)
+    x, far, tag = np.linspace(-0.9, 0.9, lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0
+    values = np.empty(lanes)
+    compiled.evaluate(constants, x, far, tag, values, 0)
+    for lane in range(lanes):
+        own, own_rows, value = np.empty(len(evaluators.constants)), np.empty(SAMPLES * len(signals)), np.empty(1)
+        interpreted.prepare(inputs[:, lane].copy(), own)
+        interpreted.sample(own, of_turn[lane::lanes].copy(), own_rows)
+        interpreted.evaluate(own, x[lane:], far[lane:], tag[lane:], value, 0)
+        np.testing.assert_array_equal(constants.reshape(-1, lanes)[:, lane], own)
+        np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
+        assert values[lane] == value[0]
+
+
+def test_a_place_is_that_of_its_sample():
+    x = np.repeat(np.concatenate([grades()[0], grades()[0]]), 2)
+    angles = [2.0 * np.degrees(np.arctan(abreast.place_of(x, 2, 1, j))) for j in range(SAMPLES)]
+    assert angles[0] == -90.0 and angles[HALF] == 0.0 and angles[2 * HALF] == -90.0
+    assert (np.diff(angles[: 2 * HALF]) > 0.0).all()
+    for j in (0, 1, 2 * HALF - 1, 2 * HALF, SAMPLES - 1):
+        before, after = (2.0 * np.degrees(np.arctan(place(x, 2, 1, j))) for place in (abreast.before, abreast.after))
+        assert before < angles[j] < after <= 90.0
+
+
+def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
+    """cos 3θ and a little of cos θ: samples may show any of three summits as the best, by more than they differ."""
+    phase = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+    little = 1e-6
+
+    def height(angle, phase):
+        return 5.0 + np.cos(3.0 * (angle - phase)) + little * np.cos(angle - phase)
+
+    def prepare(inputs, constants):
+        constants[:] = 1.0, 1.0, inputs[0]
+
+    def sample(constants, x, rows):
+        angles = [2.0 * np.arctan(abreast.place_of(x, 1, 0, j)) + np.pi * (j >= 2 * HALF) for j in range(SAMPLES)]
+        rows[:SAMPLES] = height(np.array(angles), constants[2])
+
+    def evaluate(constants, x, far, tag, values, at):
+        values[at] = height(2.0 * np.arctan(x[at]) + np.pi * far[at], constants[2])
+
+    out, room = np.empty((BEST_ROWS + 1, 1, len(phase))), 512
+    one = np.array([0], dtype=np.int64)
+    with np.errstate(all="ignore"):
+        abreast.search(
+            0, len(phase), 1, True, np.array([len(phase)]), phase, one, np.ones((1, 1), dtype=np.int64), grades(),
+            prepare, sample, evaluate, np.zeros(1), np.zeros((abreast.DESIGNS, 3)), np.zeros(2 * (HALF + 1)),
+            np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)), np.zeros((LANE_ROWS, room)),
+            np.zeros((TRIAL_ROWS, 3 * room)), np.zeros(3), np.zeros((BEST_ROWS + 1, abreast.DESIGNS)), out,
+        )  # fmt: skip
+    places = 2.0 * np.arctan(out[PEAK_X, 0]) + np.pi * out[PEAK_FAR, 0]
+    np.testing.assert_allclose(out[PEAK, 0], 6.0 + little, rtol=2e-11)
+    np.testing.assert_allclose(np.cos(places - phase), 1.0, atol=1e-9)
