@@ -73,7 +73,7 @@ REQUESTS = {
 @pytest.mark.parametrize("processor", [(4, False), (8, True), (16, False)], ids=str)
 @pytest.mark.parametrize("request_name", REQUESTS)
 def test_any_width_has_the_bits_of_numpy(request_name, processor, monkeypatch):
-    """Of rows shorter than a vector, of whole vectors, and of others; with a fused multiply-add and without."""
+    """Rows are shorter than a vector, whole vectors, or neither; processors have a fused multiply-add or not."""
     monkeypatch.setattr(vectors, "processor", lambda: processor)
     compile.compiled.cache_clear()
     for samples in (1, 3, 16, 37):

@@ -64,5 +64,5 @@ def test_a_cycle_of_a_press_has_all_forces_in_its_legend():
 
 def test_a_report_lists_ground_pins_guides_and_branches():
     page = str(settings(ls.example("knuckle-press")))
-    for row in ("ground D", "guides slide", "branch C"):
+    for row in ("ground pin D", "guide slide", "branch of C"):
         assert row in page

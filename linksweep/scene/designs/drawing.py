@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from linksweep.base.validate import quote, refuse
-from linksweep.scene.designs.sampling import parameter_problems, seed_problems, with_designs
+from linksweep.scene.designs.sampling import dim_problems, parameter_problems, seed_problems, with_designs
 from linksweep.scene.scene import Scene
 
 WORDS = 4
@@ -62,7 +62,7 @@ def draw(
     >>> bool((some.mechanism.rocker.length[1] == alone.mechanism.rocker.length[0]).all())
     True
     """
-    refuse([*parameter_problems(scene, parameters, dim), *seed_range_problems(seed)])
+    refuse([*parameter_problems(scene, parameters), *seed_range_problems(seed), *dim_problems(scene, dim)])
     numbers = _numbers(designs)
     return with_designs(scene, parameters, levels(len(parameters), numbers, int(seed)), numbers, dim)
 

@@ -68,9 +68,10 @@ def sample(
     >>> dict(ls.peaks(drawn, of=["F32"]).F32_peak.sizes)
     {'design': 1024}
     """
-    problems = parameter_problems(scene, parameters, dim)
+    problems = parameter_problems(scene, parameters)
     problems += [f"n = {n}: must be a whole number, 1 or more"] if n is None else count_problems("n", n)
-    refuse([*problems, *choice_problems("method", method, METHODS), *([] if seed is None else seed_problems(seed))])
+    problems += choice_problems("method", method, METHODS) + ([] if seed is None else seed_problems(seed))
+    refuse([*problems, *dim_problems(scene, dim)])
     require_memory(f"n = {quote(n)}", 2.0 * 8.0 * n * len(parameters))
     return with_designs(scene, parameters, _points(method, len(parameters), int(n), seed), np.arange(int(n)), dim)
 
@@ -100,17 +101,23 @@ def _drawn(choice: Any, levels: np.ndarray, dim: str, labels: np.ndarray, own: A
     return own + drawn if around else drawn
 
 
-def parameter_problems(scene: Any, parameters: Any, dim: Any) -> list[str]:
-    """Return the problems of drawing these parameters of a scene along a dim."""
+def parameter_problems(scene: Any, parameters: Any) -> list[str]:
+    """Return the problems of drawing these parameters of a scene."""
     if not isinstance(scene, Scene):
         return [f"scene is a {type(scene).__name__}: must be a Scene"]
     if not isinstance(parameters, Mapping) or not parameters:
         return [f'parameters = {quote(parameters)}: must name what varies, as in {{"coupler.length": (0.1, 0.3)}}']
-    problems = [problem for path in parameters for problem in name_problems("parameters", path, free(scene))]
+    return [problem for path in parameters for problem in name_problems("parameters", path, free(scene))]
+
+
+def dim_problems(scene: Any, dim: Any) -> list[str]:
+    """Return the problems of a dim for the designs drawn of a scene."""
+    if not isinstance(scene, Scene):
+        return []
     taken = {dim for array in scene.arrays.values() for dim in array.dims}
     if dim in taken | {scene.mechanism.index, *scene.mechanism.coordinates()}:
-        problems.append(f'dim = {quote(dim)}: the scene has this dimension already; give another name, as dim="other"')
-    return problems
+        return [f'dim = {quote(dim)}: the scene has this dimension already; give another name, as dim="other"']
+    return []
 
 
 def seed_problems(seed: Any) -> list[str]:
