@@ -29,7 +29,7 @@ class Step:
     """A dyad, or a gear: links that find their places together."""
 
     places: ClassVar[str] = "pin"
-    """What it gives a place, which names it."""
+    """Field with the pin, or the part, that the step places; it names the step."""
 
     @property
     def name(self) -> str:
