@@ -13,7 +13,6 @@ import xarray as xr
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
-from linksweep.engine.kernel.vectors import IN_PYTHON
 from linksweep.engine.peaks import find_peaks
 
 PRESS = ls.example("press")
@@ -25,7 +24,8 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | IN_PYTHON
+        namespace = vars(reduce) | run.OPERATORS | {"in_vectors": whole_row, "number": np.float64, "math": math}
+        namespace["vectorised"] = lambda function: function
         exec(source, namespace)
         return namespace["kernel"]
 
@@ -37,6 +37,10 @@ def in_python(monkeypatch):
     yield
     for made in (run.runner, find_peaks.searcher):
         made.cache_clear()
+
+
+def whole_row(first, last, samples):
+    return [slice(first, last)]
 
 
 def over(random, sizes: dict[str, int]) -> xr.DataArray:

@@ -70,11 +70,11 @@ REQUESTS = {
 }
 
 
-@pytest.mark.parametrize("processor", [(4, False), (8, True), (16, False)], ids=str)
+@pytest.mark.parametrize("width", [4, 8, 16])
 @pytest.mark.parametrize("request_name", REQUESTS)
-def test_any_width_has_the_bits_of_numpy(request_name, processor, monkeypatch):
-    """Rows are shorter than a vector, whole vectors, or neither; processors have a fused multiply-add or not."""
-    monkeypatch.setattr(vectors, "processor", lambda: processor)
+def test_any_width_has_the_bits_of_numpy(request_name, width, monkeypatch):
+    """Rows are shorter than a vector, whole vectors, or neither."""
+    monkeypatch.setattr(vectors, "width", lambda: width)
     compile.compiled.cache_clear()
     for samples in (1, 3, 16, 37):
         ways = {}

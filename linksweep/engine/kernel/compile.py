@@ -18,7 +18,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
-from linksweep.engine.kernel import vectors
+from linksweep.engine.kernel import instructions, vectors
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -40,7 +40,7 @@ SEARCH_SIGNATURE = (
 @cache
 def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now."""
-    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.processor()}"
+    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.width()}"
     kernel = _jitted(kernel_source, compiled_functions(helpers_source), context)["kernel"]
     kernel.compile(signature)
     kernel.disable_compile()
@@ -57,40 +57,17 @@ def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature
 
 
 def compiled_vectors(emit: Callable[..., None], signature: str, text: str) -> Callable:
-    """Return a function of arrays and integers whose body `emit` writes by a builder of instructions, which gets the
-    starts of the arrays; `text` differs wherever the body does."""
+    """Return a function of arrays and integers whose body `emit` writes by a builder of instructions; `text` differs
+    wherever the body does."""
     from numba.core.sigutils import normalize_signature
 
-    kinds, _ = normalize_signature(signature)
-    arguments = ", ".join(f"x{k}" for k in range(len(kinds)))
-    source = f"def kernel({arguments}):\n    body({arguments})\n"
-    kernel = _jitted(source, {"body": _body(emit, arguments)}, f"{signature} {emit.__qualname__} {text}")["kernel"]
+    names = [f"x{k}" for k in range(len(normalize_signature(signature)[0]))]
+    source = "def kernel({0}):\n    body({0})\n".format(", ".join(names))
+    body = {"body": instructions.intrinsic(emit, names)}
+    kernel = _jitted(source, body, f"{signature} {emit.__qualname__} {instructions.SOURCE} {text}")["kernel"]
     kernel.compile(signature)
     kernel.disable_compile()
     return kernel
-
-
-def _body(emit: Callable[..., None], arguments: str) -> Callable:
-    """Return what `emit` writes as a function that numba-compiled ones call."""
-    from numba.core import cgutils, types
-    from numba.extending import intrinsic
-
-    def typed(*kinds: Any) -> tuple[Any, Callable]:
-        def write(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            starts = [
-                cgutils.create_struct_proxy(kind)(context, builder, value=value).data
-                if isinstance(kind, types.Array)
-                else value
-                for kind, value in zip(signature.args, values, strict=True)
-            ]
-            emit(builder, *starts)
-            return context.get_dummy_value()
-
-        return types.void(*kinds), write
-
-    namespace: dict[str, Any] = {"typed": typed}
-    exec(f"def body(typing_context, {arguments}):\n    return typed({arguments})\n", namespace)
-    return intrinsic(namespace["body"])
 
 
 @cache

@@ -7,8 +7,10 @@ numbers (`engine.linear.vectors`). Both do the same operations, so both return e
 
 import numpy as np
 
-LANES = 8
-"""Lanes of compiled code: 8 doubles fill a 512-bit register, or two of 256 bits."""
+from linksweep.engine.kernel.instructions import REGISTER
+
+LANES = REGISTER
+"""Lanes of compiled code."""
 
 EXPONENT = 0x7FF << 52
 """Bits of a double's exponent."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from linksweep.base.memory import require_memory
 from linksweep.engine import run
+from linksweep.engine.kernel import instructions
 from linksweep.engine.kernel.compile import compiled_functions
 from linksweep.engine.linear import elimination, lanes
 
@@ -65,7 +66,7 @@ class Solver:
     def compiled(self) -> Callable:
         from linksweep.engine.linear import vectors
 
-        taught = "".join(inspect.getsource(module) for module in (lanes, vectors))
+        taught = "".join(inspect.getsource(module) for module in (lanes, vectors)) + instructions.SOURCE
         return compiled_functions(inspect.getsource(elimination), taught)[self.name]
 
 

@@ -21,15 +21,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.compile import compiled_vectors
-from linksweep.engine.peaks import instructions
-from linksweep.engine.peaks.instructions import WIDTH, Emitter, Values
+from linksweep.engine.kernel.instructions import REGISTER as LANES
+from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.peaks.search import HALF, SAMPLES
 from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
-SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
-"""All that enters the machine code besides the nodes."""
+Values = dict[Node, Any]
+"""Values of nodes: numbers, arrays, or instructions that compute vectors."""
+SOURCE = inspect.getsource(sys.modules[__name__])
+"""All that enters the machine code besides nodes and instructions."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
@@ -99,51 +101,56 @@ class Evaluators:
 
     @cached_property
     def compiled(self) -> Functions:
-        """The functions as machine code, for `WIDTH` lanes."""
+        """The functions as machine code, for `LANES` lanes."""
         text = self._text()
         return Functions(
-            WIDTH,
+            LANES,
             compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8)", text),
         )
 
     def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:
-        emitter = Emitter(builder)
-        values: Values = {node: emitter.load(inputs, emitter.integer(k * WIDTH)) for k, node in enumerate(self.inputs)}
-        emitter.emit([*self.fixed, *self.of_designs], values)
+        vectors = Instructions(builder)
+        values = self._row(vectors, inputs, self.inputs)
+        interpret([*self.fixed, *self.of_designs], values, vectors.operators)
         for k, node in enumerate(self.constants):
-            emitter.store(values[node], constants, emitter.integer(k * WIDTH))
+            vectors.store(values[node], constants.data, vectors.integer(k * LANES))
 
     def _emit_sample(self, builder: Any, constants: Any, x: Any, rows: Any) -> None:
         """Emit a loop over both half turns, and in it one over the samples from the middle on, each with its mirror."""
         from numba.core import cgutils
 
-        emitter = Emitter(builder)
-        values = self._loaded(emitter, constants)
-        of, size, half = builder.mul, emitter.integer(len(self.signals) * WIDTH), emitter.integer(HALF)
-        with cgutils.for_range(builder, emitter.integer(2)) as (turn, _):
-            far = emitter.spread(builder.uitofp(turn, emitter.ir.DoubleType()))
-            with cgutils.for_range(builder, emitter.integer(HALF + 1)) as (k, _):
-                at = builder.add(of(turn, emitter.integer(HALF + 1)), k)
-                tangent = emitter.load(x, of(at, emitter.integer(WIDTH)))
-                here = emitter.emit(self.at_samples, {**values, self.tangent: tangent, self.far: far})
-                middle = builder.add(of(turn, emitter.integer(2 * HALF)), half)
-                for mirrored, place in ((True, builder.sub(middle, k)), (False, builder.add(middle, k))):
-                    there = self._mirrored(emitter, here) if mirrored else here
-                    for s, signal in enumerate(self.signals):
-                        start = builder.add(of(place, size), emitter.integer(s * WIDTH))
-                        emitter.store(there[signal], rows, start)
+        vectors = Instructions(builder)
+        integer, of, known = vectors.integer, builder.mul, self._row(vectors, constants, self.constants)
+        size, half = integer(len(self.signals) * LANES), integer(HALF)
+        with (
+            cgutils.for_range(builder, integer(2)) as (turn, _),
+            cgutils.for_range(builder, integer(HALF + 1)) as (k, _),
+        ):
+            at = builder.add(of(turn, integer(HALF + 1)), k)
+            place = {
+                self.tangent: vectors.load(x.data, of(at, integer(LANES))),
+                self.far: builder.uitofp(turn, vectors.double),
+            }
+            here = self._emitted(vectors, known | place)
+            middle = builder.add(of(turn, integer(2 * HALF)), half)
+            for there, sample in (
+                (self._mirrored(vectors, here), builder.sub(middle, k)),
+                (here, builder.add(middle, k)),
+            ):
+                for s, signal in enumerate(self.signals):
+                    vectors.store(there[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
 
-    def _mirrored(self, emitter: Emitter, here: Values) -> Values:
+    def _mirrored(self, vectors: Instructions, here: Values) -> Values:
         """Return the values at the opposite tangents; only operations that are neither even nor odd are repeated."""
         there = dict(here)
         for node in [self.tangent, *self.at_samples]:
             parity = self.parity[node]
             if parity < 0:
-                there[node] = emitter.builder.fneg(here[node])
+                there[node] = vectors.operators["negate"](here[node])
             elif parity == 0:
-                there[node] = emitter.operation(node, [there[x] for x in node.operands])
+                interpret([node], there, vectors.operators)
         return there
 
     @cached_property
@@ -167,19 +174,22 @@ class Evaluators:
         return parity
 
     def _emit_evaluate(self, builder: Any, constants: Any, x: Any, far: Any, tag: Any, values: Any, at: Any) -> None:
-        emitter = Emitter(builder)
-        place = {self.tangent: emitter.load(x, at), self.far: emitter.load(far, at)}
-        here = emitter.emit(self.at_samples, {**self._loaded(emitter, constants), **place})
-        number, chosen = emitter.load(tag, at), here[self.signals[0]]
+        vectors = Instructions(builder)
+        place = {self.tangent: vectors.load(x.data, at), self.far: vectors.load(far.data, at)}
+        here = self._emitted(vectors, self._row(vectors, constants, self.constants) | place)
+        number, chosen = vectors.load(tag.data, at), here[self.signals[0]]
         for k, signal in enumerate(self.signals[1:], 1):
-            chosen = builder.select(builder.fcmp_ordered("==", number, emitter.constant(k)), here[signal], chosen)
-        emitter.store(chosen, values, at)
+            asked = vectors.operators["=="](number, k)
+            chosen = vectors.operators["where"](asked, here[signal], chosen)
+        vectors.store(chosen, values.data, at)
 
-    def _loaded(self, emitter: Emitter, constants: Any) -> Values:
-        values = emitter.emit(self.fixed, {})
-        for k, node in enumerate(self.constants):
-            values[node] = emitter.load(constants, emitter.integer(k * WIDTH))
-        return values
+    def _emitted(self, vectors: Instructions, values: Values) -> Values:
+        """Return all values at a place, from those of the designs and of the place."""
+        return interpret([*self.fixed, *self.at_samples], values, vectors.operators)
+
+    def _row(self, vectors: Instructions, array: Any, nodes: list[Node]) -> Values:
+        """Return the values of nodes that an array holds one after the other."""
+        return {node: vectors.load(array.data, vectors.integer(k * LANES)) for k, node in enumerate(nodes)}
 
     def _text(self) -> str:
         """Return a text that differs wherever the functions do."""

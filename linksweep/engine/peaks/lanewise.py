@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.kernel.compile import compiled_vectors
-from linksweep.engine.peaks import instructions
-from linksweep.engine.peaks.instructions import WIDTH, Emitter, Values
+from linksweep.engine.kernel.instructions import REGISTER as LANES
+from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.run import interpret
 from linksweep.engine.trace.graph import Graph, Node
 
-SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
-"""All that enters the machine code besides the nodes."""
+Values = dict[Node, Any]
+"""Values of nodes: numbers, arrays, or instructions that compute vectors."""
+SOURCE = inspect.getsource(sys.modules[__name__])
+"""All that enters the machine code besides nodes and instructions."""
 ABREAST = 3
 """Vectors of lanes that go around a turn together: one alone waits for its own results."""
 
@@ -56,15 +58,13 @@ class Lanewise:
     def _emit(self, builder: Any, table: Any, columns: Any) -> None:
         from numba.core import cgutils
 
-        emitter = Emitter(builder)
-        with cgutils.for_range_slice(builder, emitter.integer(0), columns, emitter.integer(WIDTH)) as (k, _):
-            loaded = {
-                node: emitter.load(table, _place(emitter, columns, row, k))
-                for node, row in zip(self.inputs, self.rows, strict=True)
-            }
-            values = emitter.emit(self.nodes, loaded)
-            for row, node in zip(self.outputs, self.results, strict=True):
-                emitter.store(values[node], table, _place(emitter, columns, row, k))
+        vectors = Instructions(builder)
+        with cgutils.for_range_slice(builder, vectors.integer(0), columns, vectors.integer(LANES)) as (k, _):
+            read, written = (_places(vectors, columns, rows, k) for rows in (self.rows, self.outputs))
+            loaded = [vectors.load(table.data, place) for place in read]
+            values = interpret(self.nodes, dict(zip(self.inputs, loaded, strict=True)), vectors.operators)
+            for place, node in zip(written, self.results, strict=True):
+                vectors.store(values[node], table.data, place)
 
 
 class Around(Lanewise):
@@ -89,44 +89,40 @@ class Around(Lanewise):
     def _emit_around(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:
         from numba.core import cgutils
 
-        emitter = Emitter(builder)
-        last = builder.sub(count, emitter.integer(1))
-        latest = builder.sub(columns, emitter.integer(WIDTH))
-        with cgutils.for_range_slice(builder, emitter.integer(0), columns, emitter.integer(ABREAST * WIDTH)) as (
-            first,
-            _,
-        ):
-            blocks = [builder.add(first, emitter.integer(k * WIDTH)) for k in range(ABREAST)]
+        vectors = Instructions(builder)
+        none, one = vectors.integer(0), vectors.integer(1)
+        last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
+
+        def sample(j: Any, k: Any) -> Any:
+            return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
+
+        with cgutils.for_range_slice(builder, none, columns, vectors.integer(ABREAST * LANES)) as (first, _):
+            blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
             blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
-
-            def sample(j: Any, k: Any) -> Any:
-                return emitter.load(samples, builder.add(builder.mul(columns, j), k))
-
-            kept = [[_place(emitter, columns, row, k) for row in self.outputs] for k in blocks]
-            start = [
-                [sample(last, k), sample(emitter.integer(0), k), *(emitter.load(table, place) for place in places)]
-                for k, places in zip(blocks, kept, strict=True)
+            kept = [_places(vectors, columns, self.outputs, k) for k in blocks]
+            running = [
+                [cgutils.alloca_once_value(builder, value) for value in (sample(last, k), sample(none, k), *loaded)]
+                for k, loaded in zip(blocks, [[vectors.load(table.data, x) for x in row] for row in kept], strict=True)
             ]
-            running = [[cgutils.alloca_once_value(builder, value) for value in values] for values in start]
             with cgutils.for_range(builder, count) as (j, _):
-                following = builder.add(j, emitter.integer(1))
-                following = builder.select(builder.icmp_signed("==", j, last), emitter.integer(0), following)
-                number = emitter.spread(builder.sitofp(j, emitter.ir.DoubleType()))
+                following = builder.select(builder.icmp_signed("==", j, last), none, builder.add(j, one))
+                number = builder.sitofp(j, vectors.double)
                 for k, block in zip(blocks, running, strict=True):
-                    before, here, *rest = (builder.load(one) for one in block)
+                    before, here, *rest = map(builder.load, block)
                     after = sample(following, k)
-                    now = (before, here, after, number, *rest)
-                    values = emitter.emit(self.nodes, dict(zip(self.inputs, now, strict=True)))
-                    for one, value in zip(block, [here, after, *(values[x] for x in self.results)], strict=True):
-                        builder.store(value, one)
+                    now = zip(self.inputs, (before, here, after, number, *rest), strict=True)
+                    values = interpret(self.nodes, dict(now), vectors.operators)
+                    for place, value in zip(block, (here, after, *(values[x] for x in self.results)), strict=True):
+                        builder.store(value, place)
             for places, block in zip(kept, running, strict=True):
-                for place, one in zip(places, block[2:], strict=True):
-                    emitter.store(builder.load(one), table, place)
+                for place, value in zip(places, block[2:], strict=True):
+                    vectors.store(builder.load(value), table.data, place)
 
 
-def _place(emitter: Emitter, columns: Any, row: int, k: Any) -> Any:
-    """Return the position of a column in a row of a table."""
-    return emitter.builder.add(emitter.builder.mul(columns, emitter.integer(row)), k)
+def _places(vectors: Instructions, columns: Any, rows: tuple[int, ...], k: Any) -> list[Any]:
+    """Return the positions of a column in rows of a table."""
+    builder = vectors.builder
+    return [builder.add(builder.mul(columns, vectors.integer(row)), k) for row in rows]
 
 
 def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Callable[..., Any]], Lanewise]:

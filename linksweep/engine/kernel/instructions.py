@@ -1,0 +1,130 @@
+"""Write instructions on vectors of numbers: LLVM's own, by the names of a graph's operations.
+
+A processor with narrower registers gets several instructions for one, one without fused multiply-add calls the C
+library's. None is contracted or reordered, so results have the bits of numpy, for any width.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+REGISTER = 8
+"""Doubles that fill a register of 512 bits."""
+SOURCE = inspect.getsource(sys.modules[__name__])
+"""All that enters the machine code besides what is asked for."""
+
+
+def intrinsic(emit: Callable[..., None], parameters: Iterable[str]) -> Callable:
+    """Return what `emit(builder, *arguments)` writes as a function of these parameters that numba-compiled ones call.
+
+    An argument is a value of LLVM, or of an array a struct with `data`, where it starts, and `shape`.
+    """
+    import numba.extending
+    from numba.core import types
+
+    def typed(_typing_context: Any, *kinds: Any) -> tuple[Any, Callable]:
+        def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+            arrays = [context.make_array(kind) if isinstance(kind, types.Array) else None for kind in kinds]
+            emit(builder, *(of(context, builder, x) if of else x for of, x in zip(arrays, values, strict=True)))
+            return context.get_dummy_value()
+
+        return types.void(*kinds), write
+
+    names = ("typing_context", *parameters)
+    plain = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in names]
+    typed.__signature__ = inspect.Signature(plain)  # type: ignore[attr-defined]
+    return numba.extending.intrinsic(typed)
+
+
+class Instructions:
+    """Instructions on numbers and on vectors of `width` doubles, at the place of an `llvmlite` builder.
+
+    Operands are LLVM's values, or Python's numbers. Where one is a vector, all are repeated to be vectors.
+    """
+
+    def __init__(self, builder: Any, width: int = REGISTER) -> None:
+        from llvmlite import ir
+
+        self.ir, self.builder, self.width = ir, builder, width
+        self.double, self.condition = ir.DoubleType(), ir.IntType(1)
+        self.integer = ir.IntType(64)
+        """Type of an integer; called with one, its constant."""
+        self.vector = ir.VectorType(self.double, width)
+        functions: dict[str, Callable[..., Any]] = {
+            "+": builder.fadd,
+            "-": builder.fsub,
+            "*": builder.fmul,
+            "/": builder.fdiv,
+            "<": partial(builder.fcmp_ordered, "<"),
+            ">": partial(builder.fcmp_ordered, ">"),
+            "==": partial(builder.fcmp_ordered, "=="),
+            "negate": builder.fneg,
+            "abs": partial(self._call, "fabs"),
+            "sqrt": partial(self._call, "sqrt"),
+            "fma": partial(self._call, "fma"),
+            "product_low": lambda x, y: self._call("fma", x, y, builder.fneg(builder.fmul(x, y))),
+            "where": self._where,
+            "atan2": self._atan2,
+        }
+        self.operators = {name: partial(self._alike, function) for name, function in functions.items()}
+        """Operations by name."""
+
+    def _alike(self, function: Callable[..., Any], *operands: Any) -> Any:
+        values = [x if isinstance(x, self.ir.Value) else self.double(float(x)) for x in operands]
+        vectors = any(isinstance(x.type, self.ir.VectorType) for x in values)
+        return function(*map(self.wide, values) if vectors else values)
+
+    def wide(self, value: Any) -> Any:
+        """Return a vector that repeats a number; of a vector itself."""
+        if isinstance(value.type, self.ir.VectorType):
+            return value
+        kind = self.ir.VectorType(value.type, self.width)
+        places = self.ir.VectorType(self.ir.IntType(32), self.width)(None)
+        first = self.builder.insert_element(kind(self.ir.Undefined), value, self.integer(0))
+        return self.builder.shuffle_vector(first, kind(self.ir.Undefined), places)
+
+    def load(self, start: Any, at: Any) -> Any:
+        """Return the vector from a position of an array on."""
+        return self.builder.load(self._place(start, at), align=8)
+
+    def store(self, value: Any, start: Any, at: Any) -> None:
+        """Store a vector, or a number repeated, from a position of an array on."""
+        self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=8)
+
+    def as_number(self, value: Any) -> Any:
+        """Return 1 and 0 for a condition; of numbers themselves."""
+        vector = isinstance(value.type, self.ir.VectorType)
+        holds = (value.type.element if vector else value.type) == self.condition
+        return self.builder.uitofp(value, self.vector if vector else self.double) if holds else value
+
+    def _place(self, start: Any, at: Any) -> Any:
+        return self.builder.bitcast(self.builder.gep(start, [at]), self.vector.as_pointer())
+
+    def _call(self, name: str, *x: Any) -> Any:
+        """Call LLVM's own function of this name."""
+        suffix = "f64" if x[0].type == self.double else f"v{self.width}f64"
+        return self._called(f"llvm.{name}.{suffix}", *x)
+
+    def _called(self, name: str, *x: Any) -> Any:
+        from numba.core import cgutils
+
+        kind = self.ir.FunctionType(x[0].type, [one.type for one in x])
+        return self.builder.call(cgutils.get_or_insert_function(self.builder.module, kind, name), x)
+
+    def _where(self, condition: Any, x: Any, y: Any) -> Any:
+        if condition.type == x.type:  # a condition that was stored
+            condition = self.builder.fcmp_unordered("!=", condition, condition.type(None))
+        return self.builder.select(condition, x, y)
+
+    def _atan2(self, y: Any, x: Any) -> Any:
+        """Call the C library's function for each number: there is no instruction."""
+        if y.type == self.double:
+            return self._called("atan2", y, x)
+        for lane in map(self.integer, range(self.width)):
+            angle = self._called("atan2", *(self.builder.extract_element(value, lane) for value in (y, x)))
+            y = self.builder.insert_element(y, angle, lane)
+        return y
