@@ -14,7 +14,7 @@ from linksweep.base.validate import Number
 from linksweep.chains.chain import Own
 from linksweep.chains.finding import Checks
 from linksweep.chains.on_crank.machine import OnCrank
-from linksweep.chains.rows.crank import frame_parameters, in_range, turned
+from linksweep.chains.rows.crank import frame_parameters, in_every_design, in_range, turned
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.shape import Shape
 from linksweep.mechanisms.links import link_parameters
@@ -105,15 +105,20 @@ class SingleDyad(Machine):
     def closes_everywhere(self) -> bool:
         first, *_, last = lengths = [length for name, length in self.by_role.items() if name != "offset"]
         size = sum(map(abs, self.by_role.values()))
-        wide = (np.all((reach - other) * (reach + other) > 1e-9 * size * size) for reach, other in self._narrowest)
+        least = 1e-9 * size * size
+        wide = (in_every_design((reach - other) * (reach + other) > least) for reach, other in self._narrowest)
         return all(map(in_range, lengths)) and in_range(size / first * (size / last)) and all(wide)
 
     def always_ok(self, drive: str) -> bool:
         """Return whether the numbers alone ensure status 0 at every sample, friction included."""
+        return super().always_ok(drive) and (not self.rubs or self._never_wedged)
+
+    @property
+    def _never_wedged(self) -> bool:
         reach, other = self._narrowest[0]
         with np.errstate(over="ignore"):
-            wedges = np.square(self.friction * other) >= (reach - other) * (reach + other) * (1.0 - 1e-9)
-        return super().always_ok(drive) and not np.any(wedges)
+            slides = np.square(self.friction * other) < (reach - other) * (reach + other) * (1.0 - 1e-9)
+        return bool(np.all(slides))
 
     @property
     def _narrowest(self) -> tuple[tuple[Number, Number], ...]:

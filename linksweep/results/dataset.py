@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from linksweep.base.frozen import cached_beside
 from linksweep.base.version import installed_version
 from linksweep.engine.run import Field, Grid
-from linksweep.results.direct_dataset import dataset_of
+from linksweep.results.direct_dataset import Axis, dataset_of, variable_of
 from linksweep.scene.file.writing import write_scene
+from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
 STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"
@@ -30,29 +31,47 @@ def described(
         name: variable(field, quantity[name].units, quantity[name].long_name, order) for name, field in fields.items()
     }
     variables["status"] = plain(status, status_attributes(scene.mechanism.status_meanings))
-    coordinates = sampled.labels | sampled.parameters | index_coordinate(scene, grid)
-    results = quantity.keys() - scene.motion.keys()  # a result may have the name of a parameter
-    coordinates = {name: values for name, values in coordinates.items() if name not in results}
+    known = scene.motion  # a result may have the name of a parameter
+    coordinates = {
+        name: values
+        for name, values in (sampled.labels | sampled.parameters).items()
+        if name in known or name not in quantity
+    }
     attributes = provenance(scene, command, coordinates)
-    return dataset_of(variables, {k: v for k, v in coordinates.items() if k not in variables}, attributes)
+    beside = {name: values for name, values in coordinates.items() if name not in variables}
+    return dataset_of(variables, beside, attributes, axis_of(scene, grid))
 
 
 def index_coordinate(scene: Scene, grid: Grid) -> dict[str, xr.Variable]:
     """Return the angles of a grid as the coordinate of the scene's index."""
-    attributes = {"units": "degree", "long_name": scene.mechanism.position}
-    # a pandas index and fastpath: xarray would import dask and pint to see whether the angles are theirs
-    index = pd.Index(grid.angles, name=grid.dim)  # named, or the index of the Dataset would be a copy
-    return {grid.dim: xr.IndexVariable(grid.dim, index, attributes, fastpath=True)}
+    return {grid.dim: axis_of(scene, grid).variable()}
+
+
+def axis_of(scene: Scene, grid: Grid) -> Axis:
+    """Return the index of a grid's angles: of the same count and period the same one."""
+    words = scene.mechanism.position
+    if grid.period:
+        return _even_axis(len(grid.angles), grid.period, grid.dim, words)
+    return _axis(grid.angles, grid.dim, words)
+
+
+@lru_cache(maxsize=8)
+def _even_axis(count: int, period: float, dim: str, words: str) -> Axis:
+    return _axis(crank_grid(count, period, dim).angles, dim, words)
+
+
+def _axis(angles: np.ndarray, dim: str, words: str) -> Axis:
+    return Axis(dim, angles, {"units": "degree", "long_name": words})
 
 
 def plain(field: Field, attributes: Mapping[str, Any]) -> xr.Variable:
-    """Return a field as a variable; with fastpath, or xarray would import dask to see whether the values are dask's."""
-    return xr.Variable(field.dims, field.values, attributes, fastpath=True)
+    """Return a field as a variable."""
+    return variable_of(field.dims, field.values, attributes)
 
 
 def variable(field: Field, units: str, long_name: str, order: Iterable[str]) -> xr.Variable:
     """Return a field with its unit, and its dims in the order of the scene."""
-    result = plain(field, {"units": units, "long_name": long_name})
+    result = variable_of(field.dims, field.values, {"units": units, "long_name": long_name})
     if len(field.dims) < 2:
         return result
     return result.transpose(*(dim for dim in dict.fromkeys(order) if dim in field.dims))

@@ -58,7 +58,7 @@ def over_designs(functions: OverDesigns) -> dict[str, Field]:
 def as_field(value: Any) -> Field:
     """Return a number as the engine takes it."""
     if type(value) is float:
-        return Field((), np.asarray(value))
+        return Field((), np.array(value))
     if isinstance(value, Field):
         return value
     if hasattr(value, "dims"):
@@ -68,6 +68,6 @@ def as_field(value: Any) -> Field:
 
 def form_of(field: Field) -> tuple[str, ...] | float:
     """Return the dims of a number; of a plain 0 or 1 the number itself, so that its products can be left out."""
-    if not field.dims and (number := float(field.values)) in (0.0, 1.0):
+    if not field.dims and (number := field.values.item()) in (0.0, 1.0):
         return number
     return field.dims

@@ -122,7 +122,7 @@ class Scene(ByContent):
         normalise(self, **self._normalised())
         refuse(self._problems())
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
-        units = unit_attribute_problems((path, *number) for path, number in self.numbers.items())
+        units = unit_attribute_problems((path, *number) for path, number in self._not_plain.items())
         refuse(units + self._interpolation_problems())
         turn = self.mechanism.period
         refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
@@ -205,8 +205,12 @@ class Scene(ByContent):
     def _varying(self) -> dict[str, Any]:
         """Arrays and functions of the scene by path, but for tables and functions of a position."""
         curves = {id(number) for load in self.loads for number in load.over_positions}
-        varying = {path: value for path, (value, _) in self.numbers.items() if not isinstance(value, float | None)}
-        return {path: value for path, value in varying.items() if id(value) not in curves}
+        return {path: value for path, (value, _) in self._not_plain.items() if id(value) not in curves}
+
+    @cached_property
+    def _not_plain(self) -> dict[str, tuple[Any, str]]:
+        """The `numbers` that are not one float each."""
+        return {path: number for path, number in self.numbers.items() if not isinstance(number[0], float | None)}
 
     @cached_property
     def parameters(self) -> dict[str, xr.Variable]:

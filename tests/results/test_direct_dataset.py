@@ -44,7 +44,7 @@ def both(monkeypatch, result, scene) -> tuple[xr.Dataset, xr.Dataset]:
     """Return a result made by the shortcut, and by the public constructor."""
     assert direct_dataset._constructor() is direct_dataset.direct
     made = result(scene)
-    monkeypatch.setattr(direct_dataset, "_constructor", lambda: xr.Dataset)
+    monkeypatch.setattr(direct_dataset, "_constructor", lambda: direct_dataset.public)
     return made, result(scene)
 
 
@@ -82,6 +82,20 @@ def test_a_dataset_can_be_changed_without_changing_the_scene_or_another_dataset(
     xr.testing.assert_identical(second, kept)
     xr.testing.assert_identical(ls.sweep(scene, 4), kept)
     assert all(not variable.encoding for variable in second.variables.values())
+    assert second.xindexes["theta2"] is ls.sweep(scene, 4).xindexes["theta2"]  # one for all grids of this count
+
+
+@pytest.mark.parametrize("field", ["_dims", "_data", "_attrs", "_encoding"])
+def test_where_variables_have_other_fields_the_public_constructor_is_called(field, monkeypatch):
+    make = direct_dataset._direct_variable
+
+    def other(dims, values, attributes):
+        made = make(dims, values, attributes)
+        delattr(made, field)
+        return made
+
+    monkeypatch.setattr(direct_dataset, "_direct_variable", other)
+    assert direct_dataset._constructor.__wrapped__() is direct_dataset.public
 
 
 @pytest.mark.parametrize("broken", [AttributeError, TypeError])
@@ -90,10 +104,10 @@ def test_where_the_shortcut_is_missing_the_public_constructor_is_called(broken, 
         raise broken("another xarray")
 
     monkeypatch.setattr(xr.Dataset, "_construct_direct", refused)
-    assert direct_dataset._constructor.__wrapped__() is xr.Dataset
+    assert direct_dataset._constructor.__wrapped__() is direct_dataset.public
 
 
 def test_where_the_shortcut_makes_another_dataset_the_public_constructor_is_called(monkeypatch):
     make = xr.Dataset._construct_direct
     monkeypatch.setattr(xr.Dataset, "_construct_direct", lambda every, names, *rest: make(every, set(), *rest))
-    assert direct_dataset._constructor.__wrapped__() is xr.Dataset
+    assert direct_dataset._constructor.__wrapped__() is direct_dataset.public

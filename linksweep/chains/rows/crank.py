@@ -60,8 +60,12 @@ def between_rows(middle_cos: str | float, middle_sin: str | float) -> tuple[Row,
 
 def in_range(length: Number) -> bool:
     """Return whether the square of a length is far from the least and the largest number in every design."""
-    inside = (length > 1e-140) & (length < 1e140)
-    return inside is True or bool(np.all(inside))
+    return in_every_design((length > 1e-140) & (length < 1e140))
+
+
+def in_every_design(condition: Any) -> bool:
+    """Return whether a condition on numbers holds in every design; of plain numbers it is a truth value itself."""
+    return condition if type(condition) is bool else bool(np.all(condition))
 
 
 def turned(frame_angle: Number) -> bool:

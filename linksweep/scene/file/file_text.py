@@ -45,7 +45,14 @@ def _value(value: Any) -> str:
         return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_value, value)) + "]"
+    return _word(value) if type(value) is str else _other(value)
+
+
+def _other(value: Any) -> str:
     return _by_library("a", value).removeprefix("a = ")
+
+
+_word = lru_cache(maxsize=1024)(_other)
 
 
 @lru_cache(maxsize=1024)
