@@ -18,6 +18,7 @@ from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
+from linksweep.explorer.explore import explore
 from linksweep.files.netcdf import load_scene, save
 from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
@@ -86,6 +87,7 @@ __all__ = [
     "draw",
     "duty",
     "example",
+    "explore",
     "flywheel",
     "from_pmks",
     "geometry",

@@ -1,4 +1,4 @@
-"""Commands for one design that print a table: bearings, breakdown, balance, orders, flywheel; and animate."""
+"""Commands for one design that print a table: bearings, breakdown, balance, orders, flywheel; animate, explore."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name
 from linksweep.cli import summaries
+from linksweep.explorer.explore import serve
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import load_scene
 from linksweep.results.peaks import peaks
@@ -49,6 +50,10 @@ def add_commands(commands: Any) -> None:
     film = add("animate", _animate, "a film of the mechanism with its forces: .gif or .html")
     film.add_argument("-o", "--output", type=a_file(FILMS), required=True, help="film to write: .gif or .html")
     film.add_argument("--frames", type=int, default=72, metavar="N", help="frames in a cycle, 25 a second (72)")
+
+    mouse = add("explore", _explore, "a page on this machine: numbers as sliders, pins to drag, until Ctrl-C")
+    mouse.add_argument("--port", type=int, default=0, help="port on 127.0.0.1 (any that is free)")
+    mouse.add_argument("--no-browser", action="store_true", help="print the address, and open no browser")
 
     pins = add("bearings", _bearings, "load, rotation, pressure and life of the bearing in each pin")
     pins.add_argument("--diameter", type=_number("length"), help='diameter of all journals, such as "20 mm"')
@@ -170,6 +175,11 @@ def _animate(options: argparse.Namespace) -> None:
     without_a_screen()
     plot.animate(one_design(options.scene), frames=options.frames).save(options.output)
     print(f"written: {options.output}")
+
+
+def _explore(options: argparse.Namespace) -> None:
+    scene = one_design(options.scene)
+    serve(scene, title=options.scene.stem, port=options.port, show=not options.no_browser)
 
 
 def _bearings(options: argparse.Namespace) -> None:

@@ -68,7 +68,7 @@ def _run(options: argparse.Namespace) -> int:
         options.run(options)
     except BrokenPipeError:
         raise
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, ImportError) as error:
         print(f"linksweep: {error}", file=sys.stderr)
         return 2
     except MemoryError:

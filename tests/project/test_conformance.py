@@ -104,6 +104,7 @@ CALLS = {
     "coupler_curve": lambda s, path: ls.coupler_curve(s.machine, (0.10, 15.0), theta2=SAMPLES),
     "draw": lambda s, path: ls.draw(s.machine, s.range, designs=[2, 3]),
     "duty": lambda s, path: ls.duty(s.machine),
+    "explore": lambda s, path: ls.explore(s.machine),
     "flywheel": lambda s, path: s.flywheel,
     "geometry": lambda s, path: ls.geometry(s.machine),
     "load_scene": lambda s, path: ls.load_scene(written(s, path)),
@@ -173,6 +174,7 @@ COMMANDS = {
     "breakdown": lambda s, path: ["breakdown", written(s, path), s.force],
     "balance": lambda s, path: ["balance", written(s, path), "--radius", "6 cm"],
     "orders": lambda s, path: ["orders", written(s, path)],
+    "explore": lambda s, path: ["explore", written(s, path)],
     "flywheel": lambda s, path: ["flywheel", written(s, path)],
 }
 """Arguments of each command that takes a scene; `demo` takes none."""
@@ -182,12 +184,12 @@ LACKING: dict[str, str] = {
     "engine": "best_counterweights position_equation regressor speed_limit speed_separation plot.loop",
     "quick-return": "position_equation plot.loop",
     "loop": """
-        bearings best_counterweights breakdown counterweights coupler_curve duty flywheel geometry load_spectrum
+        bearings best_counterweights breakdown counterweights coupler_curve duty explore flywheel geometry load_spectrum
         motor_load orders pin_friction position_equation regressor shaking_moment speed_limit speed_separation
         with_counterweights plot.balance plot.bearing plot.bearings plot.breakdown plot.flywheel plot.forces
         plot.hodograph plot.mechanism plot.motor_load plot.orders plot.over_speed plot.torque
         plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown command.balance
-        command.orders command.flywheel
+        command.orders command.explore command.flywheel
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": """
@@ -209,7 +211,7 @@ LACKING: dict[str, str] = {
     """,
     "yoke": "counterweights position_equation plot.heat_map plot.loop command.balance",
     "inline-four": """
-        best_counterweights breakdown check compare counterweights coupler_curve geometry load_scene motor_load
+        best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
         draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
         speed_limit speed_separation study sweep system with_counterweights plot.balance plot.bearing plot.bearings
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
@@ -312,6 +314,11 @@ def register():
     with scotch_yoke.registered():
         yield
     subject.cache_clear()
+
+
+@pytest.fixture(autouse=True)
+def no_server(monkeypatch):
+    monkeypatch.setattr("linksweep.cli.commands.serve", lambda scene, **options: print(ls.explore(scene)))
 
 
 @pytest.fixture(autouse=True)

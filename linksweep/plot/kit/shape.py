@@ -64,17 +64,8 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
 
 def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> Shape:
     """Return the machine's shape at the last angle of a cycle, with the curves over the others."""
-    carrier, count = drawing.carrier, cycle.sizes[signals.INDEX]
-    fixed = drawing.fixed(scene.mechanism)
-    places = {pin: np.repeat(place[:, None], count, axis=1) for pin, place in fixed.items()}
-    places |= {pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving}
-    cg = scene.mechanism.masses()[carrier.role]
-    distance, turned = point or (cg.cg_distance, cg.cg_angle)
-    x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
-    along, across = (one(distance) * one(part) for part in cos_sin(turned))
-    path = places[carrier.pin] + along * np.array([x, y]) + across * np.array([-y, x])
-    if carrier.end and point is None:
-        path = places[carrier.end]
+    places = places_of(scene, drawing, cycle)
+    path = curve_of(scene, drawing, cycle, places, point)
     slides = (
         Slide(places[block.pin] - (places[block.on[1]] if block.on else 0.0), axes_of(scene, cycle, block.sides))
         for block in drawing.blocks
@@ -87,6 +78,30 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
         slides=tuple(slides),
         shortest=tuple(float(np.nanmin(length)) for length in lengths),
     )
+
+
+def places_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the place of each pin [m] at every angle of a cycle, (2, angles)."""
+    count = cycle.sizes[signals.INDEX]
+    fixed = drawing.fixed(scene.mechanism)
+    places = {pin: np.repeat(place[:, None], count, axis=1) for pin, place in fixed.items()}
+    return places | {
+        pin: np.array([signals.spread(cycle[f"{pin}{axis}"], count) for axis in "xy"]) for pin in drawing.moving
+    }
+
+
+def curve_of(
+    scene: Scene, drawing: Drawing, cycle: xr.Dataset, places: dict[str, np.ndarray], point: Any = None
+) -> np.ndarray:
+    """Return the places [m] of the carrier's point at every angle of a cycle, (2, angles)."""
+    carrier = drawing.carrier
+    if carrier.end and point is None:
+        return places[carrier.end]
+    cg = scene.mechanism.masses()[carrier.role]
+    distance, turned = point or (cg.cg_distance, cg.cg_angle)
+    x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
+    along, across = (one(distance) * one(part) for part in cos_sin(turned))
+    return places[carrier.pin] + along * np.array([x, y]) + across * np.array([-y, x])
 
 
 def axes_of(scene: Scene, cycle: xr.Dataset, frame: Frame) -> np.ndarray:

@@ -1,0 +1,148 @@
+"""Answers about a scene: the numbers from which the page draws a cycle, and exact peaks and checks as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.explorer.model.controls import written
+from linksweep.mechanisms.drawing import Drawing
+from linksweep.plot.kit import signals
+from linksweep.plot.kit.colors import force_color
+from linksweep.plot.kit.drawings import drawing_of
+from linksweep.plot.kit.shape import axes_of, curve_of, places_of, positions
+from linksweep.results.check import check
+from linksweep.results.peaks import peaks
+from linksweep.results.sweep import sweep
+from linksweep.scene.scene import Scene
+
+ANGLES = 720  # in a turn
+NOT_SHOWN = {"arc_start", "arc_end", "toggle_angle", "jam_end", "jam_place", "overshoot"}
+
+
+def cycle(scene: Scene) -> dict[str, Any]:
+    """Return a cycle of a scene of one design, for the page to draw.
+
+    Returns
+    -------
+    dict
+        ``step`` and ``turn`` [degree]; ``pins``, ``curve``, ``blocks``: places [m] and directions at each angle of the
+        motion; ``forces`` [N] and ``drive`` at each angle of the cycle. Arrays are float32, (2, angles) for x and y; of
+        what stands still (2, 1). NaN where there is no result.
+    """
+    drawing = drawing_of(scene.mechanism)
+    motion = positions(scene, drawing, [])
+    places = places_of(scene, drawing, motion)
+    still = drawing.fixed(scene.mechanism)
+    turn = scene.period
+    drive = scene.mechanism.drives[scene.drive]
+    effort = sweep(
+        scene, round(ANGLES * turn / 360.0), of=[*(f"{f}{axis}" for f in drawing.forces for axis in "xy"), drive]
+    )
+    count = effort.sizes["theta2"]
+    return {
+        "step": 360.0 / ANGLES,
+        "turn": turn,
+        "pins": {pin: _packed(place[:, :1] if pin in still else place) for pin, place in places.items()},
+        "curve": _packed(curve_of(scene, drawing, motion, places)),
+        "blocks": [_packed(axes_of(scene, motion, block.sides)) for block in drawing.blocks],
+        "rails": [_rail(scene, block.guide) for block in drawing.blocks],
+        "wheels": [[pin, float(radius)] for pin, radius in drawing.wheels(scene.mechanism)],
+        "forces": {force: _packed(_force(effort, force, count)) for force in drawing.forces},
+        "drive": _packed(signals.spread(effort[drive], count)),
+        "rate": float(np.nanmean(scene.omega2)) if not callable(scene.omega2) else 1.0,
+        "problem": _gaps(effort),
+    }
+
+
+def picture(scene: Scene) -> dict[str, Any]:
+    """Return what the page draws of a machine that does not change with its numbers: its parts and their names."""
+    drawing = drawing_of(scene.mechanism)
+    drive = scene.mechanism.drives[scene.drive]
+    return {
+        "links": [{"number": number, "pins": list(pins)} for number, pins in drawing.bars.items()],
+        "ground": list(drawing.fixed(scene.mechanism)),
+        "blocks": [{"number": b.number, "pin": b.pin, "on": list(b.on) if b.on else None} for b in drawing.blocks],
+        "cylinders": [list(ends) for ends in drawing.telescopes],
+        "forces": [_named(drawing, force) for force in drawing.forces],
+        "drive": {"name": drive, "unit": written(scene.table.quantity[drive].units)},
+    }
+
+
+def exact(scene: Scene) -> dict[str, Any]:
+    """Return exact peaks and checks of a scene, as rows for tables."""
+    return {"peaks": [*_peaks(peaks(scene))], "checks": [*_checks(check(scene))]}
+
+
+def _packed(values: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _rail(scene: Scene, guide: Any) -> list[list[float]] | None:
+    """Return a point and the direction of a guide on the ground."""
+    if guide is None:
+        return None
+    rail = guide(scene.mechanism)
+    return [[float(number) for number in part] for part in (rail.point, rail.along)]
+
+
+def _force(cycle: xr.Dataset, force: str, count: int) -> np.ndarray:
+    return np.array([signals.spread(part, count) for part in signals.components(cycle, force)])
+
+
+def _named(drawing: Drawing, force: str) -> dict[str, Any]:
+    joint = drawing.joint_text(force)
+    return {"name": force, "pin": drawing.start_of(force), "joint": joint, "color": force_color(force)}
+
+
+def _gaps(cycle: xr.Dataset) -> str:
+    """Return where a cycle has no result, in a sentence; "" where it is whole."""
+    status = signals.spread(cycle["status"], cycle.sizes["theta2"]).astype(int)
+    words = str(cycle["status"].attrs["flag_meanings"]).split()
+    lost = [word.replace("_", " ") for k, word in enumerate(words) if k and np.any(status == k)]
+    share = np.count_nonzero(status) / status.size
+    return f"no result at {share:.0%} of the angles: {', '.join(lost)}" if lost else ""
+
+
+def _peaks(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield a row for each peak of a magnitude, and for maximum and minimum of a signed quantity."""
+    for name in map(str, ds.data_vars):
+        quantity, _, end = name.rpartition("_")
+        signed = f"{quantity}_max" in ds
+        if f"{name}_at" in ds and (end != "peak" or not signed):
+            row = {
+                "name": quantity,
+                "end": end if signed else "",
+                "value": float(ds[name]),
+                "at": float(ds[f"{name}_at"]),
+            }
+            yield row | {"unit": written(str(ds[name].attrs["units"]))}
+
+
+def _checks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield the title of each finding, and its result in words."""
+    for name, finding in ds.data_vars.items():
+        text = "" if name in NOT_SHOWN or str(name).endswith("_at") else _finding(finding)
+        if text:
+            yield str(name).replace("_", " "), text
+
+
+def _finding(finding: xr.DataArray) -> str:
+    attributes: Mapping[str, Any] = finding.attrs
+    if "flag_meanings" in attributes:
+        words = str(attributes["flag_meanings"]).split()
+        meant = [words[int(k)] for k in np.unique(finding.values) if 0 <= int(k) < len(words)]
+        return ", ".join(word.replace("_", "-") for word in meant)
+    unit = written(str(attributes.get("units", "")))
+    unit = unit if unit == "°" else f" {unit}".rstrip()
+    named = finding.ndim == 1 and finding.dims[0] == "pin"
+    labels = [f"{label} " for label in finding["pin"].values] if named else [""] * finding.size
+    texts = (
+        f"{label}{value:.5g}{unit}"
+        for label, value in zip(labels, finding.values.ravel(), strict=True)
+        if value == value
+    )
+    return ", ".join(dict.fromkeys(texts))

@@ -1,0 +1,130 @@
+"""One person at one page: the scene, what it was before, and the design that it is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from linksweep.base.units import quantity
+from linksweep.base.validate import refuse
+from linksweep.explorer.model import answers
+from linksweep.explorer.model.controls import controls, values
+from linksweep.explorer.model.dragging import dragged, handles
+from linksweep.explorer.model.exports import EXPORTS
+from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.parameters import free, replaced
+from linksweep.scene.scene import Scene
+
+Reply = dict[str, Any]
+
+
+class Session:
+    """Replies to the questions of a page; a bad number leaves the scene as it is.
+
+    A question is a mapping: ``ask`` names it, ``gesture`` counts movements of the mouse. All changes of one gesture are
+    undone at once. A reply has what changed; where nothing could, it has a ``refusal`` in a sentence.
+    """
+
+    def __init__(self, scene: Scene, title: str) -> None:
+        several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
+        refuse([f"scene: has several designs, over {several}: choose one, ls.scene_at(scene, ...)"] if several else [])
+        self.scene, self.title = scene, title
+        self.pinned: Scene | None = None
+        self._past: list[Scene] = []
+        self._future: list[Scene] = []
+        self._gesture: Any = None
+
+    def reply(self, question: Mapping[str, Any]) -> Reply:
+        """Return the reply to a question, with what was asked."""
+        try:
+            return {"ask": question["ask"], **self._answer(**question)}
+        except ValueError as error:
+            return {"ask": question["ask"], "refusal": str(error)}
+
+    def _answer(self, ask: str, **details: Any) -> Reply:
+        match ask:
+            case "start":
+                return self._start()
+            case "set":
+                return self._set(**details)
+            case "drag":
+                return self._drag(**details)
+            case "exact":
+                return answers.exact(self.scene)
+            case "undo":
+                return self._step(self._past, self._future)
+            case "redo":
+                return self._step(self._future, self._past)
+            case "pin":
+                return self._pin()
+            case "unpin":
+                return self._unpin()
+            case "restore":
+                return self._changed(self.pinned or self.scene)
+            case "export":
+                return EXPORTS[details["form"]](self.scene, self.title)._asdict()
+        raise ValueError(f"ask = {ask!r}: is no question of the page")
+
+    def _start(self) -> Reply:
+        view = [control._asdict() for control in controls(self.scene)]
+        return {
+            "title": self.title,
+            "picture": answers.picture(self.scene),
+            "handles": handles(self.scene),
+            "controls": view,
+            "pinned": self.pinned and _pinned(self.pinned),
+            **self._state(),
+        }
+
+    def _state(self) -> Reply:
+        """Return the cycle and the numbers of the present scene."""
+        return {**_view(self.scene), "undo": bool(self._past), "redo": bool(self._future)}
+
+    def _set(self, numbers: Mapping[str, Any], gesture: Any = None) -> Reply:
+        known = free(self.scene)
+        read = {path: _number(text, known[path][1]) for path, text in numbers.items()}
+        return self._changed(replaced(self.scene, read), gesture)
+
+    def _drag(self, pin: str, place: tuple[float, float], angle: float, gesture: Any = None) -> Reply:
+        move = dragged(self.scene, pin, place, angle)
+        return self._changed(replaced(self.scene, move.numbers), gesture) | {"angle": move.angle}
+
+    def _changed(self, scene: Scene, gesture: Any = None) -> Reply:
+        """Take another scene, and begin a new step unless it belongs to the last gesture."""
+        view = _view(scene)  # first: where it fails, the old scene stays
+        if gesture is None or gesture != self._gesture:
+            self._past.append(self.scene)
+        self._gesture, self._future, self.scene = gesture, [], scene
+        return {**view, "undo": True, "redo": False}
+
+    def _step(self, here: list[Scene], there: list[Scene]) -> Reply:
+        if here:
+            there.append(self.scene)
+            self.scene, self._gesture = here.pop(), None
+        return self._state()
+
+    def _pin(self) -> Reply:
+        self.pinned = self.scene
+        return {"pinned": _pinned(self.scene)}
+
+    def _unpin(self) -> Reply:
+        self.pinned = None
+        return {"pinned": None}
+
+
+def _view(scene: Scene) -> Reply:
+    return {"cycle": answers.cycle(scene), "values": values(scene)}
+
+
+def _pinned(scene: Scene) -> Reply:
+    return {**_view(scene), **answers.exact(scene)}
+
+
+def _number(value: Any, kind: str) -> float:
+    """Return a number in SI units: of a slider as it is, of a field as it is written, "80 mm"."""
+    if not isinstance(value, str):
+        return float(value)
+    try:
+        return float(value)
+    except ValueError:
+        return quantity(value, kind)

@@ -1,0 +1,77 @@
+// A slider and a field for each number of the scene, in groups that fold.
+
+class Controls {
+  // change(numbers, gesture) asks for other numbers; gesture() starts a new movement
+  constructor(controls, change, gesture) {
+    this.change = change;
+    this.gesture = gesture;
+    this.rows = {};
+    this.body = html("div", {class: "groups"});
+    const find = html("input", {type: "search", placeholder: "Find a number", "aria-label": "Find a number",
+      oninput: () => this.filter(find.value)});
+    this.root = html("section", {class: "controls", "aria-label": "Numbers of the scene"}, find, this.body);
+    const groups = Map.groupBy ? Map.groupBy(controls, control => control.group) : grouped(controls);
+    [...groups].forEach(([name, members], k) => this.body.append(this.group(name, members, k < 3)));
+  }
+
+  group(name, members, open) {
+    const rows = members.map(control => this.row(control));
+    return html("details", {open}, html("summary", {}, name), ...rows);
+  }
+
+  row(control) {
+    const {path, name, unit, value, low, high, step} = control;
+    const id = `number-${path.replace(/\W/g, "-")}`;
+    const range = html("input", {type: "range", min: low, max: high, step, "aria-label": `${control.group} ${name}`, tabindex: 0});
+    const field = html("input", {type: "text", id, inputmode: "decimal", spellcheck: "false", autocomplete: "off"});
+    const label = html("label", {for: id, title: `${path}: double-click for ${number(value, 6)} ${unit}`}, name);
+    const row = html("div", {class: "row", "data-path": path}, label, range, field, html("span", {class: "unit"}, unit));
+    let current = 0;
+    range.addEventListener("pointerdown", () => { current = this.gesture(); });
+    range.addEventListener("keydown", event => { if (!event.repeat) current = this.gesture(); });
+    range.addEventListener("input", () => {
+      field.value = shown(+range.value);
+      this.change({[path]: +range.value}, current || this.gesture());
+    });
+    field.addEventListener("change", () => this.change({[path]: field.value.replace("−", "-")}, this.gesture()));
+    field.addEventListener("keydown", event => { if (event.key === "Enter") field.blur(); event.stopPropagation(); });
+    label.addEventListener("dblclick", () => this.change({[path]: value}, this.gesture()));
+    this.rows[path] = {row, range, field, control};
+    return row;
+  }
+
+  // Write the values of a scene, but for what is being typed.
+  show(values, pinned) {
+    const active = this.root.getRootNode().activeElement;
+    for (const [path, {row, range, field, control}] of Object.entries(this.rows)) {
+      const value = values[path];
+      if (value === undefined) continue;
+      if (value < +range.min) range.min = value;
+      if (value > +range.max) range.max = value;
+      if (!(active === range && range.matches(":active"))) range.value = value;
+      if (active !== field) field.value = shown(value);
+      row.classList.toggle("changed", value !== (pinned?.[path] ?? control.value));
+      range.style.setProperty("--share", (range.value - range.min) / (range.max - range.min));
+    }
+  }
+
+  filter(text) {
+    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    for (const {row, control} of Object.values(this.rows)) {
+      const all = `${control.group} ${control.name} ${control.path}`.toLowerCase();
+      row.hidden = !words.every(word => all.includes(word));
+    }
+    for (const group of this.body.children) {
+      group.hidden = ![...group.querySelectorAll(".row")].some(row => !row.hidden);
+      if (words.length) group.open = true;
+    }
+  }
+}
+
+const shown = value => number(value, 5);
+
+function grouped(controls) {
+  const groups = new Map();
+  for (const control of controls) groups.set(control.group, [...(groups.get(control.group) ?? []), control]);
+  return groups;
+}

@@ -1,0 +1,209 @@
+"""The model behind the explorer's page: sliders, dragging, answers, steps and files, without a browser."""
+
+import math
+
+import numpy as np
+import pytest
+
+import linksweep as ls
+from linksweep.explorer.model.controls import controls, values
+from linksweep.explorer.model.dragging import dragged, handles
+from linksweep.explorer.model.session import Session
+from linksweep.scene.parameters import free, replaced
+
+MACHINES = ("press", "engine", "quick-return", "watt-2", "knuckle-press", "scotch-yoke")
+
+
+@pytest.fixture
+def session():
+    return Session(ls.example("press"), "Press")
+
+
+def ask(session, question, **details):
+    return session.reply({"ask": question, **details})
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_plain_number_has_a_slider_that_holds_it(name):
+    scene = ls.example(name)
+    view = controls(scene)
+    assert [one.path for one in view] == [path for path, (v, _) in free(scene).items() if isinstance(v, float)]
+    assert all(one.low <= one.value <= one.high and one.step > 0.0 for one in view)
+    assert all(one.group and one.name for one in view)
+    assert len({(one.group, one.name) for one in view}) == len(view)
+
+
+def test_numbers_are_named_as_an_engineer_would():
+    named = {one.path: (one.group, one.name, one.unit) for one in controls(ls.example("press"))}
+    assert named["coupler.density"] == ("coupler", "density", "kg/m³")
+    assert named["gravity[2]"][:2] == ("motion", "gravity y")
+    assert named["loads[1].at[2]"] == ("load 1, coupler", "at angle", "°")
+    assert named["loads[1].force[1]"] == ("load 1, coupler", "force x", "N")
+
+
+@pytest.mark.parametrize("path", ["crank.cg_distance", "offset", "friction"])
+def test_sliders_of_zeros_reach_no_refused_number(path):
+    scene = ls.SliderCrank(ls.Link(0.04, 1.0, 0.001), ls.Link(0.15, 0.5, 0.002), slider_mass=0.4)
+    scene = ls.Scene(scene, omega2=100.0)
+    (one,) = (one for one in controls(scene) if one.path == path)
+    assert one.low <= 0.0 < one.high
+    replaced(scene, {path: one.low})
+
+
+def test_a_dragged_pin_lies_under_the_mouse():
+    scene, place, angle = ls.example("press"), (0.15, 0.19), 40.0
+    crank = 0.08 * np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
+    move = dragged(scene, "C", place, angle)
+    assert move.angle == angle
+    assert move.numbers["coupler.length"] == pytest.approx(math.dist(place, crank), rel=1e-14)
+    assert move.numbers["rocker.length"] == pytest.approx(math.dist(place, (0.2, 0.0)), rel=1e-14)
+    there = ls.sweep(replaced(scene, move.numbers), [angle], of=["Cx", "Cy"])
+    assert [float(there.Cx[0]), float(there.Cy[0])] == pytest.approx(place, abs=1e-14)
+
+
+def test_the_crank_turns_with_its_pin_and_keeps_the_coupler():
+    move = dragged(ls.example("press"), "B", (0.0, 0.07), 10.0)
+    assert move.numbers == pytest.approx({"crank.length": 0.07})
+    assert move.angle == pytest.approx(90.0)
+
+
+def test_a_ground_pin_takes_length_and_angle_of_the_frame():
+    move = dragged(ls.example("press"), "D", (0.18, -0.18), 10.0)
+    assert move.numbers == pytest.approx({"ground": 0.18 * math.sqrt(2.0), "ground_angle": -45.0})
+
+
+@pytest.mark.parametrize(("name", "angle"), [("watt-2", 70.0), ("knuckle-press", 200.0), ("jansen-leg", 130.0)])
+def test_each_pin_of_a_linkage_goes_where_it_is_dragged_and_its_neighbours_stay(name, angle):
+    scene = ls.example(name)
+    joined = scene.mechanism.topology
+    moving = [pin for pin in joined.members if pin not in joined.ground]
+    of = [f"{pin}{axis}" for pin in moving for axis in "xy"]
+    before = ls.sweep(scene, [angle], of=of)
+    on_guide = {pin for pin, _ in joined.on_guides.values()}
+    for pin in handles(scene):
+        if pin in joined.ground or pin == joined.links[joined.crank][1] or pin in on_guide:
+            continue
+        place = [float(before[f"{pin}{axis}"][0]) + 1e-3 for axis in "xy"]
+        move = dragged(scene, pin, place, angle)
+        after = ls.sweep(replaced(scene, move.numbers), [angle], of=of)
+        for other in moving:
+            expected = place if other == pin else [float(before[f"{other}{axis}"][0]) for axis in "xy"]
+            third = other in joined.points and joined.points[other] in joined.members[pin] and other != pin
+            if not third:  # a third pin turns with its link
+                assert [float(after[f"{other}{axis}"][0]) for axis in "xy"] == pytest.approx(expected, abs=1e-9), other
+
+
+def test_a_slider_is_dragged_along_its_guide():
+    scene = ls.example("engine")
+    move = dragged(scene, "C", (0.3, 0.17), 90.0)
+    assert move.numbers == pytest.approx({"rod.length": 0.17 - 0.043})
+
+
+def test_the_crank_bearing_stays():
+    scene = ls.example("press")
+    assert handles(scene) == ["B", "C", "D"]
+    assert "no plain number" in ask(Session(scene, ""), "drag", pin="A", place=(0.1, 0.1), angle=0.0)["refusal"]
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_cycle_is_that_of_a_sweep(name):
+    scene = ls.example(name)
+    session = Session(scene, "")
+    start = ask(session, "start")
+    view, picture = start["cycle"], start["picture"]
+    turns = round(view["turn"] / 360.0)
+    cycle = ls.sweep(scene, 720 * turns, of=[*(force["name"] for force in picture["forces"]), picture["drive"]["name"]])
+    for force in picture["forces"]:
+        size = np.hypot(*view["forces"][force["name"]].astype(float))
+        assert size == pytest.approx(cycle[force["name"]].values, rel=1e-6, abs=1e-6 * float(np.nanmax(size)))
+        assert force["pin"] in view["pins"]
+    assert view["drive"] == pytest.approx(cycle[picture["drive"]["name"]].values.astype(np.float32))
+    assert {pin for link in picture["links"] for pin in link["pins"]} <= {*view["pins"]}
+    assert all(places.dtype == np.float32 for places in view["pins"].values())
+    assert view["problem"] == ""
+
+
+def test_lost_angles_are_stated():
+    scene = replaced(ls.example("press"), {"crank.length": 0.19})
+    sentence = ask(Session(scene, ""), "start")["cycle"]["problem"]
+    assert sentence.startswith("no result at ") and "cannot assemble" in sentence
+
+
+def test_peaks_and_checks_are_exact(session):
+    reply, peaks = ask(session, "exact"), ls.peaks(session.scene)
+    rows = {row["name"] + row["end"]: row for row in reply["peaks"]}
+    assert [*rows] == ["F12", "F32", "F43", "F14", "T12max", "T12min"]
+    assert rows["F32"]["value"] == float(peaks.F32_peak)
+    assert rows["T12min"]["at"] == float(peaks.T12_min_at)
+    assert dict(reply["checks"])["grashof"] == "crank-rocker"
+    assert dict(ask(Session(ls.example("watt-2"), ""), "exact")["checks"])["transmission angle min"].startswith("C ")
+
+
+def test_a_number_may_be_written_with_its_unit(session):
+    assert ask(session, "set", numbers={"crank.length": "9 cm"})["values"]["crank.length"] == 0.09
+    assert session.scene.mechanism.crank.length == 0.09
+
+
+@pytest.mark.parametrize(
+    ("text", "word"), [("9 apples", "apples"), (3.0, "cannot be assembled"), (-1.0, "crank.length")]
+)
+def test_a_bad_number_is_refused_and_changes_nothing(session, text, word):
+    before = session.scene
+    assert word in ask(session, "set", numbers={"crank.length": text})["refusal"]
+    assert session.scene is before and not ask(session, "undo")["undo"]
+
+
+def test_a_gesture_is_one_step(session):
+    for length in (0.081, 0.082, 0.083):
+        ask(session, "set", numbers={"crank.length": length}, gesture=1)
+    ask(session, "set", numbers={"crank.length": 0.09}, gesture=2)
+    assert ask(session, "undo")["values"]["crank.length"] == 0.083
+    back = ask(session, "undo")
+    assert back["values"]["crank.length"] == 0.08 and back["redo"] and not back["undo"]
+    assert ask(session, "redo")["values"]["crank.length"] == 0.083
+    assert not ask(session, "set", numbers={"crank.length": 0.07}, gesture=3)["redo"]
+
+
+def test_a_pinned_design_is_compared_and_restored(session):
+    first = session.scene
+    pinned = ask(session, "pin")["pinned"]
+    assert pinned["peaks"] == ask(session, "exact")["peaks"]
+    ask(session, "set", numbers={"coupler.length": 0.24})
+    assert ask(session, "start")["pinned"]["values"]["coupler.length"] == 0.22  # of a page that is loaded again
+    ask(session, "restore")
+    assert session.scene == first
+    assert ask(session, "unpin") == {"ask": "unpin", "pinned": None}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_the_exported_files_make_the_scene_again(name, tmp_path):
+    scene = ls.example(name)
+    session = Session(scene, "")
+    toml = ask(session, "export", form="toml")
+    (tmp_path / toml["name"]).write_text(toml["text"], "utf-8")
+    assert ls.load_scene(tmp_path / "scene.toml") == scene
+    python = ask(session, "export", form="python")
+    if "refusal" in python:
+        assert "TOML" in python["refusal"] and scene.arrays
+    else:
+        names: dict = {}
+        exec(python["text"], names)
+        assert names["scene"] == scene
+
+
+@pytest.mark.long
+def test_the_report_is_of_the_design_as_it_stands(session):
+    ask(session, "set", numbers={"coupler.length": 0.2345})
+    text = ask(session, "export", form="report")["text"]
+    assert "<h1>Press</h1>" in text and "234.5" in text
+
+
+def test_several_designs_are_refused():
+    several = ls.sample(ls.example("press"), {"omega2": [20, 30]}, n=4)
+    with pytest.raises(ValueError, match="scene_at"):
+        Session(several, "")
+
+
+def test_values_follow_the_scene(session):
+    assert values(session.scene)["gravity[2]"] == -9.81
+    assert "refusal" in ask(session, "sing")
