@@ -22,6 +22,7 @@ from linksweep.explorer.explore import explore
 from linksweep.files.netcdf import load_scene, save
 from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
+from linksweep.mechanisms.beams.sections import IBeam, Section, Tube
 from linksweep.mechanisms.links import Bar, Cylinder, Disk, Gears, Guide, Link, Slider
 from linksweep.reports.page import report
 from linksweep.results.check import check
@@ -58,6 +59,7 @@ __all__ = [
     "GasPressure",
     "Gears",
     "Guide",
+    "IBeam",
     "InvertedSliderCrank",
     "Link",
     "Linkage",
@@ -71,12 +73,14 @@ __all__ = [
     "OvershootWarning",
     "QuantityTable",
     "Scene",
+    "Section",
     "Slider",
     "SliderCrank",
     "Spring",
     "Tolerance",
     "TorsionDamper",
     "TorsionSpring",
+    "Tube",
     "bearings",
     "best_counterweights",
     "breakdown",

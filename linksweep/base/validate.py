@@ -16,6 +16,9 @@ UNITS = {
     "length": "m",
     "mass": "kg",
     "inertia": "kg m^2",
+    "area": "m^2",
+    "section_modulus": "m^3",
+    "second_moment": "m^4",
     "angle": "degree",
     "angular_velocity": "rad/s",
     "angular_acceleration": "rad/s^2",
@@ -48,6 +51,7 @@ class Rule:
     kind: str
     above: float | None = None
     at_least: float | None = None
+    at_most: float | None = None
     over_angle: bool = False
     polar: bool = False
 
@@ -64,6 +68,7 @@ class Rule:
         """Return the allowed range in place of this value, and what to do."""
         bound = f"greater than {self.above:g}" if self.above is not None else ""
         bound = f"at least {self.at_least:g}" if self.at_least is not None else bound
+        bound += f" and at most {self.at_most:g}" if self.at_most is not None else ""
         finite = "" if bound and np.isfinite(value) else "finite"
         negative = self.polar and np.isfinite(value)
         advice = "; for a point on the other side turn its angle by 180 degrees" if negative else ""
@@ -71,7 +76,8 @@ class Rule:
 
     def allows(self, value: float) -> bool:
         above = self.above is None or value > self.above
-        return math.isfinite(value) and above and (self.at_least is None or value >= self.at_least)
+        below = self.at_most is None or value <= self.at_most
+        return math.isfinite(value) and above and below and (self.at_least is None or value >= self.at_least)
 
     def broken_by(self, values: np.ndarray) -> np.ndarray:
         broken = ~np.isfinite(values)
@@ -79,6 +85,8 @@ class Rule:
             broken |= ~(values > self.above)
         if self.at_least is not None:
             broken |= ~(values >= self.at_least)
+        if self.at_most is not None:
+            broken |= ~(values <= self.at_most)
         return broken
 
 

@@ -31,6 +31,11 @@ def is_pin(joint: str) -> bool:
     return joint.partition(":")[0].isupper()
 
 
+def has_moment(slide: str) -> bool:
+    """Return whether a slide passes on a moment: a block without mass, which a line passes, does not."""
+    return " past " not in slide
+
+
 def reaction(force: str) -> str:
     """Return the name of the opposite force, F23 of F32; a name without two numbers as it is."""
     pair = pair_of(force)

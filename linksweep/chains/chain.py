@@ -7,17 +7,18 @@ from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.between_links import force_name, has_moment, name_between
 from linksweep.chains.coupling import JAM
 from linksweep.chains.cylinders import force_quantity
 from linksweep.chains.drives import Drive, friction_problems
 from linksweep.chains.dyads.rrr import Rows
-from linksweep.chains.equations import arm_rows, contact_rows, cylinder_rows, has_moment
+from linksweep.chains.equations import arm_rows, contact_rows, cylinder_rows
 from linksweep.chains.forces import Forces
 from linksweep.chains.gears import gear_rows, teeth_quantities, torque_name
 from linksweep.chains.limits import limits
 from linksweep.chains.motion import Motion
 from linksweep.chains.rows import bodies
+from linksweep.chains.rows.beams import Beam
 from linksweep.chains.rows.bodies import Source, xy
 from linksweep.chains.rows.load_forms import Form
 from linksweep.chains.rows.whole_machine import machine_quantities, machine_rows, power_rows
@@ -124,13 +125,22 @@ class Chain:
         driven = self.drive(drive)
         return Own(driven.unknown, driven.rate, tuple(driven.rows()), name=drive)
 
-    def table(self, own: Own, loads: tuple[Form, ...], rubbing: frozenset[str] = frozenset()) -> Table:
-        """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub."""
+    def table(
+        self,
+        own: Own,
+        loads: tuple[Form, ...],
+        rubbing: frozenset[str] = frozenset(),
+        beams: tuple[str, ...] = (),
+    ) -> Table:
+        """Return the table of all quantities for a drive and loads of these forms; slides on guides `rubbing` rub, and
+        the links `beams` have section forces."""
         driven = self.drive(own.name) if own.name else None
         forces = self.forces(own.name, frozenset() if driven is None or driven.is_crank else rubbing)
         coupling, limited = forces.coupling, None
         if not self.motion.plain:
             limited = limits(self.motion, rubbing, forces.coupled)
+        drive, slider_pins = (own.name, own.unknown.name), {c.pair: (c.pin_x, c.pin_y) for c in forces.contacts}
+        straight = [Beam(self.topology, self.motion.bodies[role], loads, drive, slider_pins) for role in beams]
         rows = [
             *self.motion.rows,
             *forces.rows,
@@ -147,6 +157,7 @@ class Chain:
             *own.rows,
             *(coupling.rows(forces.rows, [*self.motion.work, *forces.work]) if coupling else []),
             *([] if self.motion.plain else [Total("friction_power", tuple(forces.losses))]),
+            *(row for beam in straight for row in beam.all_rows()),
         ]
         friction = "drive, friction, loads, gravity and inertia" if self.topology.slides else ""
         quantities = [
@@ -158,6 +169,7 @@ class Chain:
             *teeth_quantities(self.motion, self.names),
             *([FRICTION_POWER] if forces.losses and not self.motion.plain else []),
             *machine_quantities(self.bodies, self.joints, self.names, loads),
+            *(quantity for beam in straight for quantity in beam.quantities()),
         ]
         last = {quantity.name: quantity for quantity in quantities}
         table = Table("theta2", tuple(rows), tuple(last.values()), own.between)

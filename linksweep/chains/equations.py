@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from linksweep.chains.between_links import force_name, name_between
+from linksweep.chains.between_links import force_name, has_moment, name_between
 from linksweep.chains.dyads.rrr import Rows
 from linksweep.chains.gears import add_gears
 from linksweep.chains.motion import Motion
@@ -108,11 +108,6 @@ def add_force(rows: Iterable[Equation], force: str, way: float, names: Iterable[
     """Add a force of unknown size to the rows of a link: names of its components and moment per unit of the force."""
     for row, name in zip(rows, names, strict=True):
         row.coefficients[force] = (way, name)
-
-
-def has_moment(slide: str) -> bool:
-    """Return whether a slide passes on a moment: a block without mass, which a line passes, does not."""
-    return " past " not in slide
 
 
 def arm(pair: tuple[int, int], k: int) -> str:

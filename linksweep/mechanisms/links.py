@@ -18,6 +18,7 @@ from linksweep.base.equality import ByContent
 from linksweep.base.fields import CheckedPartField, PairField, declared, of_kind, parameter, word
 from linksweep.base.frozen import normalise
 from linksweep.base.validate import Number, Rule, as_float, overflow_problems
+from linksweep.mechanisms.beams.sections import SECTION, AnySection, Section, rectangle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,6 +37,8 @@ class Link(ByContent):
         Distance of the centre of gravity from the first pin [m].
     cg_angle : float or DataArray, default 0.0
         Angle of the centre of gravity from the line of pins, counter-clockwise [degree].
+    section : Section, Tube or IBeam, default None
+        Cross-section of a link whose strength is computed; it changes no mass.
 
     Notes
     -----
@@ -54,6 +57,7 @@ class Link(ByContent):
     inertia: Number = parameter("inertia", at_least=0.0)
     cg_distance: Number = parameter("length", 0.0, at_least=0.0, polar=True)
     cg_angle: Number = parameter("angle", 0.0)
+    section: AnySection | None = of_kind(SECTION, None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,6 +112,11 @@ class Bar(ByContent):
     def cg_angle(self) -> Number:
         """Angle of the centre of gravity from the line of pins [degree]."""
         return 0.0
+
+    @property
+    def section(self) -> Section:
+        """Rectangular cross-section."""
+        return rectangle(self.width, self.thickness)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -350,7 +359,7 @@ def links_of(mechanism: Any) -> dict[str, AnyLink]:
 
 def with_distribution(part: Any, numbers: Mapping[str, Number]) -> Any:
     """Return a link, or a slider, with another mass distribution: the numbers of a `MassDistribution` by name."""
-    return Link(part.length, **numbers) if isinstance(part, AnyLink) else replace(part, **numbers)
+    return Link(part.length, **numbers) if isinstance(part, Bar | Disk) else replace(part, **numbers)
 
 
 def link_parameters(role: str, link: Any) -> dict[str, Number]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from linksweep.base.validate import refuse
+from linksweep.base.degrees import cos_sin
+from linksweep.base.validate import Number, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.chain import Chain, Own, chain, table
 from linksweep.chains.equations import equations
@@ -18,6 +19,7 @@ from linksweep.chains.rows.pins import Journals, Pins
 from linksweep.chains.shape import Shape
 from linksweep.chains.topology import GROUND, Topology
 from linksweep.engine.quantity import Table
+from linksweep.mechanisms.beams.beam import beam_numbers, beam_problem, ends_of_beam
 from linksweep.mechanisms.mechanism import Mechanism
 
 
@@ -75,7 +77,31 @@ class Machine(Mechanism):
 
     def table(self, drive: str, loads: tuple[Form, ...]) -> Table:
         refuse(self.chain.drive_problems(drive, self.rubbing))
-        return table(self.chain, self.own(drive, loads), loads, frozenset(self.rubbing))
+        return table(self.chain, self.own(drive, loads), loads, frozenset(self.rubbing), self.beams)
+
+    @cached_property
+    def beams(self) -> tuple[str, ...]:  # type: ignore[override]
+        return tuple(role for role in self.topology.links if not self.beam_problem(role))
+
+    def beam_problem(self, role: str) -> str:
+        return beam_problem(self.topology, role, self.parts.get(role), self._off_line(role))
+
+    def beam_numbers(self) -> dict[str, Number]:
+        numbers: dict[str, Number] = {}
+        for role in self.beams:
+            numbers |= beam_numbers(role, self.parts[role])
+            thirds = [distance * cos_sin(angle)[0] for distance, angle in self._third_pins(role).values()]
+            numbers |= ends_of_beam(role, self.parts[role].length, thirds)
+        return numbers
+
+    def _third_pins(self, role: str) -> dict[str, Any]:
+        """Return the third pins of a link in its polar coordinates."""
+        pins = self.topology.links.get(role, ())[2:]
+        return {pin: getattr(self, "points")[pin] for pin in pins}  # noqa: B009
+
+    def _off_line(self, role: str) -> dict[str, Number]:
+        """Return the distance of each third pin of a link from its line of pins."""
+        return {pin: distance * cos_sin(angle)[1] for pin, (distance, angle) in self._third_pins(role).items()}
 
     @property
     def rubbing(self) -> tuple[str, ...]:

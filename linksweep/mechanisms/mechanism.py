@@ -63,7 +63,7 @@ class Mechanism(ByContent, ABC):
     """Noun for one value of the index, for sentences and labels."""
     pace: ClassVar[str] = "omega2"
     """The quantity that is the rate of the index."""
-    motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads")
+    motion: ClassVar[tuple[str, ...]] = ("omega2", "alpha2", "drive", "loads", "section")
     """Parameters of a scene that the machine takes besides gravity; the first is required."""
     defaults: ClassVar[Mapping[str, Any]] = {"drive": "crank"}
     """Values of those parameters of `motion` that a scene leaves out."""
@@ -79,6 +79,8 @@ class Mechanism(ByContent, ABC):
     """Number of the link that carries the journal of each pin."""
     bodies: ClassVar[tuple[Body, ...]] = ()
     """The moving links as bodies with mass."""
+    beams: ClassVar[tuple[str, ...]] = ()
+    """Roles of the links that are beams, of which section forces and stresses can be computed."""
     status_meanings: ClassVar[tuple[str, ...]] = STATUS_OF_CRANK
     """Meaning of each value of `status`."""
     places: ClassVar[tuple[str, ...]] = ()
@@ -154,8 +156,9 @@ class Mechanism(ByContent, ABC):
 
     def motion_parameters(self, values: Mapping[str, Any]) -> dict[str, Number]:
         """Return the numbers of the motion under the names that the physics takes, of a scene's parameters by name."""
-        alpha2 = values["alpha2"]
-        return {"omega2": values["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
+        alpha2, section = values["alpha2"], values["section"]
+        numbers = {"omega2": values["omega2"], "alpha2": 0.0 if alpha2 is None else alpha2}
+        return numbers if section is None else {**numbers, "section": section}
 
     def at_angles(self, sample: Callable[[str, Any], tuple[Number, Number, Number]]) -> Self:
         """Return the machine with its lengths that change over the revolution evaluated at the angles of a grid.
@@ -198,6 +201,14 @@ class Mechanism(ByContent, ABC):
             else:
                 changed |= {f"{role}_{name}": n for name, n in numbers.items() if f"{role}_{name}" in own}
         return replace(self, **changed)
+
+    def beam_problem(self, role: str) -> str:
+        """Return why a link is no beam, and what to do; empty for one that is."""
+        return "its machine has no links that are beams"
+
+    def beam_numbers(self) -> dict[str, Number]:
+        """Return sections, mass along the link, and ends of all beams under the names that the physics takes."""
+        return {}
 
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments mx + i·my [kg m] that links lack for balance, by role; {} where not known.

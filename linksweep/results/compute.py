@@ -13,6 +13,7 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
 from linksweep.mechanisms.capabilities import lack
+from linksweep.scene.at_sections import beam_problem
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.scene import Scene
 
@@ -53,7 +54,8 @@ def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) 
         if drive != scene.drive and f"{name}_".startswith(f"{unknown}_") and name not in known:
             instead = f'with drive="{scene.drive}" give {drives[scene.drive]}'
             return [f'{path}: {name} belongs to drive="{drive}"; {instead}']
-    return name_problems(path, name, known, "ls.quantities(scene)")
+    reason = beam_problem(scene, name) if name not in known else ""
+    return [f"{path}: {reason}"] if reason else name_problems(path, name, known, "ls.quantities(scene)")
 
 
 def require_scene(scene: Any) -> None:

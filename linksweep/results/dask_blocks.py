@@ -17,6 +17,7 @@ import xarray as xr
 
 from linksweep.engine.trace.plan import plan
 from linksweep.results.dataset import design_coordinates, kept_beside
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.designs.lazy import in_memory, lazy_paths, stand_in
 from linksweep.scene.designs.selection import design_sizes
 from linksweep.scene.file.writing import write_scene
@@ -79,12 +80,19 @@ def by_blocks(*, of_samples: bool) -> Callable[[Function[P]], Function[P]]:
             scene = arguments[0] if arguments else options.get("scene")
             if not isinstance(scene, Scene) or not lazy_paths(scene):
                 return function(*arguments, **options)
+            scene = with_sections(scene, _requested(arguments, options))
             others = {n: list(v) if isinstance(v, Iterator) else v for n, v in options.items() if n != "scene"}
             return _lazily(computed, scene, arguments[1:], others, of_samples)
 
         return computed
 
     return decorate
+
+
+def _requested(arguments: tuple[Any, ...], options: Mapping[str, Any]) -> Any:
+    """Return the names of quantities among arguments, as far as a text or a list has them."""
+    named = next((options[word] for word in ("of", "outputs") if options.get(word) is not None), arguments[-1])
+    return named if isinstance(named, str | list | tuple) else None
 
 
 def _lazily(

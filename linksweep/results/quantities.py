@@ -14,6 +14,7 @@ from linksweep.results.compute import counts_without_angles, require_scene
 from linksweep.results.dataset import STATUS_AT_LONG_NAME, STATUS_LONG_NAME
 from linksweep.results.sweep import default_names
 from linksweep.results.system import names_in, of_form
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.designs.lazy import lazy_paths, stand_in
 from linksweep.scene.scene import Scene
 
@@ -190,7 +191,7 @@ def quantities(scene: Scene, search: str | None = None) -> QuantityTable:
 
 def _dims(scene: Scene) -> dict[str, tuple[str, ...]]:
     """Return the dims of each quantity, read off the plan without computing anything."""
-    sampled = _with_samples(stand_in(scene) if lazy_paths(scene) else scene)
+    sampled = _with_samples(with_sections(stand_in(scene) if lazy_paths(scene) else scene, scene.table.quantity))
     of_status = ("status", "status_at") if scene.mechanism.places else ("status",)
     names = [name for name in (*scene.table.quantity, *of_status) if name != "cond"]
     of_matrix = names_in(of_form(scene, "reduced")[1])

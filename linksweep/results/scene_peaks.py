@@ -34,6 +34,7 @@ from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peak_search.poles import with_dead_centres
 from linksweep.results.peak_search.quadrature import Power, means
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import in_order
 from linksweep.scene.scene import Scene
@@ -77,7 +78,7 @@ def peaks_of_scene(
     part: Part | None = None,
 ) -> xr.Dataset:
     """Return the peaks of a scene: exact, of the cycle or of a `part` of it, or the largest of a grid's samples."""
-    items = _requests(scene, of)
+    items, scene = _requests(scene, of), with_sections(scene, of)
     if angles is None:
         result = _exact(scene, items, threads, part)
     else:

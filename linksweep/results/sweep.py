@@ -25,6 +25,7 @@ from linksweep.results.compute import (
 from linksweep.results.dask_blocks import by_blocks
 from linksweep.results.dataset import STATUS_AT_LONG_NAME, described, flags, plain
 from linksweep.results.system import condition_number, dense_unknowns
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.scene import Scene
 
 COUNT = 720
@@ -107,6 +108,7 @@ def sweep(
     with_place, names = STATUS_AT in names, tuple(name for name in names if name != STATUS_AT)
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     angles = COUNT if angles is None else angles
+    scene = with_sections(scene, names)
     grid = scene.grid(angles)
     refuse(_bound_missing(names, solver))
     sampled = scene.at(grid)

@@ -39,6 +39,8 @@ def engine_inputs(scene: Scene) -> Inputs:
 def _named_values(scene: Scene) -> dict[str, Any]:
     """Return the numbers of motion, machine and loads under the names that the physics takes."""
     values = scene.motion | scene.mechanism.parameters()
+    if "section" in scene.motion:
+        values |= scene.mechanism.beam_numbers()
     values |= over_designs(scene.mechanism.driven_numbers(scene.motion))
     for k, load in enumerate(scene.loads, 1):
         values |= load.parameters(f"load{k}", values)

@@ -44,7 +44,7 @@ from linksweep.scene.strokes import stroke_of
 GRAVITY = PairField(Rule("acceleration"), Rule("acceleration"), "(gx, gy) in m/s^2")
 MECHANISM = PartField(MECHANISMS.values(), Mechanism, inline=True)
 ACTIONS = PartsField(PartField(LOADS.values(), Action, default=Load))
-MOTION = ("omega2", "alpha2", "drive", "loads", "speed", "thrust", "profile")
+MOTION = ("omega2", "alpha2", "drive", "loads", "section", "speed", "thrust", "profile")
 """Parameters of a scene of which each mechanism takes its own."""
 
 
@@ -74,6 +74,8 @@ class Scene(ByContent):
         Thrust of the car along the track [N]; None for no thrust.
     profile : str, default ""
         Speed round the loop: "constant" (taken where none is stated), or "energy", by work and energy.
+    section : float or DataArray, default None
+        Place of section forces between the ends of a link, 0 to 1 [1]; None for 41 places where they are requested.
 
     Raises
     ------
@@ -82,7 +84,7 @@ class Scene(ByContent):
 
     Notes
     -----
-    A crank takes omega2, alpha2, drive and loads; a loop takes speed, thrust and profile; both take gravity.
+    A crank takes omega2, alpha2, drive, loads and section; a loop takes speed, thrust and profile; both take gravity.
 
     Any number may be an xarray.DataArray with named dims; omega2, alpha2, forces and torques may also depend on
     theta2, as a DataArray or a function of theta2 [degree], which must repeat after one turn of the crank or some. One
@@ -116,6 +118,7 @@ class Scene(ByContent):
     speed: Number = parameter("velocity", None, at_least=0.0)
     thrust: Number = parameter("force", None)
     profile: str = ""
+    section: Number = parameter("dimensionless", None, at_least=0.0, at_most=1.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

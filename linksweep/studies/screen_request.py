@@ -12,6 +12,7 @@ import numpy as np
 from linksweep.base.validate import as_float, count_problems, name_problems, quote, refuse
 from linksweep.base.version import installed_version
 from linksweep.results.compute import requested
+from linksweep.scene.at_sections import link_of
 from linksweep.scene.designs.drawing import draw, seed_range_problems
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.designs.sampling import dim_problems, parameter_problems, with_designs
@@ -46,6 +47,8 @@ def screening_of(
     refuse([f"maximize: {name} is to be small, too; name it once" for name in large if name in small])
     objectives = dict.fromkeys(small, 1.0) | dict.fromkeys(large, -1.0)
     limits = _limits(subject_to)
+    along = [] if scene.section is not None else [name for name in (*small, *large, *limits) if link_of(name)]
+    refuse([f"{name}: differs along its link; give the scene one place, as section=0.5" for name in along[:1]])
     edges = {name: _edges(name, own) for name, own in bins.items()} if isinstance(bins, Mapping) else {}
     refuse([] if isinstance(bins, Mapping) else counts_problems(bins=bins))
     nothing = 'minimize: give what is asked for: minimize="F32_peak", maximize, subject_to or bins'

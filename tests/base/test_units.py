@@ -153,7 +153,8 @@ REFUSED = [
     ("1 g", "acceleration", 'g is a unit of mass, not of acceleration; did you mean "g0"?'),
     ("1500 RPM", "angular_velocity", '"RPM" is written "rpm"'),
     ("5 furlong", "length", '"furlong" is not an accepted unit of length; accepted: m, mm'),
-    ("5 m^2", "length", '"m^2" is not an accepted unit of length'),
+    ("5 m^2", "length", "m^2 is a unit of area, not of length"),
+    ("5 m^5", "length", '"m^5" is not an accepted unit of length'),
     ("5 lbf/in s^2", "mass", 'did you mean "lbf s^2/in"?'),
     # not a number
     (True, "length", 'true: must be a number or a text such as "8 cm"'),

@@ -31,6 +31,7 @@ OBJECTS = {
     "GasPressure": lambda: ls.example("engine").loads[0],
     "Gears": lambda: ls.Gears("-2", phase=30.0),
     "Guide": lambda: ls.Guide(through=(0.0, 0.02), angle=20.0, friction=0.1),
+    "IBeam": lambda: ls.IBeam(0.04, LENGTHS, 0.008, 0.008),
     "InvertedSliderCrank": lambda: ls.example("quick-return").mechanism,
     "Link": lambda: ls.Link(0.22, 0.68, 2.8e-3, cg_distance=0.11),
     "Linkage": lambda: ls.example("excavator").mechanism,
@@ -42,12 +43,14 @@ OBJECTS = {
     "OttoCycle": lambda: ls.OttoCycle(compression_ratio=9.0, peak_pressure=5e6),
     "QuantityTable": lambda: ls.quantities(ls.example("press"), "torque"),
     "Scene": lambda: ls.example("engine"),
+    "Section": lambda: ls.Section(4e-4, 1.3e-6, second_moment=1.3e-8),
     "Slider": lambda: ls.Slider(3.0, slot_angle=60.0),
     "SliderCrank": lambda: ls.example("engine").mechanism,
     "Spring": lambda: ls.Spring(("ground", 0.3, 0.0), ("rocker", 0.1, 15.0), rate=2000.0, free_length=0.05),
     "Tolerance": lambda: ls.Tolerance("0 um", "21 um"),
     "TorsionDamper": lambda: ls.TorsionDamper("ground", "rocker", coefficient=0.1),
     "TorsionSpring": lambda: ls.TorsionSpring("ground", "rocker", rate=5.0, free_angle=30.0),
+    "Tube": lambda: ls.Tube(0.03, inner=0.02),
 }
 
 

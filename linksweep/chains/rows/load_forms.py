@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from linksweep.chains.rows.bodies import Body
+from linksweep.chains.rows.bodies import Body, Source
 from linksweep.engine.quantity import Quantity, Row, Total
 
 
@@ -18,6 +18,18 @@ class Acting(NamedTuple):
 
     forces: tuple[str, ...] = ()
     moments: tuple[str, ...] = ()
+
+
+class Applied(NamedTuple):
+    """A force, a torque, or both, on a link, by name: at a point in the link's axes, or where it is joined to another.
+
+    `force` is the stem of components in ground axes.
+    """
+
+    force: str = ""
+    torque: str = ""
+    at: tuple[Source, Source] = (0.0, 0.0)
+    joined_to: str = ""
 
 
 class Form:
@@ -39,6 +51,10 @@ class Form:
 
     def on(self, name: str, link: str) -> Acting:
         """Return its action on the link in a role."""
+        raise NotImplementedError
+
+    def applied(self, name: str, link: str) -> tuple[Applied, ...]:
+        """Return what it exerts on the link in a role, each force and torque with its point."""
         raise NotImplementedError
 
     def powers(self, name: str) -> tuple[str, ...]:

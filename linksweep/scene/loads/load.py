@@ -14,8 +14,8 @@ from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems
 from linksweep.base.frozen import with_sound
 from linksweep.base.units import unit_problems
 from linksweep.base.validate import Number, Rule, choice_problems, quote
-from linksweep.chains.rows.bodies import Body
-from linksweep.chains.rows.load_forms import Acting, Form
+from linksweep.chains.rows.bodies import Body, Source
+from linksweep.chains.rows.load_forms import Acting, Applied, Form
 from linksweep.engine.quantity import Row, Total
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.strokes import Stroke
@@ -261,6 +261,12 @@ class LoadForm(Form):
             return Acting()
         moments = self._of_force(f"{name}_moment") + self._of_torque(f"{name}_torque")
         return Acting(self._of_force(f"{name}_F"), moments)
+
+    def applied(self, name: str, link: str) -> tuple[Applied, ...]:
+        if link != self.link:
+            return ()
+        at: tuple[Source, Source] = (f"{name}_at_x", f"{name}_at_y") if self.force else (0.0, 0.0)
+        return (Applied(f"{name}_F" if self.force else "", f"{name}_torque" if self.torque else "", at),)
 
     def powers(self, name: str) -> tuple[str, ...]:
         return self._of_force(f"{name}_force_power") + self._of_torque(f"{name}_torque_power")

@@ -10,7 +10,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, FieldKind, ListField, NumberField, field_problems, of_kind, parameter
 from linksweep.base.validate import Number, Rule
 from linksweep.chains.rows.bodies import Body, Source, xy
-from linksweep.chains.rows.load_forms import Acting
+from linksweep.chains.rows.load_forms import Acting, Applied
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.physics import springs
 from linksweep.physics.algebra import planar
@@ -188,6 +188,10 @@ class LineForm(Between):
     def on(self, name: str, link: str) -> Acting:
         ends = [end for end, role in self.ends(name) if role == link]
         return Acting(tuple(f"{end}_F" for end in ends), tuple(f"{end}_moment" for end in ends))
+
+    def applied(self, name: str, link: str) -> tuple[Applied, ...]:
+        ends = [end for end, role in self.ends(name) if role == link]
+        return tuple(Applied(f"{end}_F", at=(f"{end}_at_x", f"{end}_at_y")) for end in ends)
 
     def quantities(self, name: str) -> list[Quantity]:
         return [

@@ -10,7 +10,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import field_problems, parameter, word
 from linksweep.base.validate import Number
 from linksweep.chains.rows.bodies import Body
-from linksweep.chains.rows.load_forms import Acting
+from linksweep.chains.rows.load_forms import Acting, Applied
 from linksweep.engine.quantity import Quantity, Row, Total
 from linksweep.mechanisms import Mechanism
 from linksweep.physics import springs
@@ -154,6 +154,11 @@ class TurningForm(Between):
 
     def on(self, name: str, link: str) -> Acting:
         return Acting(moments=tuple(f"{end}_torque" for end, role in self.ends(name) if role == link))
+
+    def applied(self, name: str, link: str) -> tuple[Applied, ...]:
+        ends = [(end, role) for end, role in self.ends(name) if role == link]
+        other = self.to if link == self.from_ else self.from_
+        return tuple(Applied(torque=f"{end}_torque", joined_to=other) for end, _ in ends)
 
     def quantities(self, name: str) -> list[Quantity]:
         wound = f"angle by which {self.title(name)} is wound from its free angle, in (-180, 180]"

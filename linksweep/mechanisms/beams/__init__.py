@@ -1,0 +1,1 @@
+"""Links as beams: cross-sections, and mass along the link."""

@@ -1,0 +1,46 @@
+"""Give a scene the places of section forces, where these are requested of links that are beams."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.frozen import with_sound
+from linksweep.chains.rows.beams import FORCES, SECTION
+from linksweep.scene.scene import Scene
+
+COUNT = 41
+"""Places along a link where none are stated: each 1/40 of the way between its ends."""
+_NAME = re.compile(rf"(?:{'|'.join(FORCES)}|stress)(\d+)(?:_.*)?")
+
+
+def with_sections(scene: Scene, names: Iterable[str] | str | None) -> Scene:
+    """Copy a scene with places along its links if quantities at sections are among the names, and it states none."""
+    listed = [names] if isinstance(names, str) else list(names or ())
+    if not isinstance(scene, Scene) or scene.section is not None or not any(map(link_of, listed)):
+        return scene
+    return with_sound(scene, section=places(np.linspace(0.0, 1.0, COUNT))) if scene.mechanism.beams else scene
+
+
+def places(shares: Any) -> xr.DataArray:
+    """Return shares of the way between a link's ends as places over the dim `section`."""
+    return xr.DataArray(shares, {SECTION: shares}, SECTION)
+
+
+def link_of(name: Any) -> int:
+    """Return the number of the link of which a name is a section force or a stress; 0 for any other name."""
+    match = _NAME.fullmatch(name) if isinstance(name, str) else None
+    return int(match[1]) if match else 0
+
+
+def beam_problem(scene: Scene, name: str) -> str:
+    """Return why a link has no such section force; empty for other names."""
+    k, roles = link_of(name), scene.mechanism.roles
+    if not 2 <= k < 2 + len(roles):
+        return ""
+    reason = scene.mechanism.beam_problem(roles[k - 2])
+    return f"{name}: link {k} ({roles[k - 2]}) is no beam: {reason}" if reason else ""
