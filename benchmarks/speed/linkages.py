@@ -1,4 +1,4 @@
-"""Time linkages: the kernel of all their unknowns against numpy's solution of the same systems, and per operation."""
+"""Time linkages: the kernel of all their unknowns against numpy's solution of the same systems, and per instruction."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from benchmarks.speed.kernel import eliminations, kernel_of, way
 from benchmarks.timing import FASTER, SHARE, Call, Race, Row, race
 from linksweep.engine.trace.plan import plan
 
-FOUR_BAR = "four-bar, per operation"
+FOUR_BAR = "four-bar, per instruction"
 GOALS = {"watt-2": 80.0, "knuckle-press": 80.0, "jansen-leg": 150.0}
 """Times as fast as numpy's batched solution of the same systems, by example."""
 
@@ -25,7 +25,7 @@ def rows(size: Size) -> list[Row]:
 
 
 def _rows(name: str, goal: float, size: Size) -> list[Row]:
-    """Return the rows of an example: against its systems by numpy.linalg.solve, and against a four-bar's operations."""
+    """Return the rows of an example: against its systems by numpy, and per instruction against a four-bar's."""
     angles = max(size.angles // 10, 1)  # more systems of equations than that would not fit into memory
     linkage, four_bar = ls.example(name), scene(GENERAL)
     names = linkage.mechanism.unknowns(linkage.drive)
@@ -46,13 +46,13 @@ def _rows(name: str, goal: float, size: Size) -> list[Row]:
         some = solved.any(axis=1)  # a slider without inertia has no moment
         error = peers.difference(fast[some], solved[some])
         timed = race(calls, size, angles)
-    ours, theirs = operations(linkage), operations(four_bar)
-    note = f"{ours} operations"
-    of_operations = _per_operation(timed, {kernel: ours, FOUR_BAR: theirs})
+    ours, theirs = instructions(linkage), instructions(four_bar)
+    note = f"{ours} instructions"
+    of_instructions = _per_instruction(timed, {kernel: ours, FOUR_BAR: theirs})
     return [
         timed.row(FASTER, kernel, systems, goal, error=error, note=note),
         timed.row(FASTER, dense, systems, 5.0, error=error),
-        of_operations.row(SHARE, kernel, FOUR_BAR, 1.0, note=f"{note}, {theirs} of the four-bar"),
+        of_instructions.row(SHARE, kernel, FOUR_BAR, 1.0, note=f"{note}, {theirs} of the four-bar"),
     ]
 
 
@@ -61,13 +61,13 @@ def _values(cycle: xr.Dataset, names: Iterable[str], angles: int) -> np.ndarray:
     return np.stack([np.broadcast_to(cycle[name].values, angles) for name in names])
 
 
-def operations(machine: ls.Scene) -> int:
-    """Return the number of operations per angle of all unknowns."""
+def instructions(machine: ls.Scene) -> int:
+    """Return the number of instructions per angle of all unknowns."""
     unknowns = machine.mechanism.unknowns(machine.drive)
-    return plan(machine.table, unknowns, machine.inputs.forms).operations("theta2").total()
+    return plan(machine.table, unknowns, machine.inputs.forms).instructions("theta2")
 
 
-def _per_operation(timed: Race, counts: dict[str, int]) -> Race:
-    """Return the times of one operation."""
+def _per_instruction(timed: Race, counts: dict[str, int]) -> Race:
+    """Return the times of one instruction."""
     seconds = {name: [time / count for time in timed.seconds[name]] for name, count in counts.items()}
     return Race(seconds, timed.samples)

@@ -47,9 +47,9 @@ def rows(size: Size) -> list[Row]:
             calls[name] = kernel_of(sweep).call
             dense = stacked(sweep(solver="dense"), unknowns)
             error[name] = peers.difference(stacked(sweep(), unknowns), dense)
-            work[name] = plan(machine.table, unknowns, machine.inputs.forms).operations("theta2").total()
+            work[name] = plan(machine.table, unknowns, machine.inputs.forms).instructions("theta2")
         timed = race(calls, size, size.angles)
     return [
-        timed.row(SHARE, name, FOUR_BAR, goal, error=error[name], note=f"{work[name]} of {work[FOUR_BAR]} operations")
+        timed.row(SHARE, name, FOUR_BAR, goal, error=error[name], note=f"{work[name]} of {work[FOUR_BAR]} instructions")
         for name, goal in GOALS.items()
     ]

@@ -75,10 +75,10 @@ def _compared(jobs: Mapping, compared: Iterable[tuple], to_time: Callable[[Call]
             sweep = partial(ls.sweep, machine, size.angles, of=names, threads=1)
             calls[name] = to_time(sweep)
             error[name] = peers.difference(stacked(sweep(), names), _reference(machine, design, names, size.angles))
-            work[name] = plan(machine.table, names, machine.inputs.forms).operations("theta2").total()
+            work[name] = plan(machine.table, names, machine.inputs.forms).instructions("theta2")
         timed = race(calls, size, size.angles)
     return [
-        timed.row(SHARE, ours, theirs, goal, error=error[ours], note=f"{work[ours]} of {work[theirs]} operations")
+        timed.row(SHARE, ours, theirs, goal, error=error[ours], note=f"{work[ours]} of {work[theirs]} instructions")
         for ours, theirs, goal in compared
     ]
 
@@ -93,10 +93,10 @@ def _friction(size: Size) -> Row:
             sweep = partial(ls.sweep, machine, size.angles, of=unknowns, threads=1)
             calls[name] = kernel_of(sweep).call
             error[name] = peers.difference(stacked(sweep(), unknowns), stacked(sweep(solver="dense"), unknowns))
-            work[name] = plan(machine.table, unknowns, machine.inputs.forms).operations("theta2").total()
+            work[name] = plan(machine.table, unknowns, machine.inputs.forms).instructions("theta2")
         timed = race(calls, size, size.angles)
     ours, theirs = machines
-    return timed.row(SHARE, ours, theirs, error=error[ours], note=f"{work[ours]} of {work[theirs]} operations")
+    return timed.row(SHARE, ours, theirs, error=error[ours], note=f"{work[ours]} of {work[theirs]} instructions")
 
 
 def _reference(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:

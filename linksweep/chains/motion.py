@@ -206,13 +206,11 @@ class Motion:
         self.certain |= {f"{role}_arm": f"{role}_length"} | dict.fromkeys(xy(f"line{k}"), 1.0)
         return Arm(f"s{k}", f"{role}_arm", f"{role}_arm_lo")
 
-    def _frame(self, side: Side, pin: str) -> Frame:
+    def _frame(self, side: Side, pin: str, arm: Arm) -> Frame:
         """Return how a dyad places its link: from its known pin to the pin where the dyad closes."""
-        k = self.number(side.role)
-        self.row(pins.between, full(f"placed{k}"), *self.place(pin), *self.place(side.pin))
-        own = full(f"own_frame{k}")
+        own = full(f"own_frame{self.number(side.role)}")
         self.row(pins.between, own, *self.own(side.role, pin), *self.own(side.role, side.pin))
-        return Frame(side.pin, full(f"placed{k}"), own)
+        return Frame(side.pin, full(arm.stem), own)
 
     def close(
         self,
@@ -249,10 +247,10 @@ class Motion:
         inner = (f"x_{name}", f"v_{name}", f"a_{name}")
         self.slides_of(step, role, inner, "guide", f"the foot of {self._origin(guide)} on it")
 
-    def _side_link(self, side: Side, pin: str) -> None:
+    def _side_link(self, side: Side, pin: str, arm: Arm) -> None:
         """Add rows of a link from a known pin to the pin that its dyad finds; a strut is no body."""
         if side.role not in self.topology.struts:
-            self.link(side.role, self._frame(side, pin), {side.pin, pin})
+            self.link(side.role, self._frame(side, pin, arm), {side.pin, pin})
 
     def _side(self, digit: int, word: str, side: Side, arm: Arm) -> dict[str, Source]:
         """Return the names of a dyad's link, of all that acts on it, and of its moment about the known pin."""
@@ -262,7 +260,7 @@ class Motion:
             return {**of_link(digit, f"_{side.role}"), **strut}
         k = self.number(side.role)
         lengths = {f"{word}_length": arm.length, f"{word}_length_lo": arm.length_lo}
-        vector = {f"r{digit}{axis}": f"{arm.stem}{axis}" for axis in "xy"}
+        vector = dict(zip(full(f"r{digit}"), full(arm.stem), strict=True))
         return of_link(digit, k) | lengths | vector | self.load(digit, k, f"L{k}_{side.pin}")
 
     def load(self, digit: int, number: int, moment: str) -> dict[str, Source]:
@@ -302,8 +300,8 @@ class Motion:
         self.sides[step.name] = coupler, rocker
         arms = [self._arm(side, X) for side in (coupler, rocker)]
         self.rates(X)
-        for side in (coupler, rocker):
-            self._side_link(side, X)
+        for side, arm in zip((coupler, rocker), arms, strict=True):
+            self._side_link(side, X, arm)
         rows = rrr.on_crank_and_ground(step.name in self.shape.turned, step.name in self.shape.goes_through)
         self.close(
             step,
@@ -330,7 +328,7 @@ class Motion:
         special, host = self.on_crank_and_ground(step), self.topology.hosts[step.guide]
         arm, guide = self._arm(rod, X), self.guide(step.guide)
         self.rates(X)
-        self._side_link(rod, X)
+        self._side_link(rod, X, arm)
         self.slider(slider, X, guide, host)
         self.close(
             step,

@@ -17,15 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linksweep.base import low_words
 from linksweep.base.memory import require_memory
-from linksweep.base.product_low import product_low
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
-from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.graph import LOW_WORDS, Node
 from linksweep.engine.trace.plan import Plan
 
 COMPILE_AFTER = 100_000
@@ -45,7 +45,7 @@ OPERATORS = {
     "sqrt": np.sqrt,
     "atan2": np.arctan2,
     "where": np.where,
-    "product_low": product_low,
+    **{name: getattr(low_words, name) for name in LOW_WORDS},
 }
 """Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
 

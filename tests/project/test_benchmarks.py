@@ -59,8 +59,8 @@ def test_two_threads_give_the_same_bits(rows):
 
 
 @pytest.mark.long
-def test_skipping_takes_fewer_operations(rows):
-    notes = [row.note.split() for row in rows("skipping") if "operations" in row.note]
+def test_skipping_takes_fewer_instructions(rows):
+    notes = [row.note.split() for row in rows("skipping") if "instructions" in row.note]
     assert len(notes) == 16
     assert all(int(ours) < int(full) for ours, _, full, _ in notes)
 

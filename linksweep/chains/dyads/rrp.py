@@ -125,16 +125,16 @@ def slider_rows() -> Rows:
 
 def _closed() -> Rows:
     """Return the rows that follow from the factors low and high."""
-    from_B, from_O = full("BC"), full("OC_line")
+    from_B, from_O = ("BCx_lo", "BCy_lo"), full("OC_line")
     line = (*GUIDE, "guide_cos_lo", "guide_sin_lo", "offset", "offset_lo")
     return [
         Row(dyad_rrp.rrp_close, ("r3x", "r3y", "rod_along", "inverse_rod_along")),
         Row(dyad_rrp.rrp_status, ("closure",)),
         Row(dyad_rrp.rod_transmission_angle, ("transmission_angle",)),
         Row(planar.vector_sum, ("Cx", "Cy"), ("Bx", "By", "r3x", "r3y")),
-        Row(pins.between, from_B, ("Cx", "Cy", 0.0, 0.0, *full("B"))),
+        Row(pins.link_low_words, from_B, (*full("B"), "r3x", "r3y")),
         Row(pins.between, from_O, ("Cx", "Cy", 0.0, 0.0, *full("O"))),
-        Row(pins.excess_square, ("B_missing",), (*from_B, "rod_length", "rod_length_lo")),
+        Row(pins.excess_square, ("B_missing",), ("r3x", "r3y", *from_B, "rod_length", "rod_length_lo")),
         Row(pins.excess_component, ("guide_missing",), (*from_O, *line)),
         Row(planar.opposite, ("minus_guide_sin",), ("guide_sin",)),
         Row(
@@ -142,6 +142,7 @@ def _closed() -> Rows:
             ("Cx_lo", "Cy_lo"),
             ("B_missing", "guide_missing", "r3x", "r3y", "minus_guide_sin", "guide_cos"),
         ),
+        Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*from_B, "Cx_lo", "Cy_lo")),
     ]
 
 

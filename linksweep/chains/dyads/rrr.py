@@ -84,17 +84,19 @@ def between_pins() -> Rows:
 
 def _closed() -> Rows:
     """Return the rows that follow from the factors low and high."""
-    from_B, from_D = full("BC"), full("DC")
+    from_B, from_D = ("BCx_lo", "BCy_lo"), ("DCx_lo", "DCy_lo")
     return [
         Row(dyad_rrr.rrr_close, CLOSED),
         Row(dyad_rrr.rrr_status, ("closure",)),
         Row(dyad_rrr.transmission_angle, ("transmission_angle",)),
         Row(planar.vector_sum, ("Cx", "Cy"), ("Bx", "By", "r3x", "r3y")),
-        Row(pins.between, from_B, ("Cx", "Cy", 0.0, 0.0, *full("B"))),
-        Row(pins.between, from_D, ("Cx", "Cy", 0.0, 0.0, *full("D"))),
-        Row(pins.excess_square, ("B_missing",), (*from_B, "coupler_length", "coupler_length_lo")),
-        Row(pins.excess_square, ("D_missing",), (*from_D, "rocker_length", "rocker_length_lo")),
+        Row(pins.link_low_words, from_B, (*full("B"), "r3x", "r3y")),
+        Row(pins.link_to_low_words, from_D, ("r4x", "r4y", "Cx", "Cy", *full("D"))),
+        Row(pins.excess_square, ("B_missing",), ("r3x", "r3y", *from_B, "coupler_length", "coupler_length_lo")),
+        Row(pins.excess_square, ("D_missing",), ("r4x", "r4y", *from_D, "rocker_length", "rocker_length_lo")),
         Row(pins.newton_step, ("Cx_lo", "Cy_lo"), ("B_missing", "D_missing", "r3x", "r3y", "r4x", "r4y")),
+        Row(planar.vector_sum, ("r3x_lo", "r3y_lo"), (*from_B, "Cx_lo", "Cy_lo")),
+        Row(planar.vector_sum, ("r4x_lo", "r4y_lo"), (*from_D, "Cx_lo", "Cy_lo")),
         Row(planar.point_velocity, ("uCx", "uCy"), ("uBx", "uBy", "ratio3", "r3x", "r3y")),
         Row(
             planar.point_acceleration,

@@ -66,6 +66,9 @@ class Instructions:
             "abs": partial(self._call, "fabs"),
             "sqrt": partial(self._call, "sqrt"),
             "fma": partial(self._call, "fma"),
+            "sum_low": partial(self._sum_low, builder.fadd, builder.fsub),
+            "difference_low": partial(self._sum_low, builder.fsub, builder.fadd),
+            "ordered_low": lambda x, y: builder.fsub(y, builder.fsub(builder.fadd(x, y), x)),
             "product_low": lambda x, y: self._call("fma", x, y, builder.fneg(builder.fmul(x, y))),
             "where": self._where,
             "atan2": self._atan2,
@@ -114,6 +117,13 @@ class Instructions:
 
         kind = self.ir.FunctionType(x[0].type, [one.type for one in x])
         return self.builder.call(cgutils.get_or_insert_function(self.builder.module, kind, name), x)
+
+    def _sum_low(self, plus: Callable[..., Any], minus: Callable[..., Any], x: Any, y: Any) -> Any:
+        """Write Knuth's way to what a rounded sum or difference misses (`base.low_words`)."""
+        subtract = self.builder.fsub
+        high = plus(x, y)
+        part = subtract(high, x)
+        return plus(subtract(x, subtract(high, part)), minus(y, part))
 
     def _where(self, condition: Any, x: Any, y: Any) -> Any:
         if condition.type == x.type:  # a condition that was stored

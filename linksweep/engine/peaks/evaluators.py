@@ -42,6 +42,9 @@ BETWEEN_SAMPLES = {**OPERATORS, "atan2": np.vectorize(math.atan2, otypes=[float]
 """Operations on numbers or arrays; numpy's own arctangent differs in the last bit from that of machine code."""
 
 
+SUMS = {"+", "-", "sum_low", "difference_low", "ordered_low"}
+
+
 class Functions(NamedTuple):
     """The three functions, and the number of their lanes."""
 
@@ -163,7 +166,7 @@ class Evaluators:
                 parity[node] = -1 if node is self.tangent else 1
             elif node.operator in ("*", "/", "product_low"):
                 parity[node] = x[0] * x[1]
-            elif node.operator == "negate" or (node.operator in ("+", "-") and x[0] == x[1]):
+            elif node.operator == "negate" or (node.operator in SUMS and x[0] == x[1]):
                 parity[node] = x[0]
             elif node.operator == "where" and x[0] == 1 and x[1] == x[2]:
                 parity[node] = x[1]

@@ -1,6 +1,6 @@
 """Trace physics functions into a graph of single operations.
 
-A function called with traced values records each + - * /, square root and low word of a product once (equal operations
+A function called with traced values records each + - * /, square root and low word once (equal operations
 are shared) and leaves out trivial operations: 0·x, 0 + x, 1·x. That changes no bit of any result: each remaining
 operation is rounded as IEEE prescribes, never contracted or reordered, so every path that evaluates the graph returns
 equal bits.
@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-COMMUTATIVE = {"+", "*", "product_low"}
+COMMUTATIVE = {"+", "*", "sum_low", "product_low"}
+LOW_WORDS = {"sum_low", "difference_low", "ordered_low", "product_low"}
+"""Operations that give what a rounded sum or product misses: error bounds and derivatives leave them out."""
 FOLDABLE: dict[str, Callable[..., float]] = {
     "<": lambda x, y: float(x < y),
     "abs": abs,
@@ -71,8 +73,8 @@ class Node:
     def atan2(self, x):
         return self.graph.operation("atan2", self, self.graph.node(x))
 
-    def product_low(self, y):
-        return self.graph.product_low(self, self.graph.node(y))
+    def low_word(self, name, x, y):
+        return getattr(self.graph, name)(self.graph.node(x), self.graph.node(y))
 
     def where(self, x, y):
         x, y = self.graph.node(x), self.graph.node(y)
@@ -151,6 +153,24 @@ class Graph:
         if y.operator == "negate":
             return self.negate(self.multiply(x, y.operands[0]))
         return self.operation("*", x, y)
+
+    def sum_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded sum misses of x + y."""
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        if x.operator == "negate" == y.operator:
+            return self.negate(self.sum_low(x.operands[0], y.operands[0]))
+        if y.operator == "negate":
+            return self.operation("difference_low", x, y.operands[0])
+        if x.operator == "negate":
+            return self.operation("difference_low", y, x.operands[0])
+        return self.operation("sum_low", x, y)
+
+    def ordered_low(self, x: Node, y: Node) -> Node:
+        """Return what the rounded sum misses of x + y, where |x| ≥ |y| or x = 0."""
+        if x.is_constant(0.0) or y.is_constant(0.0):
+            return self.constant(0.0)
+        return self.operation("ordered_low", x, y)
 
     def product_low(self, x: Node, y: Node) -> Node:
         """Return what the rounded product misses of x·y."""

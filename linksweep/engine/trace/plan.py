@@ -16,6 +16,8 @@ from linksweep.engine.trace.graph import Graph, Node
 
 LATE = {"atan2"}
 """Operations done by numpy on stored rows after the kernel: much faster there than compiled."""
+INSTRUCTIONS = {"sum_low": 5, "difference_low": 5, "ordered_low": 2}
+"""Instructions of operations that take more than one, besides the sum itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +81,10 @@ class Plan:
             for node in self.nodes
             if node.dims == frozenset(dims) and node.operator not in ("input", "constant")
         )
+
+    def instructions(self, *dims: str) -> int:
+        """Return how many instructions that takes: a low word of a sum takes several."""
+        return sum(count * INSTRUCTIONS.get(operator, 1) for operator, count in self.operations(*dims).items())
 
     def only(self, names: tuple[str, ...]) -> Plan:
         """Return the plan of some of the outputs."""

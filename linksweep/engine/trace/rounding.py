@@ -6,7 +6,7 @@ Each operation passes on the errors of its operands and adds its own, half a uni
     z = x·y      |δz| ≤ |x|δy + (|y| + δy)δx + u|z|
     z = x/y      |δz| ≤ (δx + |z|δy)/(|y| − δy) + u|z|
     z = √x       |δz| ≤ δx/z + u|z|
-    low word z of a product    |δz| ≤ |z|, as the exact product is one word
+    low word z of x ± y or x·y    |δz| ≤ |z|, as the exact sum or product is one word
 
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3.) The bound holds for these very
 numbers, not on average, and costs about three times the operations of the result itself, only when requested. Exact
@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.graph import LOW_WORDS, Node
 
 UNIT = 2.0**-53 * (1.0 + 2.0**-20)
 """Half a unit in the last place; the factor beyond 1 covers the rounding of the bound itself."""
@@ -69,7 +69,7 @@ def _propagated(z: Node, errors: list[Node], exact: Callable[[str], bool]) -> No
         return zero
     if z.operator == "input":
         return zero if exact(z.value) else INPUT * abs(z)
-    if z.operator == "product_low":
+    if z.operator in LOW_WORDS:
         return abs(z)
     if z.operator in ("negate", "abs"):
         return errors[0]

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from linksweep.base import product_low as dekker
+from linksweep.base import low_words
 
 Number = Any
 """A float, or a stand-in for one: a traced value, a numpy array, a 50-digit number."""
@@ -20,10 +20,25 @@ def atan2(y: Number, x: Number) -> Number:
     return math.atan2(y, x) if isinstance(y, float) else y.atan2(x)
 
 
+def sum_low(x: Number, y: Number) -> Number:
+    """Return what the rounded sum x + y misses of the exact one."""
+    return _low_word("sum_low", x, y)
+
+
+def ordered_low(x: Number, y: Number) -> Number:
+    """Return what the rounded sum x + y misses of the exact one, where |x| ≥ |y| or x = 0."""
+    return _low_word("ordered_low", x, y)
+
+
 def product_low(x: Number, y: Number) -> Number:
     """Return what the rounded product x·y misses of the exact one."""
-    x, y = (y, x) if isinstance(x, float) else (x, y)
-    return x.product_low(y) if hasattr(x, "product_low") else dekker.product_low(x, y)
+    return _low_word("product_low", x, y)
+
+
+def _low_word(name: str, x: Number, y: Number) -> Number:
+    """Return a low word by the operation of a traced operand, or computed."""
+    traced = y if isinstance(x, float) else x
+    return traced.low_word(name, x, y) if hasattr(traced, "low_word") else getattr(low_words, name)(x, y)
 
 
 def where(condition: Number, x: Number, y: Number) -> Number:

@@ -5,7 +5,7 @@ contracted or reordered (Knuth, TAOCP 2, 4.2.2). Where high words cancel in a di
 remaining digits.
 """
 
-from linksweep.physics.algebra.arithmetic import Number, product_low
+from linksweep.physics.algebra.arithmetic import Number, ordered_low, product_low, sum_low
 
 Pair = tuple[Number, Number]
 """A double-double (high, low); high is the sum rounded to a float."""
@@ -13,15 +13,12 @@ Pair = tuple[Number, Number]
 
 def two_sum(x: Number, y: Number) -> Pair:
     """Return x + y exactly."""
-    high = x + y
-    part = high - x
-    return high, (x - (high - part)) + (y - part)
+    return x + y, sum_low(x, y)
 
 
 def ordered_sum(x: Number, y: Number) -> Pair:
     """Return x + y exactly, where |x| ≥ |y| or x = 0."""
-    high = x + y
-    return high, y - (high - x)
+    return x + y, ordered_low(x, y)
 
 
 def two_product(x: Number, y: Number) -> Pair:
@@ -52,10 +49,16 @@ def difference(p: Pair, q: Pair) -> Number:
 
 def dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
     """Return px·qx + py·qy as a double-double."""
+    return ordered_sum(*overlapping_dot(px, py, qx, qy))
+
+
+def overlapping_dot(px: Pair, py: Pair, qx: Pair, qy: Pair) -> Pair:
+    """Return px·qx + py·qy as the sum of two words, of which the low one may reach into the last digit of the high one:
+    enough where all that follows is a difference."""
     (x, x_lo), (y, y_lo) = two_product(px[0], qx[0]), two_product(py[0], qy[0])
     high, low = two_sum(x, y)
     mixed = (px[0] * qx[1] + px[1] * qx[0]) + (py[0] * qy[1] + py[1] * qy[0])
-    return ordered_sum(high, low + ((x_lo + y_lo) + mixed))
+    return high, low + ((x_lo + y_lo) + mixed)
 
 
 def square_of(x: Pair, y: Pair) -> Pair:

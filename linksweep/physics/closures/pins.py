@@ -8,8 +8,18 @@ A link is placed by one vector s of it in ground axes, whose components in the l
 of the link then lies at (v/d)·s, vectors taken as complex numbers.
 """
 
-from linksweep.physics.algebra.arithmetic import Number, sqrt
-from linksweep.physics.algebra.double_double import Pair, add, difference, divide, dot, multiply, two_product
+from linksweep.physics.algebra.arithmetic import Number, sqrt, sum_low
+from linksweep.physics.algebra.double_double import (
+    Pair,
+    add,
+    difference,
+    divide,
+    dot,
+    multiply,
+    overlapping_dot,
+    two_product,
+    two_sum,
+)
 from linksweep.physics.algebra.planar import cross
 
 Four = tuple[Number, Number, Number, Number]
@@ -44,7 +54,7 @@ def turned_with_low_words(
 ) -> Four:
     """Return k·s as double-doubles."""
     k, s = ((kx, kx_lo), (ky, ky_lo)), ((sx, sx_lo), (sy, sy_lo))
-    x, y = dot(*k, s[0], _opposite(s[1])), dot(*k, s[1], s[0])
+    x, y = overlapping_dot(*k, s[0], _opposite(s[1])), overlapping_dot(*k, s[1], s[0])
     return x[0], y[0], x[1], y[1]
 
 
@@ -61,7 +71,27 @@ def sum_low_words(
     qy_lo: Number,
 ) -> tuple[Number, Number]:
     """Return what the vector (x, y) misses of p + q."""
-    return difference(add((px, px_lo), (qx, qx_lo)), (x, 0.0)), difference(add((py, py_lo), (qy, qy_lo)), (y, 0.0))
+    return _missing(x, (px, px_lo), (qx, qx_lo)), _missing(y, (py, py_lo), (qy, qy_lo))
+
+
+def link_low_words(
+    px: Number, py: Number, px_lo: Number, py_lo: Number, rx: Number, ry: Number
+) -> tuple[Number, Number]:
+    """Return what r misses of the vector from p to the rounded sum of p's high words and r."""
+    return -(sum_low(px, rx) + px_lo), -(sum_low(py, ry) + py_lo)
+
+
+def link_to_low_words(
+    rx: Number, ry: Number, qx: Number, qy: Number, px: Number, py: Number, px_lo: Number, py_lo: Number
+) -> tuple[Number, Number]:
+    """Return what r misses of the vector from p to the high words of q."""
+    return _missing(rx, (qx, 0.0), (-px, -px_lo)), _missing(ry, (qy, 0.0), (-py, -py_lo))
+
+
+def _missing(x: Number, p: Pair, q: Pair) -> Number:
+    """Return what x, a rounding or two away, misses of p + q."""
+    high, low = two_sum(p[0], q[0])
+    return ((high - x) + low) + (p[1] + q[1])
 
 
 def between(
@@ -82,7 +112,7 @@ def distance(x: Number, y: Number, x_lo: Number, y_lo: Number) -> Pair:
 def excess_square(x: Number, y: Number, x_lo: Number, y_lo: Number, length: Number, length_lo: Number) -> Number:
     """Return half of length² − |(x, y)|²."""
     s, size = ((x, x_lo), (y, y_lo)), (length, length_lo)
-    return 0.5 * difference(multiply(size, size), dot(*s, *s))
+    return 0.5 * difference(multiply(size, size), overlapping_dot(*s, *s))
 
 
 def excess_component(
