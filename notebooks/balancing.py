@@ -34,14 +34,14 @@ feeder = ls.FourBar(
 )
 scene = ls.Scene(feeder, omega2=2 * np.pi * 600 / 60)  # 600 rpm, nothing but inertia
 shaking = ls.sweep(scene, of=["Fsx", "Fsy", "Fs", "Ms"])
-ls.plot.hodograph(shaking)
+ax = ls.plot.hodograph(shaking)
 # %% [markdown]
 # The shaking force is −Σ m·a of the moving links: what they do to the frame, beside their weight. It changes direction and size
 # within a turn. Its orders tell how fast: once, twice, three times a turn.
 
 # %%
 harmonics = ls.orders(shaking, ["Fsx", "Fsy"], n=6)
-ls.plot.orders(harmonics)
+ax = ls.plot.orders(harmonics)
 # %% [markdown]
 # ## Why counterweights on two links are enough
 #

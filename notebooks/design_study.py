@@ -67,44 +67,14 @@ candidates = stirrer(*(sampled[path][turning] for path in may_be))
 print(f"{int(turning.sum())} of 100 000 turn, {time.perf_counter() - start:.1f} s")
 
 # %% [markdown]
-# Their swing and their transmission angle are geometry too, by the law of cosines: the rocker reverses where crank and coupler lie on
-# one line, and the coupler meets the rocker most askew where the crank lies along the ground.
-
-
-# %%
-def angle(p, q, opposite):
-    """The angle [degree] between two sides of a triangle."""
-    return np.degrees(np.arccos(((p**2 + q**2 - opposite**2) / (2 * p * q)).clip(-1, 1)))
-
-
-def lengths(ds):
-    """The four lengths that stand in a Dataset, with their dims and without its labels, which would slow down arithmetic."""
-    return (ds[path].variable for path in may_be)
-
-
-def swing(ds):
-    """What the rocker swings through [degree]."""
-    crank, coupler, rocker, ground = lengths(ds)
-    return angle(rocker, ground, coupler + crank) - angle(rocker, ground, coupler - crank)
-
-
-def transmission_angle(ds):
-    """Least acute angle between coupler and rocker [degree]."""
-    crank, coupler, rocker, ground = lengths(ds)
-    return 90 - np.maximum(*(abs(90 - angle(coupler, rocker, ground + reach)) for reach in (-crank, crank)))
-
-
-def fits(ds, least_swing=60.0):
-    return (swing(ds) >= least_swing) & (transmission_angle(ds) >= 40)
-
-
-# %% [markdown]
-# Now the exact peaks of all that turn: every pin force and the torque, each at its worst crank angle. The bearing load of a
-# design is that of its hardest loaded pin. A design fits when the rocker swings through 60° at least and the transmission angle
+# Now the exact peaks of all that turn: every pin force, the torque, the rocker's angle and the transmission angle, each with its
+# extremes over the revolution. The swing is the difference of the rocker's largest and least angle. The bearing load of a design is
+# that of its hardest loaded pin. A design fits when the rocker swings through 60° at least and the transmission angle
 # stays above 40°.
 
 # %%
 PINS = ["F12", "F32", "F43", "F14"]
+GEOMETRY = ["theta4", "transmission_angle"]
 
 
 def bearing_load(ds):
@@ -113,15 +83,21 @@ def bearing_load(ds):
     return peaks.to_dataarray().max("variable").assign_attrs(units="N")
 
 
+def swing(ds):
+    """What the rocker swings through [degree]."""
+    return (ds.theta4_max - ds.theta4_min).assign_attrs(units="degree")
+
+
+def fits(ds, least_swing=60.0):
+    return (swing(ds) >= least_swing) & (ds.transmission_angle_min >= 40)
+
+
 start = time.perf_counter()
-study = ls.peaks(candidates)
+study = ls.peaks(candidates, of=[*PINS, "T12", *GEOMETRY])
 print(f"exact peaks of {study.sizes['design']} designs: {time.perf_counter() - start:.1f} s, compiling included")
 
 study["bearing_load"] = bearing_load(study)
 study["swing"] = swing(study)
-study["transmission_angle"] = transmission_angle(study)
-for name in ("swing", "transmission_angle"):
-    study[name].attrs["units"] = "degree"
 fitting = study.isel(design=np.flatnonzero(fits(study)))
 print(fitting.sizes["design"], "of them fit")
 
@@ -130,10 +106,10 @@ print(fitting.sizes["design"], "of them fit")
 # Pareto front: along it, less of one costs more of the other.
 
 # %%
-fitting.linksweep.scatter(x="bearing_load", y="T12_peak", color="rocker.length")
+ax = fitting.linksweep.scatter(x="bearing_load", y="T12_peak", color="rocker.length")
 # %%
 front = ls.pareto(fitting, minimize=["bearing_load", "T12_peak"])
-front[["bearing_load", "T12_peak", "swing", "transmission_angle"]].linksweep.to_pandas().round(3)
+front[["bearing_load", "T12_peak", "swing", "transmission_angle_min"]].linksweep.to_pandas().round(3)
 
 # %% [markdown]
 # Parallel coordinates show what good designs have in common. Each line is a design, from its lengths on the left to its results on
@@ -141,7 +117,7 @@ front[["bearing_load", "T12_peak", "swing", "transmission_angle"]].linksweep.to_
 
 # %%
 good = fitting.sortby("bearing_load").isel(design=slice(1000))
-good.linksweep.parallel_coordinates([*may_be, "transmission_angle", "swing", "T12_peak", "bearing_load"])
+ax = good.linksweep.parallel_coordinates([*may_be, "transmission_angle_min", "swing", "T12_peak", "bearing_load"])
 # %% [markdown]
 # The good ones have a crank of about half the rocker, use no more swing than they must, and hardly more transmission angle. Their
 # size lies well inside what we allowed: below it forces grow because the levers are short, above it because the links are heavy.
@@ -157,7 +133,9 @@ best = ls.scene_at(fitting, design=fitting.bearing_load.idxmin())
 
 def refined(least_swing):
     """The design of least bearing load."""
-    load = ls.objective(first, may_be, minimize=bearing_load, constraint=lambda ds: fits(ds, least_swing))
+    load = ls.objective(
+        first, may_be, minimize=bearing_load, constraint=lambda ds: fits(ds, least_swing), of=[*PINS, *GEOMETRY]
+    )
     enough = fitting.isel(design=np.flatnonzero(fitting.swing >= least_swing)).sortby("bearing_load")
     start = np.stack([enough[path][:40] for path in may_be], axis=1)
     at_once = {"vectorized": True, "updating": "deferred", "polish": False}
@@ -175,12 +153,12 @@ print(f"{time.perf_counter() - start:.1f} s")
 # %%
 def summary(scene):
     """What one wants to know of a design."""
-    machine, worst, rocker = scene.mechanism, ls.peaks(scene), ls.sweep(scene, of=["theta4"]).theta4
+    machine, worst, motion = scene.mechanism, ls.peaks(scene), ls.geometry(scene)
     return {
         **{f"{link} [mm]": 1000 * getattr(machine, link).length for link in ("crank", "coupler", "rocker")},
         "ground [mm]": 1000 * machine.ground,
-        "swing [°]": float(rocker.max() - rocker.min()),
-        "transmission angle [°]": float(ls.check(scene).transmission_angle_min),
+        "swing [°]": float(motion.swing),
+        "transmission angle [°]": float(motion.transmission_angle_min),
         "peak bearing load [N]": float(bearing_load(worst)),
         "peak torque [N m]": float(worst.T12_peak),
     }
@@ -191,8 +169,7 @@ table = pd.DataFrame({name: summary(scene) for name, scene in designs.items()})
 table.round(2)
 
 # %% [markdown]
-# Swing and transmission angle in this table come from a sweep and from `check`, which do not know our formulas. What became of the
-# load is seen at the pin that bears most, between crank and ground:
+# Swing and transmission angle in this table come from `geometry`, which knows them in closed form. What became of the load is seen at the pin that bears most, between crank and ground:
 
 # %%
 fig, panels = plt.subplots(1, 2, figsize=(10, 4.8), layout="constrained")
@@ -207,20 +184,12 @@ for ax, name in zip(panels, ("textbook", "refined"), strict=True):
 
 # %%
 machine = winner.mechanism
-grid = pd.MultiIndex.from_product(
-    [np.linspace(0.96, 1.16, 80) * length for length in (machine.crank.length, machine.rocker.length)],
-    names=["crank.length", "rocker.length"],
-)
-crank, rocker = (xr.DataArray(grid.get_level_values(name).to_numpy(), dims="design") for name in grid.names)
-coupler, ground = (xr.full_like(crank, length) for length in (machine.coupler.length, machine.ground))
-around = ls.peaks(stirrer(crank, coupler, rocker, ground))
+lengths = {name: np.linspace(0.96, 1.16, 80) * getattr(machine, name).length for name in ("crank", "rocker")}
+crank, rocker = (xr.DataArray(values, {f"{name}_length": values}, f"{name}_length") for name, values in lengths.items())
+around = ls.peaks(stirrer(crank, machine.coupler.length, rocker, machine.ground), of=[*PINS, *GEOMETRY])
 around["swing"] = swing(around)
 around["bearing_load"] = bearing_load(around).where(fits(around))
-around = around[["bearing_load", "swing", "status"]].reset_coords(drop=True)
-around = around.assign_coords(xr.Coordinates.from_pandas_multiindex(grid, "design")).unstack("design")
-for name, unit in {"crank.length": "m", "rocker.length": "m", "swing": "degree"}.items():
-    around[name].attrs["units"] = unit
-around.linksweep.heat_map("bearing_load", contours="swing")
+ax = around.linksweep.heat_map("bearing_load", contours="swing")
 # %% [markdown]
 # ## Made in a workshop
 #
@@ -229,7 +198,7 @@ around.linksweep.heat_map("bearing_load", contours="swing")
 
 # %%
 off = {path: ls.Normal(deviation=5e-5, within=3) for path in may_be}
-made = ls.peaks(ls.sample(winner, off, n=20_000))
+made = ls.peaks(ls.sample(winner, off, n=20_000), of=[*PINS, *GEOMETRY])
 made_load, made_swing = bearing_load(made), swing(made)
 
 fig, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), layout="constrained")
@@ -253,7 +222,7 @@ table["with margin"] = summary(safe)
 table.round(2)
 
 # %%
-short = swing(ls.check(ls.sample(safe, off, n=20_000))) < 60
+short = swing(ls.peaks(ls.sample(safe, off, n=20_000), of=GEOMETRY)) < 60
 print(f"{100 * float(short.mean()):.2f} % swing less than 60°")
 
 load = table.loc["peak bearing load [N]"]

@@ -93,13 +93,13 @@ ax.grid(alpha=0.3)
 # mixture burns, so the lower shell takes that load, and swings round with the inertia of piston and rod in the other strokes.
 
 # %%
-cycle.linksweep.bearing("F21")
+ax = cycle.linksweep.bearing("F21")
 # %% [markdown]
 # The crank pin turns with the crank, so its diagram is drawn in the crank's axes: F32, the force of the rod on the pin. It says on
 # which side the pin wears, and where an oil hole may be drilled: where there is no load.
 
 # %%
-cycle.linksweep.bearing("F32", frame="link")
+ax = cycle.linksweep.bearing("F32", frame="link")
 # %% [markdown]
 # ## The torque
 #

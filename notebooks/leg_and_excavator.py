@@ -104,7 +104,7 @@ for ax, (name, scene) in zip(panels, legs.items(), strict=True):
     ax.plot(one.theta2, both, label="two, half a turn apart")
     ax.set(xlabel="crank angle θ₂ [°]", ylabel="torque [N m]", title=name, xticks=np.arange(0, 361, 45))
     ax.grid(alpha=0.3)
-panels[1].legend()
+legend = panels[1].legend()
 # %% [markdown]
 # ## An excavator digs
 #

@@ -225,7 +225,7 @@ print(f"weights change F12y by {abs(with_weights - solved())[:, 1].mean():.1f} N
 
 # %%
 cycle = ls.sweep(heavy)
-cycle.linksweep.forces()
+ax = cycle.linksweep.forces()
 # %%
 worst = ls.peaks(heavy)
 pins = {"A": "F12", "B": "F32", "C": "F43", "D": "F14"}
@@ -235,7 +235,7 @@ table["at θ2 [°]"] = [float(worst[f"{f}_peak_at"]) for f in pins.values()]
 table.round(2)
 
 # %%
-cycle.linksweep.mechanism(theta2=float(worst.F12_peak_at), forces=True)
+ax = cycle.linksweep.mechanism(theta2=float(worst.F12_peak_at), forces=True)
 # %% [markdown]
 # Pin A, where the crank turns in the frame, bears most. Had we done the table by hand, with a row every 30° or every 10°, how
 # much of the peaks would we have seen?
@@ -256,7 +256,7 @@ for step in (30, 10, 1):
 
 # %%
 shares = ls.breakdown(heavy, "F12")
-ls.plot.breakdown(shares)
+ax = ls.plot.breakdown(shares)
 # %% [markdown]
 # At 150 rpm it is the push that counts, not the inertia: the pusher could run faster. How fast, if no pin is to bear more than 60
 # lbf?
@@ -266,7 +266,7 @@ limit = 60 * pound * gravity
 fastest = {pin: float(ls.speed_limit(heavy, f, below=limit).omega2_limit) * 30 / np.pi for pin, f in pins.items()}
 first = min(fastest, key=fastest.get)
 print({pin: f"{rpm:.0f} rpm" for pin, rpm in fastest.items()})
-ls.plot.over_speed(heavy, pins[first], speeds=np.linspace(0, 1.3, 27) * fastest[first] * np.pi / 30, below=limit)
+ax = ls.plot.over_speed(heavy, pins[first], speeds=np.linspace(0, 1.3, 27) * fastest[first] * np.pi / 30, below=limit)
 # %% [markdown]
 # Inertia at first even relieves pin A; only at five times the speed does it reach 60 lbf. The sheet's question is answered,
 # for this speed and the others.

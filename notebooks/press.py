@@ -60,18 +60,18 @@ print(f"least transmission angle: {float(checks.transmission_angle_min):.1f}°")
 
 # %%
 cycle = ls.sweep(scene, theta2=720)
-cycle.F32x
+cycle.F32x.attrs
 
 # %%
-cycle.linksweep.forces()
+ax = cycle.linksweep.forces()
 # %% [markdown]
 # Pin C is loaded hardest, shortly after the crank has passed the line of the frame. What does its load look like to the
 # bearing? The load diagram shows direction and size together, with the crank angle ticked along the curve.
 
 # %%
-cycle.linksweep.bearing("F43")
+ax = cycle.linksweep.bearing("F43")
 # %%
-cycle.linksweep.mechanism(theta2=17.5, forces=True)
+ax = cycle.linksweep.mechanism(theta2=17.5, forces=True)
 # %% [markdown]
 # The numbers themselves come from `peaks`:
 
@@ -125,7 +125,7 @@ study = ls.Scene(
     loads=scene.loads,
 )
 map_of_peaks = ls.peaks(study, of=["F43"])
-map_of_peaks.F43_peak.plot(x="rpm", y="rocker_length", cmap="viridis")
+mesh = map_of_peaks.F43_peak.plot(x="rpm", y="rocker_length", cmap="viridis")
 # %%
 best = map_of_peaks.F43_peak.sel(rpm=300, method="nearest").idxmin()
 print(f"at about 300 rpm pin C is loaded least with a rocker of {100 * float(best):.1f} cm")
@@ -144,7 +144,7 @@ punch = ls.SliderCrank(
 push = xr.DataArray([-20e3, 0.0], {"position": [0.0, 0.012]}, "position")  # [N] from each distance on, to the next
 load = ls.Load("slider", force=push, over="slider.to_end", while_="closing", interpolation="step")
 punching = ls.peaks(ls.Scene(punch, omega2=scene.omega2, loads=[load]), of=["T12", "T12_mean"])
-punching.T12_max.plot(marker="o")
+lines = punching.T12_max.plot(marker="o")
 assert np.allclose(
     punching.T12_mean, 20e3 * 0.012 / (2 * np.pi), rtol=1e-9
 )  # the work of a stroke, whatever the offset

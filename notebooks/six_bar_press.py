@@ -129,7 +129,7 @@ table.round(1)
 # (Between two levers in line, gravity and inertia hardly matter: where does the load of pin C come from?)
 
 # %%
-ls.plot.breakdown(ls.breakdown(scene, "F53"), "F53")
+ax = ls.plot.breakdown(ls.breakdown(scene, "F53"), "F53")
 # %% [markdown]
 # ## The bearings
 #

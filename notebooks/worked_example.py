@@ -55,7 +55,7 @@ print(f"a + b − c = {a + b - c:.3f} cm")
 # %%
 crank, coupler, rocker = (ls.Bar(length=length, **steel) for length in (0.08, 0.12, 0.11))
 page = ls.Scene(ls.FourBar(crank, coupler, rocker, ground=0.22), omega2=-20.0, alpha2=100.0, gravity=(0.0, -9.81))
-ls.sweep(page).linksweep.mechanism(theta2=45.0, forces=True)
+ax = ls.sweep(page).linksweep.mechanism(theta2=45.0, forces=True)
 # %% [markdown]
 # ## Motion
 #
@@ -205,7 +205,7 @@ print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks
 print(f"assembles from {float(checks.arc_start[0]):.3f}° to {float(checks.arc_end[0]):.3f}°")
 torques = ls.sweep(page, theta2=[45.0, 80.0, 86.0]).T12.values
 print("T12 at 45°, 80°, 86°:", *(f"{torque:.1f} N m" for torque in torques))
-ls.sweep(page).linksweep.forces(["F12", "F43"])
+ax = ls.sweep(page).linksweep.forces(["F12", "F43"])
 # %% [markdown]
 # ## The slider-crank on the next page
 #

@@ -67,11 +67,11 @@ class InvertedSliderCrank(SingleDyad):
     A load on "block" acts at a point from B, in axes along and across the rocker's line.
 
     The contact of rocker and block is a normal force F43n through B and a moment T43. In the nine unknowns they take
-    the place of F43x, F43y, which are computed besides. Friction, −μ·|F43n|·sign(slide_velocity) on the
+    the place of F43x, F43y, which are computed besides. Friction, ``−μ·|F43n|·sign(slide_velocity)`` on the
     block along the line, takes the size of the normal force alone: the moment T43, two more normal forces at the ends
-    of the block, brings no friction of its own. It wedges where μ·|e/slide| ≥ 1, e the offset; with drive="rocker"
-    where μ·|tan ψ| ≥ 1, ψ the angle of the crank to the line: status `jammed` where no force moves it on,
-    `jammed_two_solutions` where the rocker may press on either side. A cylinder overcomes friction everywhere.
+    of the block, brings no friction of its own. It wedges where ``μ·|e/slide| ≥ 1``, e the offset; with
+    drive="rocker" where ``μ·|tan ψ| ≥ 1``, ψ the angle of the crank to the line: status `jammed` where no force moves
+    it on, `jammed_two_solutions` where the rocker may press on either side. A cylinder overcomes friction everywhere.
 
     With drive="cylinder" the rocker is the barrel and the block the end of the rod: the unknown is the cylinder's force
     `cylinder_force` on the block along the rocker's line, positive in the direction of slide (branch="open": positive

@@ -79,9 +79,9 @@ class SliderCrank(SingleDyad):
     -----
     A load on "slider" acts at a point from C, in axes along and across the guide.
 
-    Friction wedges the slider where μ·|tan ψ| ≥ 1, ψ the angle of the rod (with drive="coupler", of the crank) to the
-    guide: status `jammed` where no force moves it on, `jammed_two_solutions` where the guide may press on either side
-    (the statics of rigid bodies allows both). The slider does not turn: the place of its centre of gravity changes
+    Friction wedges the slider where ``μ·|tan ψ| ≥ 1``, ψ the angle of the rod (with drive="coupler", of the crank) to
+    the guide: status `jammed` where no force moves it on, `jammed_two_solutions` where the guide may press on either
+    side (the statics of rigid bodies allows both). The slider does not turn: the place of its centre of gravity changes
     only `T14`, the guide's moment on it, and the shaking moment; its moment of inertia would change nothing, and is no
     parameter. A load with a cycle of full turns of the crank (see `GasPressure`) has no value in a design whose crank
     does not turn fully: status `no_cycle`.

@@ -57,8 +57,8 @@ def peaks(
     -------
     Dataset
         Over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity `T12_max`,
-        `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest |T12|). `status`: ok, partial_revolution (peaks
-        are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
+        `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest magnitude). `status`: ok, partial_revolution
+        (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
 
     Raises
     ------

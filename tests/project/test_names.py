@@ -4,6 +4,7 @@ import ast
 import importlib
 import re
 import tomllib
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -59,13 +60,13 @@ def test_an_unknown_name_is_an_attribute_error():
         _ = ls.swep
 
 
-def test_a_wheel_has_every_data_file():
-    """Each file that is no module must be named in pyproject.toml: py.typed, the stub, the examples, pages."""
-    patterns = declared()["tool"]["setuptools"]["package-data"]["linksweep"]
-    shipped = {path for pattern in patterns for path in PACKAGE.glob(pattern)}
-    data = {path for path in PACKAGE.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}
-    assert shipped == data
-    assert PACKAGE / "py.typed" in data
+def test_a_wheel_has_every_file_of_the_package():
+    """It takes the folder whole, but for what .gitignore leaves out, which is no file of the package."""
+    assert declared()["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["linksweep"]
+    ignored = [pattern.rstrip("/") for pattern in (ROOT / ".gitignore").read_text(encoding="utf-8").split()]
+    files = [path.relative_to(PACKAGE) for path in PACKAGE.rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    assert Path("py.typed") in files
+    assert [path for path in files for part in path.parts for pattern in ignored if fnmatch(part, pattern)] == []
 
 
 def checked(tmp_path: Path, source: str) -> str:

@@ -123,7 +123,7 @@ def motor_load(
 
         - `motor_speed` [rad/s] and `motor_torque` [N m], the rotor's own inertia included
         - `available_torque` [N m]: the largest torque of the motor at that speed
-        - `torque_margin` [N m]: available less |motor_torque|; negative where the motor is too weak
+        - `torque_margin` [N m]: available less ``|motor_torque|``; negative where the motor is too weak
         - `reflected_inertia` [kg m²]: the rotor's inertia at the driven link, inertia·ratio²
         - `motor_torque_rms` [N m]: root mean square over time, which heats the motor.
 
