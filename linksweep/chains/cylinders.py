@@ -26,7 +26,7 @@ def place_cylinder(motion: Motion, role: str) -> None:
     motion.row(planar.product, (f"rate_{role}",), "omega2", f"lengthening_{role}")
     motion.quantities += [
         Quantity(length, "m", f"length of the cylinder {role}, from pin {P} to pin {Q}"),
-        Quantity(f"rate_{role}", "m s-1", f"velocity at which the cylinder {role} lengthens"),
+        Quantity(f"rate_{role}", "m/s", f"velocity at which the cylinder {role} lengthens"),
     ]
 
 

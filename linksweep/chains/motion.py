@@ -238,8 +238,8 @@ class Motion:
         self.sliding[role] = position, velocity, acceleration
         self.quantities += [
             Quantity(position, "m", f"position of the {role} along the {line}, from {start}"),
-            Quantity(velocity, "m s-1", f"velocity of the {role} along the {line}"),
-            Quantity(acceleration, "m s-2", f"acceleration of the {role} along the {line}"),
+            Quantity(velocity, "m/s", f"velocity of the {role} along the {line}"),
+            Quantity(acceleration, "m/s^2", f"acceleration of the {role} along the {line}"),
         ]
 
     def slides_on(self, step: Step, role: str, name: str, guide: str) -> None:

@@ -179,11 +179,11 @@ def _table() -> Table:
 
 def _quantities() -> list[Quantity]:
     return [
-        Quantity("speed", "m s-1", "speed of the car along the track, counter-clockwise"),
-        Quantity("a_radial", "m s-2", "acceleration of the car across the track, positive towards the centre"),
-        Quantity("a_tangential", "m s-2", "acceleration of the car along the track, positive counter-clockwise"),
+        Quantity("speed", "m/s", "speed of the car along the track, counter-clockwise"),
+        Quantity("a_radial", "m/s^2", "acceleration of the car across the track, positive towards the centre"),
+        Quantity("a_tangential", "m/s^2", "acceleration of the car along the track, positive counter-clockwise"),
         Quantity("normal_force", "N", "force of the track on the car, positive towards the centre"),
-        Quantity("a_total", "m s-2", "magnitude of the car's acceleration", squared="a_total_squared"),
+        Quantity("a_total", "m/s^2", "magnitude of the car's acceleration", squared="a_total_squared"),
         Quantity("a_total_angle", "degree", "direction of the car's acceleration from x, in (-180, 180]"),
     ]
 
@@ -259,7 +259,7 @@ def lap(radius, mass, speed, thrust, gx, gy, work_counts) -> Results:
         "lap": Finding(outcome, "what becomes of the car in one lap from the bottom", words=LAP),
         "leaves_track_at": Finding(_degrees(leaves), "position at which the car first leaves the track"),
         "stalls_at": Finding(_degrees(stalls), "position at which the car stalls"),
-        "least_entry_speed": Finding(least, "least speed at the bottom with which it goes round", "m s-1"),
+        "least_entry_speed": Finding(least, "least speed at the bottom with which it goes round", "m/s"),
     }
 
 

@@ -14,7 +14,7 @@ from linksweep.reports.results_of_page import Results
 from linksweep.scene.scene import Scene
 
 NOISE = 1e-12  # of the terms of a mean: the rounding of a sum that cancels
-UNITS = {"degree": "°", "1": "", "m s-1": "m/s", "m s-2": "m/s²", "kg m2": "kg m²"}
+UNITS = {"degree": "°", "1": "", "m/s^2": "m/s²", "kg m^2": "kg m²"}
 WORKS = {
     "work_fed": "work fed in a cycle",
     "work_regenerated": "work taken back or braked",

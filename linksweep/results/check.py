@@ -134,7 +134,7 @@ def _acceleration(scene: Scene) -> dict[str, xr.Variable]:
     at = difference["theta2"][difference.argmax("theta2")]
     words = "of alpha2 from omega2·d(omega2)/d(theta2)"
     return {
-        "alpha2_difference": _described(difference.max("theta2"), "rad s-2", f"largest difference {words}"),
+        "alpha2_difference": _described(difference.max("theta2"), "rad/s^2", f"largest difference {words}"),
         "alpha2_difference_at": _described(at, "degree", f"crank angle of the largest difference {words}"),
     }
 

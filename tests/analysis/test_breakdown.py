@@ -133,8 +133,8 @@ def test_three_terms_give_the_force_at_every_speed(scene):
             A, B, C = (parts[f"{name}_{term}"] for term in ("per_omega2_squared", "per_alpha2", "static"))
             whole = A * omega2**2 + B * alpha2 + C
             np.testing.assert_allclose(whole, ds[name], rtol=0, atol=1e-12 * float(abs(ds[name]).max()))
-    assert parts.F32x_per_omega2_squared.attrs["units"] == "N s2 rad-2"
-    assert parts.T12_per_alpha2.attrs["units"] == "N m s2 rad-1"
+    assert parts.F32x_per_omega2_squared.attrs["units"] == "N s^2/rad^2"
+    assert parts.T12_per_alpha2.attrs["units"] == "N m s^2/rad"
 
 
 @pytest.mark.parametrize("scene", SMOOTH)

@@ -179,7 +179,7 @@ def test_a_torque_of_second_order_on_a_crank_without_mass_by_hand():
     np.testing.assert_allclose(wheel.flywheel_inertia, 6.0 / (0.03 * 400.0), rtol=1e-7)
     np.testing.assert_allclose(wheel.drive_torque, 4.0, rtol=1e-9)
     np.testing.assert_allclose(wheel.energy_fluctuation, 6.0, rtol=1e-7)
-    assert wheel.flywheel_inertia.attrs["units"] == "kg m2"
+    assert wheel.flywheel_inertia.attrs["units"] == "kg m^2"
 
 
 @MACHINES

@@ -185,10 +185,10 @@ def table(loads):
 
 def quantities(loads):
     return [
-        Quantity("v_yoke", "m s-1", "velocity of the yoke"),
-        Quantity("a_yoke", "m s-2", "acceleration of the yoke"),
+        Quantity("v_yoke", "m/s", "velocity of the yoke"),
+        Quantity("a_yoke", "m/s^2", "acceleration of the yoke"),
         Quantity("T14", "N m", "moment of the guide on the yoke about C, positive counter-clockwise"),
-        Quantity("velocity_ratio", "m rad-1", "velocity of the yoke per angular velocity of the crank"),
+        Quantity("velocity_ratio", "m/rad", "velocity of the yoke per angular velocity of the crank"),
         *position_quantities("B", "C"),
         *drive_quantities(drive_torque("T12", "crank")),
         *machine_quantities((CRANK, YOKE), PINS, LINKS, loads),

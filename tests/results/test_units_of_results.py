@@ -1,7 +1,5 @@
 """Every variable scales with length, mass and time as its unit says, and states its meaning."""
 
-import re
-
 import numpy as np
 import pint
 import pytest
@@ -68,16 +66,10 @@ def units():
 @pytest.mark.parametrize(("machine", "name"), QUANTITIES)
 def test_scales_as_its_unit_says(machine, name, units):
     one, other = (ls.sweep(s, theta2=24, of=[name])[name] for s in (machine(), machine(LENGTH, MASS, TIME)))
-    dimension = units.parse_units(_pint(one.attrs["units"])).dimensionality
+    dimension = units.parse_units(one.attrs["units"]).dimensionality
     factor = LENGTH ** dimension["[length]"] * MASS ** dimension["[mass]"] * TIME ** dimension["[time]"]
     np.testing.assert_array_equal(other.values, one.values * factor)
     assert np.abs(one.values).max() > 0.0
-
-
-def _pint(udunits):
-    """UDUNITS spelling, "rad s-2", as pint reads it."""
-    factors = [re.sub(r"(?<=[a-z])(-?\d)", r"**\1", factor, flags=re.IGNORECASE) for factor in udunits.split()]
-    return " * ".join(factors) if udunits != "1" else "dimensionless"
 
 
 @pytest.mark.parametrize(("machine", "name"), QUANTITIES)
@@ -85,3 +77,27 @@ def test_says_what_it_is(machine, name):
     quantity = machine().table.quantity[name]
     assert len(quantity.long_name) > 10
     assert quantity.units
+
+
+BEARING = ls.Bearing(diameter=0.02, length=0.03, capacity=5e4)
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        lambda: ls.sweep(ls.example("press"), 12),
+        lambda: ls.peaks(ls.sample(ls.example("engine"), {"omega2": (100.0, 200.0)}, n=3), theta2=24),
+        lambda: ls.bearings(ls.example("press"), {"B": BEARING}, theta2=24),
+        lambda: ls.flywheel(ls.example("press"), fluctuation=0.02, theta2=24),
+    ],
+)
+def test_pint_xarray_takes_every_result(result):
+    """Units are spelled so that pint and UDUNITS both read them: `ds.pint.quantify()` works."""
+    pytest.importorskip("pint_xarray")
+    plain = result()
+    quantities = plain.pint.quantify()
+    assert {name for name, values in quantities.items() if values.pint.units is not None} == {
+        name for name, values in plain.items() if "units" in values.attrs
+    }
+    for name, values in quantities.pint.dequantify(format="~").items():
+        np.testing.assert_array_equal(values.values, plain[name].values)

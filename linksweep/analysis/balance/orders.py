@@ -80,7 +80,8 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
         signal = ds[name].broadcast_like(ds[index])  # a constant has a mean alone
         variables |= _named(name, ds[name], *(weight * xr.dot(signal, wave, dim=index) for wave in waves))
     attributes = {"units": "1", "long_name": f"cycles in one turn of {index}"}
-    return xr.Dataset(variables).assign_coords(order=("order", order, attributes))
+    origin = ds.attrs | {"command": f"linksweep.orders(ds, {names}, n={n})"}
+    return xr.Dataset(variables, attrs=origin).assign_coords(order=("order", order, attributes))
 
 
 def _named(name: str, signal: xr.DataArray, cos: xr.DataArray, sin: xr.DataArray) -> dict[str, xr.DataArray]:

@@ -30,7 +30,7 @@ from linksweep.scene.scene import Scene
 
 PROBE = "_probe"
 LINEAR_UNITS = ("N", "N m", "W")
-UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m2"}
+UNITS = {"m": "kg", "mx": "kg m", "my": "kg m", "J": "kg m^2"}
 OF_LINK = tuple(UNITS)
 
 

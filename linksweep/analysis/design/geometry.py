@@ -46,8 +46,8 @@ ENDS = {"max": "largest", "min": "least"}
 DWELL = Rule("dimensionless", above=0.0)
 CURVE = {
     "P": ("m", "position of the point from A"),
-    "vP": ("m s-1", "velocity of the point"),
-    "aP": ("m s-2", "acceleration of the point"),
+    "vP": ("m/s", "velocity of the point"),
+    "aP": ("m/s^2", "acceleration of the point"),
 }
 
 
@@ -186,7 +186,7 @@ def coupler_curve(
     >>> import linksweep as ls
     >>> curve = ls.coupler_curve(ls.example("press"), at=(0.10, 15.0), theta2=360)
     >>> curve.Py.dims, curve.aPy.units
-    (('theta2',), 'm s-2')
+    (('theta2',), 'm/s^2')
     """
     require(scene, "bodies")
     bodies = {body.role: body for body in scene.mechanism.bodies}

@@ -87,7 +87,7 @@ def flywheel(
     >>> import linksweep as ls
     >>> wheel = ls.flywheel(ls.example("press"), fluctuation=0.05)
     >>> wheel.flywheel_inertia.units, round(float(wheel.fluctuation), 12)
-    ('kg m2', 0.05)
+    ('kg m^2', 0.05)
     """
     require(one_cylinder(scene), "drives")
     refuse(_problems(one_cylinder(scene), fluctuation, inertia))
@@ -107,8 +107,8 @@ def flywheel(
     (fastest, slowest), (most, least) = _extremes(speed, index), _extremes(stored, index)
     spread = (fastest - slowest) / mean
     results = {
-        "flywheel_inertia": (size, "kg m2", "moment of inertia of the flywheel about the crank's axis"),
-        "speed": (np.sign(one.omega2) * speed, "rad s-1", "angular velocity of the crank with the flywheel"),
+        "flywheel_inertia": (size, "kg m^2", "moment of inertia of the flywheel about the crank's axis"),
+        "speed": (np.sign(one.omega2) * speed, "rad/s", "angular velocity of the crank with the flywheel"),
         "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
         "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
         "energy_fluctuation": (most - least, "J", ENERGY),

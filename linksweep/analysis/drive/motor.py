@@ -160,11 +160,11 @@ def motor_load(
     needed = xr.where(fed, T / efficiency, T * efficiency) / ratio + motor.inertia * ratio * cycle[alpha]
     available = xr.apply_ufunc(motor.torque_at, speed).where(speed.notnull())
     results = {
-        "motor_speed": (speed, "rad s-1", "angular velocity of the motor"),
+        "motor_speed": (speed, "rad/s", "angular velocity of the motor"),
         "motor_torque": (needed, "N m", "torque of the motor, in the direction of the torque on the driven link"),
         "available_torque": (available, "N m", "largest torque of the motor at its speed"),
         "torque_margin": (available - abs(needed), "N m", "available torque less the magnitude of the motor's"),
-        "reflected_inertia": (motor.inertia * ratio**2, "kg m2", "rotor inertia at the driven link"),
+        "reflected_inertia": (motor.inertia * ratio**2, "kg m^2", "rotor inertia at the driven link"),
         "motor_torque_rms": (np.sqrt(mean_over_time(needed**2, cycle, index)), "N m", "rms over time of motor_torque"),
     }
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.motor_load(scene, ...)")

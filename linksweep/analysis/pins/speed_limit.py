@@ -21,7 +21,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, refuse
 from linksweep.results.changed import quantities_with
 from linksweep.results.compute import quantity_problems, requested, require
-from linksweep.results.dataset import design_coordinates, with_units
+from linksweep.results.dataset import design_coordinates, origin_attributes, with_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.pairs import quantities_at
@@ -33,8 +33,8 @@ SAMPLES = 720
 CLOSE = 1e-12
 NO_WEIGHT = {"gravity_x": 0.0, "gravity_y": 0.0}
 TERMS = {
-    "per_omega2_squared": ({"omega2": 1.0, "alpha2": 0.0} | NO_WEIGHT, "s2 rad-2", "A of A·omega2² + B·alpha2 + C in"),
-    "per_alpha2": ({"omega2": 0.0, "alpha2": 1.0} | NO_WEIGHT, "s2 rad-1", "B of A·omega2² + B·alpha2 + C in"),
+    "per_omega2_squared": ({"omega2": 1.0, "alpha2": 0.0} | NO_WEIGHT, "s^2/rad^2", "A of A·omega2² + B·alpha2 + C in"),
+    "per_alpha2": ({"omega2": 0.0, "alpha2": 1.0} | NO_WEIGHT, "s^2/rad", "B of A·omega2² + B·alpha2 + C in"),
     "static": ({"omega2": 0.0, "alpha2": 0.0}, "", "C, at rest, of A·omega2² + B·alpha2 + C in"),
 }
 """Each term by its ending: the numbers that isolate it, its unit beside the force's, and its description."""
@@ -154,10 +154,10 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
             break
     long_name = f"highest angular velocity of the crank at which {name} stays below {below:g}"
     at = angle.where(np.isfinite(squared)), "degree", f"crank angle of the largest {name} at that speed"
-    results = with_units({"omega2_limit": (squared**0.5, "rad s-1", long_name), "omega2_limit_at": at})
+    results = with_units({"omega2_limit": (squared**0.5, "rad/s", long_name), "omega2_limit_at": at})
     command = f"linksweep.speed_limit(scene, {name!r}, below={below:g})"
     variables = {name: item.reset_coords(drop=True) for name, item in results.items()}
-    return xr.Dataset(variables, design_coordinates(scene), {"command": command})
+    return xr.Dataset(variables, design_coordinates(scene), origin_attributes(scene, command))
 
 
 def _problems(scene: Scene) -> list[str]:

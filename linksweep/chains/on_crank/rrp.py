@@ -152,7 +152,7 @@ MACHINE = OnCrank(
         Quantity("normal_force", "N", "force of the guide on the slider across it, positive to the guide's left"),
         Quantity("friction_force", "N", "force of the guide on the slider along it"),
         Quantity("friction_power", "W", "power of friction on the slider, never positive"),
-        Quantity("velocity_ratio", "m rad-1", "velocity of the slider per angular velocity of the crank"),
+        Quantity("velocity_ratio", "m/rad", "velocity of the slider per angular velocity of the crank"),
         Quantity(*ADVANTAGE, "1", "force of the slider per force on the crank at B square to it"),
     ),
     between=FROM_GUIDE,

@@ -210,12 +210,12 @@ def motion_quantities(body: Body) -> list[Quantity]:
     """Return the rates of a link, and the acceleration of its centre of gravity, as quantities."""
     k, role = body.number, body.role
     turning = [
-        Quantity(f"omega{k}", "rad s-1", f"angular velocity of the {role}, positive counter-clockwise"),
-        Quantity(f"alpha{k}", "rad s-2", f"angular acceleration of the {role}, positive counter-clockwise"),
+        Quantity(f"omega{k}", "rad/s", f"angular velocity of the {role}, positive counter-clockwise"),
+        Quantity(f"alpha{k}", "rad/s^2", f"angular acceleration of the {role}, positive counter-clockwise"),
     ]
     return (turning if body.turns else []) + [
-        Quantity(f"aG{k}x", "m s-2", f"acceleration of the {role}'s centre of gravity along x"),
-        Quantity(f"aG{k}y", "m s-2", f"acceleration of the {role}'s centre of gravity along y"),
+        Quantity(f"aG{k}x", "m/s^2", f"acceleration of the {role}'s centre of gravity along x"),
+        Quantity(f"aG{k}y", "m/s^2", f"acceleration of the {role}'s centre of gravity along y"),
     ]
 
 

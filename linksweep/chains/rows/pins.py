@@ -42,7 +42,7 @@ def pin_quantities(pins: Pins, links: Mapping[int, str]) -> list[Quantity]:
     for pin, (i, j) in rotating(pins).items():
         relative = f"of link {j} ({links[j]}) relative to link {i} ({links[i]}) at pin {pin}"
         rotation = f"angular velocity {relative}, positive counter-clockwise"
-        quantities.append(Quantity(f"omega_{pin}", "rad s-1", rotation))
+        quantities.append(Quantity(f"omega_{pin}", "rad/s", rotation))
         name, force = force_name(i, j), f"force of link {i} ({links[i]}) on link {j} ({links[j]}) at pin {pin}"
         for k in sorted({i, j} - {1}):
             axes = f"of link {k} ({links[k]})"

@@ -83,7 +83,7 @@ ADDED = {
     "load_power": ("W", "power of the loads of all cylinders, positive when they feed the engine"),
     "friction_power": ("W", "power of friction on all sliders, never positive"),
     "kinetic_energy": ("J", "kinetic energy of all moving links"),
-    "reduced_inertia": ("kg m2", "inertia of all moving links reduced to the crank"),
+    "reduced_inertia": ("kg m^2", "inertia of all moving links reduced to the crank"),
     "reduced_torque": ("N m", "drive reduced to the crank: its work per radian of the crank"),
 }
 SHAKING = ("Fsx", "Fsy")

@@ -40,8 +40,8 @@ def mirrored(scene: ls.Scene) -> ls.Scene:
 def turns(value: xr.DataArray) -> bool:
     """Return whether a quantity turns its sign in the mirror."""
     name, units = re.sub(r"_link\d+$", "", str(value.name)), units_of(value)
-    component = units in ("m", "m s-2", "N") and name.endswith("y")
-    angle = units in ("rad s-1", "rad s-2", "N m", "kg m2 rad-1") or name.startswith("theta")
+    component = units in ("m", "m/s^2", "N") and name.endswith("y")
+    angle = units in ("rad/s", "rad/s^2", "N m", "kg m^2/rad") or name.startswith("theta")
     return component or angle or re.fullmatch(r"F\d+n", name) is not None
 
 
@@ -81,7 +81,7 @@ BASE = {
 
 
 def factor(units: str, *scales: float) -> float:
-    """Return the number of smaller units, by these factors of length, mass and time, in one unit such as "kg m2"."""
+    """Return the number of smaller units, by these factors of length, mass and time, in one unit such as "kg m^2"."""
     above, _, below = units.replace("^", "").partition("/")
     powers = [(*re.fullmatch(r"(\w+?)(-?\d)?", word).groups("1"), 1) for word in above.split() if word != "1"]
     powers += [(*re.fullmatch(r"(\w+?)(-?\d)?", word).groups("1"), -1) for word in below.split()]
@@ -91,8 +91,8 @@ def factor(units: str, *scales: float) -> float:
 
 def test_factors_of_units():
     assert factor("N m s/rad", 2.0, 0.25, 8.0) == 2.0**2 * 0.25 / 8.0
-    assert factor("kg m2 rad-1", 2.0, 0.25, 8.0) == 1.0
-    assert factor("rad s-2", 2.0, 0.25, 8.0) == 1.0 / 64.0
+    assert factor("kg m^2/rad", 2.0, 0.25, 8.0) == 1.0
+    assert factor("rad/s^2", 2.0, 0.25, 8.0) == 1.0 / 64.0
     assert factor("1", 2.0, 0.25, 8.0) == 1.0
 
 
@@ -118,7 +118,7 @@ def test_time_reversal(name):
     loaded, theta2 = random_case(name)
     losses = ("friction", "coefficient")
     scene = changed(loaded, lambda path, value, kind: 0.0 * value if path.endswith(losses) else value)
-    turned = ("rad s-1", "m s-1", "W")
+    turned = ("rad/s", "m/s", "W")
     expected = swept(scene, theta2).map(lambda value: -value if units_of(value) in turned else value)
     fed, back = expected.power_fed, expected.power_regenerated
     expected = expected.assign(power_residual=-expected.power_residual, power_fed=-back, power_regenerated=-fed)

@@ -139,7 +139,7 @@ def test_an_explicit_alpha2_is_used_and_check_reports_its_difference():
         difference = abs(inputs - omega * slope)
         assert float(checks.alpha2_difference[case]) == pytest.approx(difference.max(), rel=1e-10)
         assert float(checks.alpha2_difference_at[case]) == 0.5 * difference.argmax()
-    assert checks.alpha2_difference.units == "rad s-2"
+    assert checks.alpha2_difference.units == "rad/s^2"
     by_hand = ls.check(scene(alpha2=lambda t: np.multiply(*cosine(np.radians(t)))))
     assert float(by_hand.alpha2_difference) < 1e-9
     for other in (scene(), PRESS, replace(PRESS, alpha2=7.0)):

@@ -222,7 +222,7 @@ def test_results_may_be_parameters():
     """Units in UDUNITS spelling are accepted: the speed of one machine drives another."""
     cycle = ls.sweep(PRESS, 8, of=["omega3", "F32x", "T12", "theta3"]).isel(theta2=[1], drop=True).rename(theta2="at")
     loads = [ls.Load("coupler", force=(cycle.F32x, 0.0), at=(0.1, cycle.theta3), torque=cycle.T12)]
-    assert ls.Scene(PRESS.mechanism, omega2=cycle.omega3, loads=loads).omega2.units == "rad s-1"
+    assert ls.Scene(PRESS.mechanism, omega2=cycle.omega3, loads=loads).omega2.units == "rad/s"
 
 
 @pytest.mark.parametrize(
