@@ -40,6 +40,7 @@ from linksweep.scene.examples import example
 from linksweep.scene.loads.air_cycle import DieselCycle, OttoCycle
 from linksweep.scene.loads.kinds import Damper, GasPressure, Load, Spring, TorsionDamper, TorsionSpring
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import units
 from linksweep.studies.checked import open_study
 from linksweep.studies.scene_at import scene_at
 from linksweep.studies.screen import screen
@@ -119,5 +120,6 @@ __all__ = [
     "study",
     "sweep",
     "system",
+    "units",
     "with_counterweights",
 ]

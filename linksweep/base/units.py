@@ -58,6 +58,8 @@ KINDS = {
         ("acceleration", "9.81 m/s^2", "m/s^2, cm/s^2, mm/s^2, in/s^2, ft/s^2, g0"),
         ("density", "7.75 g/cm^3", "kg/m^3, g/cm^3, lb/in^3, lb/ft^3, slug/ft^3, blob/in^3"),
         ("pressure", "12 bar", "Pa, kPa, MPa, bar, mbar, psi, atm"),
+        ("power", "1.5 kW", "W, kW, MW, mW, hp"),
+        ("energy", "40 J", "J, kJ, MJ, mJ, kWh, cal"),
         ("spring_rate", "12 N/mm", "N/m, N/cm, N/mm, kN/m, lbf/in, lbf/ft"),
         ("damping_coefficient", "300 N s/m", "N s/m, N s/mm, kN s/m, lbf s/in, lbf s/ft"),
         ("torsional_rate", "5 N m/rad", _TORSIONAL_RATES),
@@ -141,6 +143,11 @@ def accepted_unit(unit: str, kind: str) -> str:
         if _factors(spelling) == key:
             return spelling
     raise ValueError(_not_accepted(unit, kind))
+
+
+def size_of(spelling: str, kind: str) -> float:
+    """Return the size of a listed unit in the SI unit of its kind: 0.0254 of an inch."""
+    return float(_factor(spelling, kind))
 
 
 def unit_problems(path: str, stated: Any, kind: str) -> list[str]:

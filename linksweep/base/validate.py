@@ -28,6 +28,8 @@ UNITS = {
     "acceleration": "m/s^2",
     "density": "kg/m^3",
     "pressure": "Pa",
+    "power": "W",
+    "energy": "J",
     "spring_rate": "N/m",
     "damping_coefficient": "N s/m",
     "torsional_rate": "N m/rad",

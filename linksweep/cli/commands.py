@@ -24,7 +24,6 @@ from linksweep.analysis.pins.breakdown import breakdown
 from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name
-from linksweep.cli import summaries
 from linksweep.explorer.explore import serve
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.netcdf import load_scene
@@ -33,6 +32,9 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.examples import example, names
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
+from linksweep.tables.answers import answer_of
+from linksweep.tables.of_balance import weight_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -186,14 +188,14 @@ def _bearings(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
-    print(summaries.bearing_table(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
+    print(answer_of(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
     show(options, lambda: plot.bearings(sweep(scene, theta2), frame=options.frame))
 
 
 def _breakdown(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     at = _worst_angle(scene, options.of)
-    print(summaries.share_table(breakdown(scene, options.of, theta2=[at]), options.of))
+    print(answer_of(breakdown(scene, options.of, theta2=[at])))
     show(options, lambda: plot.breakdown(breakdown(scene, options.of)))
 
 
@@ -215,15 +217,15 @@ def _balance(options: argparse.Namespace) -> None:
     drive = scene.mechanism.drives[scene.drive]
     pins = [f"{force_name(i, j)}_peak" for i, j in scene.mechanism.pins.values()]
     table = compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
-    print(summaries.weight_lines(weights))
-    print(summaries.balance_table(table))
+    print(f"{weight_table(weights, shown_units(scene.units))}\n")
+    print(answer_of(table))
     show(options, lambda: plot.balance(scene, balanced))
 
 
 def _orders(options: argparse.Namespace) -> None:
     ds = orders(sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
     _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
-    print(summaries.order_table(ds, options.of))
+    print(answer_of(ds))
     show(options, lambda: plot.orders(ds))
 
 
@@ -231,5 +233,5 @@ def _flywheel(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     ds = flywheel(scene, fluctuation=options.fluctuation)
     _require_whole(options.scene, ds["speed"])
-    print(summaries.drive_table(duty(scene), ds))
+    print(f"{answer_of(duty(scene))}\n\n{answer_of(ds)}")
     show(options, lambda: plot.torque_with_flywheel(ds))

@@ -28,7 +28,6 @@ from linksweep.cli.commands import (
     without_a_screen,
     write_figure,
 )
-from linksweep.cli.text import check_lines, peak_table, study_report
 from linksweep.files.atomic import target_of
 from linksweep.files.netcdf import RESULTS, SCENES, save
 from linksweep.reports.page import report
@@ -38,6 +37,7 @@ from linksweep.results.quantities import quantities
 from linksweep.results.sweep import sweep
 from linksweep.scene.examples import example, names, title
 from linksweep.studies.study import study
+from linksweep.tables.answers import answer_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -152,7 +152,7 @@ def _demo(options: argparse.Namespace) -> None:
     scene = example(options.scene)
     cycle = sweep(scene)
     print(f"{title(options.scene)}\n")
-    print(peak_table(peaks(scene), scene.mechanism))
+    print(answer_of(peaks(scene)))
     data, picture = (options.stem.with_name(options.stem.name + ending) for ending in (".nc", ".png"))
     save(cycle, data)
     write_figure(_figure(cycle), picture)
@@ -175,7 +175,7 @@ def _sweep(options: argparse.Namespace) -> None:
 def _peaks(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
     ds = peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
-    print(peak_table(ds, scene.mechanism))
+    print(answer_of(ds))
     if options.output:
         save(ds, options.output)
         print(f"\nwritten: {options.output}")
@@ -192,13 +192,13 @@ def _study(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
     there = options.output.exists()
     with study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
-        print(study_report(ds, scene.mechanism))
+        print(answer_of(ds))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
 
 def _check(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
-    print("\n".join(check_lines(check(scene))))
+    print(answer_of(check(scene)))
 
 
 def _report(options: argparse.Namespace) -> None:

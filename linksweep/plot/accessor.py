@@ -16,6 +16,7 @@ from linksweep import plot
 from linksweep.files import table
 from linksweep.files.netcdf import scene_of
 from linksweep.scene.scene import Scene
+from linksweep.tables.answers import answer_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,6 +29,7 @@ NO_PARAMETERS = re.compile(r"Parameters\n----------\n\n")
 class Cycle:
     """A Dataset of linksweep with its plots and tables, as ``ds.linksweep``.
 
+    It prints, and shows in a notebook, as the table that the command line prints: names, values, units and angles.
     Every function of `linksweep.plot` that takes a Dataset is a method, with the Dataset as its first argument.
 
     Parameters
@@ -41,10 +43,21 @@ class Cycle:
     >>> cycle = ls.sweep(ls.example("press"))
     >>> cycle.linksweep.scene == ls.example("press")
     True
+    >>> print(ls.peaks(ls.example("press"), of=["F32", "T12"]).linksweep)
+    quantity     value  unit  at theta2
+    F32_peak   354.538  N       300.27°
+    T12_max    20.5233  N m     324.69°
+    T12_min   -21.2235  N m     183.20°
     """
 
     def __init__(self, ds: xr.Dataset) -> None:
         self._ds = ds
+
+    def __repr__(self) -> str:
+        return repr(answer_of(self._ds))
+
+    def _repr_html_(self) -> str:
+        return answer_of(self._ds)._repr_html_()
 
     @property
     def scene(self) -> Scene:

@@ -9,12 +9,13 @@ import xarray as xr
 
 from linksweep.plot.curves import force_names, forces, kind_of, torque
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.drawings import drawing_of_results, machine_of_results
+from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import panels
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.plot.load_diagrams import bearing
 from linksweep.plot.machine import mechanism
 from linksweep.plot.track import loop
+from linksweep.results.origin.machine_of_results import machine_of_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,9 +11,9 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, VERMILION
-from linksweep.plot.kit.drawings import machine_of_results
 from linksweep.plot.kit.style import grid, panels
 from linksweep.results.compute import angles_missing
+from linksweep.results.origin.machine_of_results import machine_of_results
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene

@@ -17,6 +17,8 @@ from linksweep.scene.file.writing import write_scene
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.scene import Scene
 
+OWN_UNITS = "shown_units"
+"""Attribute of a Dataset whose scene states units to show results in."""
 STATUS_LONG_NAME = "what happened at this sample; values are NaN where it is not ok"
 STATUS_AT_LONG_NAME = "pin, or link past a pin, whose dyad first fails at this sample"
 
@@ -108,7 +110,7 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
         "title": f"linksweep: {type(scene.mechanism).__name__}",
         "linksweep_version": installed_version(),
         "command": command,
-    }
+    } | ({OWN_UNITS: scene.units} if scene.units else {})
 
 
 def provenance(scene: Scene, command: str, coordinates: Mapping[str, xr.Variable]) -> dict[str, str]:

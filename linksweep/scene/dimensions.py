@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import quote
+from linksweep.mechanisms import Mechanism
 from linksweep.scene.storable import label_problem, name_problem
 
 ANGLE = re.compile("(theta|θ)2?(deg|degrees?)?")
@@ -108,3 +109,17 @@ def _label_problems(dim: object, sharing: Arrays, arrays: Arrays) -> Iterator[st
             return
         if values.shape == expected.shape and not values.equals(expected):
             yield f"{path} has labels along {dim} that are not {others}: make them equal, or rename one dimension"
+
+
+def index_problems(arrays: Arrays, mechanism: Mechanism) -> list[str]:
+    """Return a line for each parameter over the index of a machine that is not the crank's angle."""
+    index = mechanism.index
+    over = [path for path, array in arrays.items() if index in array.dims and index != "theta2"]
+    return [f"{path} depends on {index}: it must be the same at every {mechanism.spot}" for path in over]
+
+
+def interpolation_problems(arrays: Arrays, index: str) -> list[str]:
+    """Return a line for each array that states an interpolation without being a load over the angles."""
+    stated = [(path, array) for path, array in arrays.items() if "interpolation" in array.attrs]
+    others = [path for path, array in stated if index not in array.dims or not path.startswith("loads")]
+    return [f"{path}.interpolation: is for loads over {index}; leave it out" for path in others]

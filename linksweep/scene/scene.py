@@ -31,13 +31,14 @@ from linksweep.engine.run import Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
 from linksweep.scene.curves.over_angle import ArrayCurve, period_of, period_of_function, turning_problems
 from linksweep.scene.curves.quick import Quick, quick_angles
-from linksweep.scene.dimensions import dimension_problems
+from linksweep.scene.dimensions import dimension_problems, index_problems, interpolation_problems
 from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, engine_inputs
 from linksweep.scene.loads.action import LOADS, Action
 from linksweep.scene.loads.kinds import Load
 from linksweep.scene.parameters import bare
 from linksweep.scene.revolution import Revolution
+from linksweep.scene.shown_units import UNITS_FIELD
 from linksweep.scene.storable import storable_coordinate
 from linksweep.scene.strokes import stroke_of
 
@@ -76,6 +77,8 @@ class Scene(ByContent):
         Speed round the loop: "constant" (taken where none is stated), or "energy", by work and energy.
     section : float or DataArray, default None
         Place of section forces between the ends of a link, 0 to 1 [1]; None for 41 places where they are requested.
+    units : str, default ""
+        Units in which results are shown, such as "in, lbf, rpm", "US" or "mm"; "" for SI: see `linksweep.units`.
 
     Raises
     ------
@@ -119,6 +122,7 @@ class Scene(ByContent):
     thrust: Number = parameter("force", None)
     profile: str = ""
     section: Number = parameter("dimensionless", None, at_least=0.0, at_most=1.0)
+    units: str = of_kind(UNITS_FIELD, "")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -126,13 +130,15 @@ class Scene(ByContent):
         refuse(self._problems())
         refuse([problem for path, load in self._loads() for problem in load.misfits(path, self.mechanism)])
         units = unit_attribute_problems((path, *number) for path, number in self._not_plain.items())
-        refuse(units + self._interpolation_problems())
+        refuse(units + interpolation_problems(self.arrays, self.mechanism.index))
         turn = self.mechanism.period
         refuse([p for path, function in self.functions.items() for p in turning_problems(path, function, turn)])
         # omega2 is a result by that name, too; the speed of a loop's results is another than the parameter
         results = self.table.quantity.keys() - (self.motion.keys() & self.arrays.keys())
         taken = {*results, *self.mechanism.both_branches}
-        refuse(self._index_problems() + dimension_problems(self.arrays, self.mechanism.index, taken))
+        refuse(
+            index_problems(self.arrays, self.mechanism) + dimension_problems(self.arrays, self.mechanism.index, taken)
+        )
 
     def _defaults(self) -> dict[str, Any]:
         return super()._defaults() | dict(self.mechanism.defaults)
@@ -172,19 +178,6 @@ class Scene(ByContent):
         loads = self._loads() if isinstance(self.loads, tuple) else []
         actions = [(path, load) for path, load in loads if isinstance(load, Action)]
         return [p for path, load in actions for p in load.problems(path, links)] if links else []  # else none are taken
-
-    def _index_problems(self) -> list[str]:
-        """Return a line for each parameter over the index of a machine that is not the crank's angle."""
-        index = self.mechanism.index
-        over = [path for path, array in self.arrays.items() if index in array.dims and index != "theta2"]
-        return [f"{path} depends on {index}: it must be the same at every {self.mechanism.spot}" for path in over]
-
-    def _interpolation_problems(self) -> list[str]:
-        """Return a line for each array that states an interpolation without being a load over the angles."""
-        index = self.mechanism.index
-        arrays = [(path, array) for path, array in self.arrays.items() if "interpolation" in array.attrs]
-        others = [path for path, array in arrays if index not in array.dims or not path.startswith("loads")]
-        return [f"{path}.interpolation: is for loads over {index}; leave it out" for path in others]
 
     def _loads(self) -> list[tuple[str, Action]]:
         return [(f"loads[{k}]", load) for k, load in enumerate(self.loads, 1)]
@@ -247,7 +240,7 @@ class Scene(ByContent):
 
     @cached_property
     def period_of_motion(self) -> float:
-        """Cycle of the machine without its loads [degree]: the turns after which all positions repeat."""
+        """Cycle of the machine without its loads [degree], after which all positions repeat."""
         return self.unloaded.period
 
     @cached_property

@@ -15,6 +15,7 @@ from functools import cached_property, lru_cache, partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import pint
 import pytest
 import scotch_yoke
 import xarray as xr
@@ -160,7 +161,7 @@ CALLS = {
 Plots of a Dataset are called as its methods.
 """
 
-NO_MACHINE = {"example", "from_pmks"}
+NO_MACHINE = {"example", "from_pmks", "units"}
 
 COMMANDS = {
     "sweep": lambda s, path: ["sweep", written(s, path), "--theta2", SAMPLES, "-o", path / "cycle.nc"],
@@ -327,10 +328,21 @@ def close_figures():
     plt.close("all")
 
 
+PINTS = pint.UnitRegistry()
+
+
+def assert_reads_well(ds: xr.Dataset) -> None:
+    """Assert that a result prints and shows as a table, and that pint reads the unit of every variable."""
+    assert str(ds.linksweep) and "<table>" in ds.linksweep._repr_html_()
+    for values in ds.variables.values():
+        PINTS.parse_units(values.attrs.get("units", ""))
+
+
 def sentence(call: Callable[[], object]) -> str:
     """Return the sentence of the package's own with which a call is refused, or "" where it gives a result."""
     try:
-        call()
+        if isinstance(result := call(), xr.Dataset):
+            assert_reads_well(result)
     except ValueError as error:
         if PACKAGE not in Path(traceback.extract_tb(error.__traceback__)[-1].filename).parents:
             raise

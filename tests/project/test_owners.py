@@ -15,7 +15,9 @@ from linksweep.mechanisms.capabilities import CAPABILITIES, lack, offers
 PACKAGE = Path(ls.__file__).parent
 
 
-@pytest.mark.parametrize("room", ["scene", "files", "results", "analysis", "studies", "plot", "reports", "cli"])
+@pytest.mark.parametrize(
+    "room", ["scene", "files", "results", "analysis", "studies", "tables", "plot", "reports", "cli"]
+)
 def test_no_machine_is_named(room):
     reader = PACKAGE / "files" / "pmks"  # of documents that are linkages, whatever is in them
     for path in sorted({*(PACKAGE / room).rglob("*.py")} - {*reader.glob("*.py")}):

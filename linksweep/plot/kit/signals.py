@@ -13,6 +13,7 @@ from linksweep.base.validate import refuse
 from linksweep.chains.between_links import pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
+from linksweep.tables.cells import number as number
 
 INDEX = "theta2"
 WHOLE_TURN = "whole_turn"  # attribute of a cycle whose angles are no even grid, though they go all the way round
@@ -196,18 +197,6 @@ def _largest_away_from_gaps(sizes: np.ndarray) -> float:
         arc = sizes[start + near * (start > 0) : stop - near * (stop < len(sizes))]
         kept.append(float(arc.max(initial=0.0)))
     return max(kept)
-
-
-def number(value: float) -> str:
-    """Format a number with four significant digits."""
-    if value == 0.0:
-        return "0"
-    if np.isinf(value):
-        return "∞" if value > 0.0 else "−∞"
-    if not 1e-3 <= abs(value) < 1e7:
-        return f"{value:.3e}".replace("-", "−")
-    digits = np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
-    return digits.rstrip(".").replace("-", "−")
 
 
 def angle_text(angle: float) -> str:

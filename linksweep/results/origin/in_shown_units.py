@@ -1,0 +1,46 @@
+"""Results in the units in which they are shown."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from linksweep.results.dataset import OWN_UNITS
+from linksweep.scene.shown_units import UnitSystem, shown_units
+
+
+def in_shown_units(ds: xr.Dataset, system: UnitSystem | None = None) -> xr.Dataset:
+    """Return a Dataset with its variables and coordinates in the units in which they are shown.
+
+    Every variable states its unit, so that what is converted already stays as it is.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Results, in SI units.
+    system : UnitSystem, default None
+        Units to show; None for those of the session, or else of the scene that the Dataset holds.
+
+    Returns
+    -------
+    Dataset
+        The Dataset itself where nothing changes.
+    """
+    system = units_of(ds) if system is None else system
+    units = {name: str(values.attrs.get("units", "")) for name, values in ds.variables.items()}
+    changed = {
+        name: _converted(ds.variables[name], unit, system) for name, unit in units.items() if system.unit(unit) != unit
+    }
+    coordinates = {name: values for name, values in changed.items() if name in ds.coords}
+    results = {name: values for name, values in changed.items() if name not in coordinates}
+    return ds.assign_coords(coordinates).assign(results) if changed else ds
+
+
+def units_of(ds: xr.Dataset) -> UnitSystem:
+    """Return the units in which to show a Dataset."""
+    return shown_units(ds.attrs.get(OWN_UNITS, ""))
+
+
+def _converted(values: xr.Variable, unit: str, system: UnitSystem) -> xr.Variable:
+    numbers = values.to_base_variable().copy(data=system.value(values.data, unit))
+    numbers.attrs["units"] = system.unit(unit)
+    return numbers

@@ -1,0 +1,38 @@
+"""Find the machine whose results a Dataset holds, and its drive."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import lru_cache
+from typing import Any
+
+import xarray as xr
+
+from linksweep.base.validate import refuse
+from linksweep.mechanisms import MECHANISMS, Mechanism
+from linksweep.results.compute import require_dataset
+from linksweep.scene.file.reading import mechanism_of
+
+
+def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
+    """Return the machine whose results a Dataset holds, for its names alone; None where it has lost its scene."""
+    name, known = parameters_of_scene(ds).get("mechanism", {}).get("type"), ", ".join(MECHANISMS)
+    refuse([] if name is None or name in MECHANISMS else [f"ds: is of a {name}; registered are {known}: register it"])
+    return None if name is None else _machine(ds.attrs["scene"])
+
+
+def parameters_of_scene(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the parameters in a Dataset's scene text, which suffice for names even where arrays were dropped."""
+    require_dataset(ds, "ls.sweep")
+    text = ds.attrs.get("scene")
+    return _parsed(text) if isinstance(text, str) else {}
+
+
+@lru_cache(maxsize=16)
+def _parsed(text: str) -> dict[str, Any]:
+    return tomllib.loads(text)
+
+
+@lru_cache(maxsize=16)
+def _machine(text: str) -> Mechanism:
+    return mechanism_of(_parsed(text))

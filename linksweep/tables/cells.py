@@ -1,0 +1,80 @@
+"""Cells of tables: numbers, units, angles and flags in words."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+PLAIN_UNITS = {"degree": "°", "1": ""}
+"""Units as they follow a number, where that is not their own spelling."""
+
+
+def digits(value: float) -> str:
+    """Return a number with six significant digits."""
+    return f"{value:.6g}"
+
+
+def number(value: float) -> str:
+    """Format a number with four significant digits."""
+    if value == 0.0:
+        return "0"
+    if np.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    if not 1e-3 <= abs(value) < 1e7:
+        return f"{value:.3e}".replace("-", "−")
+    digits = np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
+    return digits.rstrip(".").replace("-", "−")
+
+
+def unit_of(values: xr.DataArray) -> str:
+    """Return the unit that a variable states; "" where it states none."""
+    return str(values.attrs.get("units", ""))
+
+
+def with_unit(value: float, units: str) -> str:
+    """Return a number with its unit, "12.3 N m" or "45°"."""
+    unit = PLAIN_UNITS.get(units, units)
+    return digits(value) + (unit if unit in ("", "°") else f" {unit}")
+
+
+def at(values: xr.DataArray, place: Mapping[Any, int]) -> float:
+    """Return the number at a place, of an array over some of its dims; in numpy, since xarray would import dask."""
+    return float(values.values[tuple(place[dim] for dim in values.dims)])
+
+
+def place_of_worst(values: xr.DataArray) -> Mapping[Any, int]:
+    """Return the place of the largest value of a maximum, the least of a minimum, the largest magnitude of all else."""
+    name = str(values.name)
+    size = values.values  # in numpy: xarray's arithmetic would import dask
+    size = size if name.endswith("_max") else -size if name.endswith("_min") else np.abs(size)
+    place = np.unravel_index(np.argmax(np.where(np.isfinite(size), size, -np.inf)), size.shape)
+    return dict(zip(values.dims, map(int, place), strict=True))
+
+
+def label(ds: xr.Dataset, dim: Hashable, k: Any) -> str:
+    """Return the label of a place along a dim, or its position; "any" where the place is None."""
+    if k is None:
+        return "any"
+    value = ds[dim].values[int(k)] if dim in ds.coords else int(k)
+    return digits(float(value)) if isinstance(value, float | np.floating) else str(value)
+
+
+def words(flag: xr.DataArray) -> list[str]:
+    """Return the meanings of a flag's values."""
+    return str(flag.attrs["flag_meanings"]).replace("_", "-").split()
+
+
+def in_words(flag: xr.DataArray) -> str:
+    """Return a flag in words: that of its value, or how often it has each."""
+    meaning = dict(zip(np.atleast_1d(flag.attrs["flag_values"]).tolist(), words(flag), strict=True))
+    values, counts = np.unique(flag.values, return_counts=True)
+    counted = [(meaning.get(value, str(value)), n) for value, n in zip(values.tolist(), counts, strict=True)]
+    return counted[0][0] if len(counted) == 1 else ", ".join(f"{word} {n}" for word, n in counted)
+
+
+def meanings(ds: xr.Dataset) -> dict[str, str]:
+    """Return the description of each variable, by name."""
+    return {str(name): str(values.attrs.get("long_name", "")) for name, values in ds.variables.items()}

@@ -1,0 +1,164 @@
+"""Results read well: the accessor prints what the command line prints, in the units that were chosen."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pint
+import pytest
+
+import linksweep as ls
+from linksweep.cli.main import main
+from linksweep.scene.shown_units import unit_system
+from linksweep.tables.table import Table
+
+PRESS = ls.example("press")
+BEARINGS = dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0))
+
+
+def cells(text: str) -> list[list[str]]:
+    """Return the cells of each line, which are two spaces apart."""
+    return [re.split(r" {2,}", line.strip()) for line in text.splitlines()]
+
+
+ANSWERS = {
+    "peaks": lambda: ls.peaks(PRESS),
+    "check": lambda: ls.check(PRESS),
+    "bearings": lambda: ls.bearings(PRESS, BEARINGS),
+    "orders": lambda: ls.orders(ls.sweep(PRESS, of=["Fsx", "Fsy"]), ["Fsx", "Fsy"]),
+}
+OPTIONS = {"bearings": ["--capacity", "5 kN"]}
+
+
+@pytest.mark.parametrize("command", ANSWERS)
+def test_a_result_prints_as_the_command_does(command, capsys):
+    assert main([command, "press", *OPTIONS.get(command, [])]) == 0
+    assert f"{ANSWERS[command]().linksweep}\n" == capsys.readouterr().out
+
+
+def test_a_notebook_shows_the_same_cells():
+    peaks = ls.peaks(PRESS, of=["F32", "T12"]).linksweep
+    page = peaks._repr_html_()
+    lines = [re.findall(r"<t[hd][^>]*>([^<]*)</t[hd]>", line) for line in re.findall(r"<tr>(.*?)</tr>", page)]
+    assert lines == cells(repr(peaks))
+    assert 'title="largest magnitude of the force of link 3 (coupler) on link 2 (crank) at pin B"' in page
+
+
+def test_text_of_a_page_is_escaped():
+    page = Table(("<b>",), [("a & b",)], meanings={"a & b": 'say "no"'}).html()
+    assert "&lt;b&gt;" in page and "a &amp; b" in page and "say &quot;no&quot;" in page
+
+
+def test_values_angles_and_flags_of_any_result():
+    swing = cells(repr(ls.geometry(PRESS).linksweep))
+    motion = ls.geometry(PRESS)
+    assert ["swing", f"{float(motion.swing):.6g}", "°"] in swing
+    assert ["reversal_angle (folded)", f"{float(motion.reversal_angle[1]):.6g}", "°"] in swing
+    least = f"{float(motion.transmission_angle_min):.6g}"
+    assert ["transmission_angle_min", least, "°", f"{float(motion.transmission_angle_min_at):.2f}°"] in swing
+    cycle = ls.sweep(PRESS, of=["T12"])
+    lowest, highest = int(cycle.T12.argmin("theta2")), int(cycle.T12.argmax("theta2"))
+    ends = (f"{float(cycle.T12[k]):.6g}" for k in (lowest, highest))
+    angles = (f"{0.5 * k:.2f}°" for k in (lowest, highest))
+    row = [cell for pair in zip(ends, angles, strict=True) for cell in pair]
+    assert cells(repr(cycle.linksweep)) == [
+        ["quantity", "least", "at theta2", "largest", "at theta2", "unit"],
+        ["T12", *row, "N m"],
+        [""],
+        ["status:", "ok"],
+    ]
+
+
+def test_flags_that_differ_are_counted():
+    rocker = replace(PRESS, mechanism=replace(PRESS.mechanism, crank=ls.Bar(0.25, 0.02, 0.02, 7750.0)))
+    cycle = ls.sweep(rocker, 360, of=["T12"])
+    failed = int((cycle.status == 1).sum())
+    assert 0 < failed < 360
+    assert f"status:  ok {360 - failed}, cannot-assemble {failed}" in repr(cycle.linksweep)
+
+
+def test_a_part_of_a_result_has_the_table_of_any():
+    assert cells(repr(ls.peaks(PRESS)[["F32_peak"]].linksweep))[0] == ["quantity", "value", "unit"]
+    assert repr(ls.peaks(PRESS)[["status"]].linksweep) == "status:  ok"
+
+
+def test_a_sampled_study_names_its_best_and_worst():
+    study = ls.peaks(ls.sample(PRESS, {"omega2": (20.0, 30.0)}, n=8), of=["F32"])
+    text = repr(study.linksweep)
+    assert ["F32_peak", f"{float(study.F32_peak.min()):.6g}", "N", str(np.argmin(study.F32_peak.values))] in cells(text)
+    assert text.endswith("designs: 8 (design 8): ok 8")
+
+
+def test_lazy_results_are_not_computed():
+    dask = pytest.importorskip("dask")
+    lazy = ls.sweep(PRESS, 24).chunk({"theta2": 12})
+    with dask.config.set(scheduler=lambda *graph, **options: pytest.fail("computed")):
+        assert repr(lazy.linksweep).endswith("Not computed yet: call .compute().")
+
+
+# ------------------------------------------------------------------------------------------- units
+
+
+SHOWN = [
+    ("US", "m", "in"), ("US", "N m", "lbf in"), ("US", "kg m^2", "lb in^2"), ("US", "N m s/rad", "lbf in s/rad"),
+    ("US", "kg/m^3", "lb/in^3"), ("US", "Pa m/s", "psi in/s"), ("US", "rad/s", "rpm"), ("US", "W", "hp"),
+    ("US", "N s^2/rad^2", "lbf s^2/rad^2"), ("US", "J", "lbf in"), ("US", "kg m", "lb in"), ("US", "1", "1"),
+    ("mm", "m", "mm"), ("mm", "N m", "N m"), ("mm", "m/s^2", "m/s^2"), ("mm", "N/m", "N/mm"), ("mm", "Pa", "MPa"),
+    ("ft, lbf, slug", "kg m^2/rad", "slug ft^2/rad"), ("cm, N", "N m", "N cm"), ("lbf ft", "N m", "lbf ft"),
+    ("SI", "kg m^2", "kg m^2"), ("US", "degree", "degree"), ("US", "megarevolution", "megarevolution"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("system", "si", "unit"), SHOWN)
+def test_units_follow_from_those_chosen(system, si, unit):
+    """pint agrees about the size of each unit, which is put together from its factors."""
+    pints = pint.UnitRegistry()
+    made = unit_system(system)
+    assert made.unit(si) == unit
+    expected = 1.0 if si == unit else float(pints.Quantity(1.0, unit).to(si).magnitude)
+    assert made.size(si) == pytest.approx(expected, rel=1e-14)
+    assert made.value(12.5, si) == pytest.approx(12.5 / expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("in, lbd", r'units: "lbd" is no unit; did you mean "lb"\?; write "SI", "US", "mm", or units as in'),
+        ("in, mm", 'units = "in, mm": "in" and "mm" are both units of length; keep one'),
+        (3, "units: 3 is no unit"),
+    ],
+)
+def test_units_that_are_none_are_refused(text, message):
+    with pytest.raises(ValueError, match=message):
+        ls.units(text)
+    with pytest.raises(ValueError, match=message):
+        replace(PRESS, units=text)
+
+
+def test_a_session_has_units_and_gives_them_back():
+    force = ls.peaks(PRESS, of=["F32"])
+    before = repr(force.linksweep)
+    with ls.units("US") as chosen:
+        assert "lbf in" in repr(chosen)
+        pounds = f"{float(force.F32_peak) / 4.4482216152605:.6g}"
+        assert cells(repr(force.linksweep))[1][:3] == ["F32_peak", pounds, "lbf"]
+        with ls.units(None):
+            assert repr(force.linksweep) == before
+        assert repr(force.linksweep) != before
+    assert repr(force.linksweep) == before
+    assert force.F32_peak.units == "N"  # the Dataset stays as it is
+
+
+def test_a_scene_states_its_own_units(tmp_path, monkeypatch, capsys):
+    scene = replace(PRESS, units="in, lbf, rpm")
+    ls.save(scene, tmp_path / "press.toml")
+    assert ls.load_scene(tmp_path / "press.toml") == scene != PRESS
+    results = [ls.peaks(scene), ls.duty(scene), ls.compare(scene, scene, of=["F32_peak"], theta2=24)]
+    assert all("lbf" in repr(ds.linksweep) and " N" not in repr(ds.linksweep) for ds in results)
+    with ls.units("SI"):
+        assert not any("lbf" in repr(ds.linksweep) for ds in results)
+    assert main(["peaks", str(tmp_path / "press.toml")]) == 0
+    assert capsys.readouterr().out == f"{results[0].linksweep}\n"
+    np.testing.assert_array_equal(results[0].F32_peak, ls.peaks(PRESS).F32_peak)  # in SI, to the bit
+    ls.save(results[0], tmp_path / "peaks.nc")
+    assert ls.load_scene(tmp_path / "peaks.nc") == scene
