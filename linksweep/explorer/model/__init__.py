@@ -1,1 +1,1 @@
-"""What the page shows, and what it may ask: plain numbers, texts and arrays, without a browser."""
+"""Answers to the questions of the page, in plain numbers, texts and arrays, without a browser."""
