@@ -2,6 +2,6 @@
 
 import sys
 
-from linksweep.cli.main import main
+from linksweep.cli.program import run
 
-sys.exit(main())
+sys.exit(run())

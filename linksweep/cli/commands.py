@@ -10,33 +10,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
-from linksweep import plot
-from linksweep.analysis.balance.compare import compare
-from linksweep.analysis.balance.counterweights import counterweights, with_counterweights
-from linksweep.analysis.balance.orders import orders
-from linksweep.analysis.drive.duty import duty
-from linksweep.analysis.drive.flywheel import flywheel
-from linksweep.analysis.pins.bearing import EXPONENTS, Bearing
-from linksweep.analysis.pins.bearings import FRAMES, bearings
-from linksweep.analysis.pins.breakdown import breakdown
+import linksweep as ls
+from linksweep.analysis.pins.bearing import EXPONENTS
+from linksweep.analysis.pins.bearings import FRAMES
 from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name
-from linksweep.explorer.explore import serve
 from linksweep.files.atomic import ending_of, whole
-from linksweep.files.netcdf import load_scene
-from linksweep.results.peaks import peaks
-from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
-from linksweep.scene.examples import example, names
-from linksweep.scene.scene import Scene
+from linksweep.scene.examples import names
 from linksweep.scene.shown_units import shown_units
 from linksweep.tables.answers import answer_of
 from linksweep.tables.of_balance import weight_table
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 SAMPLES = 720
@@ -94,9 +83,9 @@ def add_command(commands: Any, name: str, run: Callable, text: str) -> argparse.
     return parser
 
 
-def scene_named(path: Path) -> Scene:
+def scene_named(path: Path) -> ls.Scene:
     """Return the scene of a file; where there is no file of this name, the example of this name."""
-    return example(str(path)) if str(path) in names() and not path.exists() else load_scene(path)
+    return ls.example(str(path)) if str(path) in names() and not path.exists() else ls.load_scene(path)
 
 
 def add_plot(parser: argparse.ArgumentParser) -> None:
@@ -136,7 +125,7 @@ def _number(kind: str) -> Callable[[str], float]:
     return read
 
 
-def one_design(path: Path) -> Scene:
+def one_design(path: Path) -> ls.Scene:
     """Return the scene of a file, of one design."""
     scene = scene_named(path)
     several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
@@ -169,39 +158,54 @@ def without_a_screen() -> None:
 
 
 def write_figure(figure: Figure, path: Path) -> None:
+    """Write a figure to a file, whole or not at all."""
     with whole(path) as temporary:
-        figure.savefig(temporary, format=ending_of(path, PICTURES)[1:], dpi=150)
+        if ending_of(path, PICTURES) == ".png":
+            _write_png(figure, temporary)
+        else:
+            figure.savefig(temporary, format=ending_of(path, PICTURES)[1:], dpi=150)
+
+
+def _write_png(figure: Figure, path: Path) -> None:
+    """Write a figure as `Figure.savefig` does, which draws it twice, the first time for a layout that any drawing
+    makes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure.set_dpi(150)
+    FigureCanvasAgg(figure).print_png(path)
 
 
 def _animate(options: argparse.Namespace) -> None:
     without_a_screen()
-    plot.animate(one_design(options.scene), frames=options.frames).save(options.output)
+    ls.plot.animate(one_design(options.scene), frames=options.frames).save(options.output)
     print(f"written: {options.output}")
 
 
 def _explore(options: argparse.Namespace) -> None:
+    from linksweep.explorer.explore import serve  # here: only this command needs it
+
     scene = one_design(options.scene)
     serve(scene, title=options.scene.stem, port=options.port, show=not options.no_browser)
 
 
 def _bearings(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
-    bearing = Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
+    bearing = ls.Bearing(options.diameter, options.length, capacity=options.capacity, kind=options.kind)
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
-    print(answer_of(bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
-    show(options, lambda: plot.bearings(sweep(scene, theta2), frame=options.frame))
+    print(answer_of(ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
+    show(options, lambda: ls.plot.bearings(ls.sweep(scene, theta2), frame=options.frame))
 
 
 def _breakdown(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
     at = _worst_angle(scene, options.of)
-    print(answer_of(breakdown(scene, options.of, theta2=[at])))
-    show(options, lambda: plot.breakdown(breakdown(scene, options.of)))
+    print(answer_of(ls.breakdown(scene, options.of, theta2=[at])))
+    show(options, lambda: ls.plot.breakdown(ls.breakdown(scene, options.of)))
 
 
-def _worst_angle(scene: Scene, name: str) -> float:
+def _worst_angle(scene: ls.Scene, name: str) -> float:
     """Return the crank angle [degree] where a force or torque is largest."""
-    ds = peaks(scene, of=[name])
+    ds = ls.peaks(scene, of=[name])
     ends = [end for end in ("peak", "max", "min") if f"{name}_{end}_at" in ds]
     worst = max(ends, key=lambda end: abs(float(ds[f"{name}_{end}"])))
     at = float(ds[f"{name}_{worst}_at"])
@@ -212,26 +216,26 @@ def _worst_angle(scene: Scene, name: str) -> float:
 
 def _balance(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
-    weights = counterweights(scene, radius=options.radius, fraction=options.fraction)
-    balanced = with_counterweights(scene, weights)
+    weights = ls.counterweights(scene, radius=options.radius, fraction=options.fraction)
+    balanced = ls.with_counterweights(scene, weights)
     drive = scene.mechanism.drives[scene.drive]
     pins = [f"{force_name(i, j)}_peak" for i, j in scene.mechanism.pins.values()]
-    table = compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
+    table = ls.compare(scene, balanced, of=[*(name.format(drive=drive) for name in BALANCED), *pins])
     print(f"{weight_table(weights, shown_units(scene.units))}\n")
     print(answer_of(table))
-    show(options, lambda: plot.balance(scene, balanced))
+    show(options, lambda: ls.plot.balance(scene, balanced))
 
 
 def _orders(options: argparse.Namespace) -> None:
-    ds = orders(sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
+    ds = ls.orders(ls.sweep(one_design(options.scene), of=options.of), options.of, n=options.n)
     _require_whole(options.scene, ds[f"{options.of[0]}_amplitude"])
     print(answer_of(ds))
-    show(options, lambda: plot.orders(ds))
+    show(options, lambda: ls.plot.orders(ds))
 
 
 def _flywheel(options: argparse.Namespace) -> None:
     scene = one_design(options.scene)
-    ds = flywheel(scene, fluctuation=options.fluctuation)
+    ds = ls.flywheel(scene, fluctuation=options.fluctuation)
     _require_whole(options.scene, ds["speed"])
-    print(f"{answer_of(duty(scene))}\n\n{answer_of(ds)}")
-    show(options, lambda: plot.torque_with_flywheel(ds))
+    print(f"{answer_of(ls.duty(scene))}\n\n{answer_of(ds)}")
+    show(options, lambda: ls.plot.torque_with_flywheel(ds))

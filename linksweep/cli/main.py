@@ -11,9 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
-from linksweep import plot
+import linksweep as ls
 from linksweep.base.validate import refuse
 from linksweep.base.version import installed_version
 from linksweep.cli.commands import (
@@ -29,17 +27,12 @@ from linksweep.cli.commands import (
     write_figure,
 )
 from linksweep.files.atomic import target_of
-from linksweep.files.netcdf import RESULTS, SCENES, save
-from linksweep.reports.page import report
-from linksweep.results.check import check
-from linksweep.results.peaks import peaks
-from linksweep.results.quantities import quantities
-from linksweep.results.sweep import sweep
-from linksweep.scene.examples import example, names, title
-from linksweep.studies.study import study
+from linksweep.files.netcdf import RESULTS, SCENES
+from linksweep.scene.examples import names, title
 from linksweep.tables.answers import answer_of
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -149,23 +142,23 @@ def _add_of(parser: argparse.ArgumentParser, *others: str) -> None:
 
 
 def _demo(options: argparse.Namespace) -> None:
-    scene = example(options.scene)
-    cycle = sweep(scene)
+    scene = ls.example(options.scene)
+    cycle = ls.sweep(scene)
     print(f"{title(options.scene)}\n")
-    print(answer_of(peaks(scene)))
+    print(answer_of(ls.peaks(scene)))
     data, picture = (options.stem.with_name(options.stem.name + ending) for ending in (".nc", ".png"))
-    save(cycle, data)
+    ls.save(cycle, data)
     write_figure(_figure(cycle), picture)
     print(f"\nwritten: {data} (open it with xarray.open_dataset), {picture}")
 
 
 def _sweep(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
-    cycle = sweep(scene, options.angles, of=options.of)
+    cycle = ls.sweep(scene, options.angles, of=options.of)
     figure = None
     if options.plot:  # with all pin forces, whichever quantities the file has
-        figure = _figure(cycle if options.of is None else sweep(scene, options.angles))
-    save(cycle, options.output)
+        figure = _figure(cycle if options.of is None else ls.sweep(scene, options.angles))
+    ls.save(cycle, options.output)
     print(f"written: {options.output}")
     if figure is not None:
         write_figure(figure, options.plot)
@@ -174,16 +167,16 @@ def _sweep(options: argparse.Namespace) -> None:
 
 def _peaks(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
-    ds = peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
+    ds = ls.peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
     print(answer_of(ds))
     if options.output:
-        save(ds, options.output)
+        ls.save(ds, options.output)
         print(f"\nwritten: {options.output}")
 
 
 def _quantities(options: argparse.Namespace) -> None:
     words = " ".join(options.words)
-    table = quantities(scene_named(options.scene), words)
+    table = ls.quantities(scene_named(options.scene), words)
     refuse([] if table else [f'{options.scene}: no quantity has "{words}" in its name, unit or meaning'])
     print(table)
 
@@ -191,19 +184,19 @@ def _quantities(options: argparse.Namespace) -> None:
 def _study(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
     there = options.output.exists()
-    with study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
+    with ls.study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
         print(answer_of(ds))
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
 
 
 def _check(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
-    print(answer_of(check(scene)))
+    print(answer_of(ls.check(scene)))
 
 
 def _report(options: argparse.Namespace) -> None:
     part = tuple(options.theta2) if options.theta2 else None
-    report(scene_named(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
+    ls.report(scene_named(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
     print(f"written: {options.output}")
 
 
@@ -227,4 +220,4 @@ def _names(text: str) -> list[str]:
 def _figure(cycle: xr.Dataset) -> Figure:
     """Draw the page of a cycle without a screen."""
     without_a_screen()
-    return plot.cycle(cycle)
+    return ls.plot.cycle(cycle)

@@ -1,4 +1,5 @@
-"""All plots: a new one is a file, and a line here, from which `linksweep.plot` and the accessor of Datasets take it.
+"""All plots: a new one is a file, and a line in __init__.pyi, from which this package and the accessor of Datasets take
+it.
 
 Each function draws into `ax` where one is passed, and returns the axes; it neither shows a window nor changes
 matplotlib's settings. Marked peaks are exact where the Dataset is of one design and holds its scene; else they are the
@@ -6,27 +7,17 @@ largest samples. Colours are Okabe and Ito's, which colour-blind readers tell ap
 that a force on top of another is seen, in grey too.
 """
 
-from linksweep.plot.balancing import balance as balance
-from linksweep.plot.curves import forces as forces
-from linksweep.plot.curves import torque as torque
-from linksweep.plot.cycle_page import cycle as cycle
-from linksweep.plot.drives import flywheel as flywheel
-from linksweep.plot.drives import motor_load as motor_load
-from linksweep.plot.drives import torque_with_flywheel as torque_with_flywheel
-from linksweep.plot.films.animation import animate as animate
-from linksweep.plot.heat_maps import heat_map as heat_map
-from linksweep.plot.load_analysis import breakdown as breakdown
-from linksweep.plot.load_analysis import over_speed as over_speed
-from linksweep.plot.load_diagrams import bearing as bearing
-from linksweep.plot.load_diagrams import bearings as bearings
-from linksweep.plot.machine import mechanism as mechanism
-from linksweep.plot.shaking_force import hodograph as hodograph
-from linksweep.plot.shaking_force import orders as orders
-from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
-from linksweep.plot.study_plots import scatter as scatter
-from linksweep.plot.track import loop as loop
+from typing import Any
 
-__all__ = [name for name, item in [*globals().items()] if getattr(item, "__module__", "").startswith(__name__)]
+from linksweep.base.on_demand import modules_of_names, public_name
+
+_MODULES = modules_of_names(__file__)
+__all__ = [*_MODULES]
+
+
+def __getattr__(name: str) -> Any:
+    globals()[name] = item = public_name(__name__, name, _MODULES)
+    return item
 
 
 def __dir__() -> list[str]:

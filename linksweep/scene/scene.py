@@ -25,7 +25,7 @@ from linksweep.base.fields import (
     parameter,
 )
 from linksweep.base.frozen import field_values, normalise, with_sound
-from linksweep.base.validate import UNITS, Number, Rule, choice_problems, is_lazy, quote, refuse
+from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
 from linksweep.mechanisms import MECHANISMS, Mechanism
@@ -39,7 +39,7 @@ from linksweep.scene.loads.kinds import Load
 from linksweep.scene.parameters import bare
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.shown_units import UNITS_FIELD
-from linksweep.scene.storable import storable_coordinate
+from linksweep.scene.storable import own_label, storable_coordinate
 from linksweep.scene.strokes import stroke_of
 
 GRAVITY = PairField(Rule("acceleration"), Rule("acceleration"), "(gx, gy) in m/s^2")
@@ -145,7 +145,7 @@ class Scene(ByContent):
 
     def _normalised(self) -> dict[str, Any]:
         """Return the fields with arrays labelled, and the mechanism's defaults."""
-        values = {name: _own_label(name, value) for name, value in field_values(self).items()}
+        values = {name: own_label(name, value) for name, value in field_values(self).items()}
         if not isinstance(self.mechanism, Mechanism):
             return values
         defaults, loads = self.mechanism.defaults, values["loads"]
@@ -389,9 +389,3 @@ class Scene(ByContent):
         from linksweep.scene.file.writing import toml_of  # here: it takes scenes
 
         return toml_of(self)
-
-
-def _own_label(name: str, value: Any) -> Any:
-    """Return an array over a dim of its own name with its values as labels: in a file it is this dim's coordinate."""
-    own = isinstance(value, xr.DataArray) and value.dims == (name,) and name not in value.coords
-    return value.assign_coords({name: value.values}) if own and not is_lazy(value) else value

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import quote
+from linksweep.base.validate import is_lazy, quote
 
 NAME = re.compile(r"(\w|[^\x00-\x7f])([^\x00-\x1f/\x7f]*[^\x00-\x20/\x7f])?", re.ASCII)
 LONGEST = 255
@@ -85,3 +85,9 @@ def _is_sound(text: str) -> bool:
         return b"\0" not in text.encode()
     except UnicodeEncodeError:
         return False
+
+
+def own_label(name: str, value: Any) -> Any:
+    """Return an array over a dim of its own name with its values as labels: in a file it is this dim's coordinate."""
+    own = isinstance(value, xr.DataArray) and value.dims == (name,) and name not in value.coords
+    return value.assign_coords({name: value.values}) if own and not is_lazy(value) else value

@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.cli import main as cli
 from linksweep.cli.main import main
 
 PRESS = """\
@@ -296,12 +295,11 @@ def test_a_batch_cannot_be_drawn_and_writes_no_file(capsys):
 
 
 def test_a_picture_that_fails_leaves_no_file(press, monkeypatch, capsys):
-    class Broken:
-        def savefig(self, path, **_):
-            Path(path).write_bytes(b"half")
-            raise OSError(28, "No space left on device")
+    def broken(figure, path):
+        path.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cli, "_figure", lambda cycle: Broken())
+    monkeypatch.setattr("linksweep.cli.commands._write_png", broken)
     Path("cycle.png").write_bytes(b"old")
     assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png"]) == 2
     assert "No space left on device" in capsys.readouterr().err
@@ -313,7 +311,7 @@ def test_ctrl_c_prints_no_traceback(press, monkeypatch, capsys):
     def stopped(scene):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "check", stopped)
+    monkeypatch.setattr(ls, "check", stopped)
     assert main(["check", press]) == 130
     assert capsys.readouterr().err == "linksweep: stopped\n"
 
@@ -366,6 +364,17 @@ def test_quantities_without_a_match_prints_a_message(press, capsys):
     assert main(["quantities", press, "torqe"]) == 2
     text = 'linksweep: press.toml: no quantity has "torqe" in its name, unit or meaning\n'
     assert capsys.readouterr() == ("", text)
+
+
+def test_a_demo_imports_neither_dask_nor_rooms_that_it_leaves_alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    unused = {"dask.array", "distributed", "linksweep.reports.page", "linksweep.studies.study", "linksweep.plot.drives"}
+    code = "import sys; from linksweep.cli.program import run; code = run(); print(*sys.modules, file=sys.stderr)"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}; sys.exit(code)", "demo", "loop"], capture_output=True, text=True
+    )
+    assert done.returncode == 0 and (tmp_path / "demo.png").exists()
+    assert unused.isdisjoint(done.stderr.split())
 
 
 def test_the_command_runs_as_a_module(press):

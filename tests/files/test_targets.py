@@ -76,7 +76,7 @@ def test_pipes_devices_and_sockets_are_refused_and_kept(here, writer, kind, link
 
 def test_the_command_line_refuses_it_before_it_computes(here, monkeypatch, capsys):
     pipe(here / "out.nc")
-    monkeypatch.setattr("linksweep.cli.main.sweep", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("linksweep.sweep", lambda *_, **__: pytest.fail("computed"))
     (here / "press.toml").write_text((Path(ls.__file__).parent / "scene/examples/press.toml").read_text())
     assert main(["sweep", "press.toml", "-o", "out.nc"]) == 2
     assert capsys.readouterr().err == "linksweep: out.nc: is a pipe, which no file replaces; choose another name\n"
@@ -115,10 +115,10 @@ def test_a_wrong_suffix_is_refused(here, write, allowed, name):
     ],
 )
 def test_the_command_line_refuses_a_suffix_before_it_computes(here, monkeypatch, capsys, arguments, message):
-    for name in {"sweep", "peaks", "example"}:
-        monkeypatch.setattr(f"linksweep.cli.main.{name}", lambda *_, **__: pytest.fail("computed"))
-    monkeypatch.setattr("linksweep.studies.study.Job", lambda *_, **__: pytest.fail("computed"))
     ls.save(ls.example("press"), "press.toml")
+    for name in {"sweep", "peaks", "example"}:
+        monkeypatch.setattr(f"linksweep.{name}", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("linksweep.studies.study.Job", lambda *_, **__: pytest.fail("computed"))
     with contextlib.suppress(SystemExit):
         assert main(arguments.split()) == 2
     assert message in capsys.readouterr().err

@@ -294,11 +294,11 @@ def test_functions_draw_on_given_axes_and_the_accessor_delegates(cycles):
 
 
 def test_every_plot_of_a_dataset_is_a_method_of_the_accessor():
-    """One line in linksweep/plot/__init__.py adds a plot to ``ls.plot``, its dir and the accessor."""
+    """One line in linksweep/plot/__init__.pyi adds a plot to ``ls.plot``, its dir and the accessor."""
     methods = {name for name in vars(linksweep.plot.accessor.Cycle) if name in plot.__all__}
     assert {*plot.__all__} - methods == {"balance", "over_speed"}  # these take scenes
     assert dir(plot) == sorted(plot.__all__)
-    path = Path(plot.__file__)
+    path = Path(plot.__file__).with_suffix(".pyi")
     assert len(plot.__all__) == path.read_text(encoding="utf-8").count("from linksweep.plot.")
 
 
