@@ -44,6 +44,16 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
 
+PAGES_WITH_CONTENTS = (
+    "index",
+    "guide/*",
+    "reference/*",
+    "generated/gallery",
+    "generated/quantities",
+    "generated/api/*",
+)
+"""Pages with a table of contents beside them; notebooks and benchmarks have the room for their lines and tables."""
+
 html_static_path = ["static"]
 html_css_files = ["style.css"]
 html_theme = "pydata_sphinx_theme"
@@ -52,7 +62,7 @@ html_show_sphinx = html_show_copyright = html_show_sourcelink = False
 html_theme_options = {
     "show_prev_next": True,
     "navigation_with_keys": False,
-    "secondary_sidebar_items": ["page-toc"],
+    "secondary_sidebar_items": {page: ["page-toc"] for page in PAGES_WITH_CONTENTS},
     "footer_start": [],
     "footer_end": [],
 }

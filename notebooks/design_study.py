@@ -46,7 +46,7 @@ def stirrer(crank, coupler, rocker, ground):
 
 # %%
 first = stirrer(0.05, 0.20, 0.10, np.sqrt(0.20**2 + 0.10**2 - 0.05**2))
-ls.peaks(first).linksweep.to_pandas().T
+ls.peaks(first).linksweep
 
 # %% [markdown]
 # ## A hundred thousand candidates

@@ -61,9 +61,7 @@ at = ["5 in", 0]
 """)
 pusher = ls.load_scene(project)
 machine = pusher.mechanism
-checks = ls.check(pusher)
-print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
-print(f"least transmission angle: {float(checks.transmission_angle_min):.1f}°")
+ls.check(pusher).linksweep
 
 # %% [markdown]
 # The file becomes SI at the door. In the sheet's letters:

@@ -101,7 +101,7 @@ ax.grid(alpha=0.3)
 
 # %%
 smooth = ls.Load("rocker", torque=lambda theta2: -6.0 * (1.0 - np.cos(np.radians(theta2))))
-ls.peaks(replace(press, loads=[smooth]), of=["T12"]).linksweep.to_pandas().T
+ls.peaks(replace(press, loads=[smooth]), of=["T12"]).linksweep
 
 # %%
 try:

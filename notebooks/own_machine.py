@@ -21,7 +21,8 @@
 # ## The scene file
 #
 # A scene is a machine and what happens to it. As a file it takes numbers with the units that you measured in. Bars have
-# their mass from their size; the coupler, an odd casting, was weighed and balanced on an edge.
+# their mass from their size; the coupler, an odd casting, was weighed and balanced on an edge. `units` states in which
+# units tables, plots and the report shall show their numbers; results themselves are always in SI.
 
 # %%
 import tempfile
@@ -33,6 +34,7 @@ import linksweep as ls
 
 folder = Path(tempfile.mkdtemp())
 (folder / "feeder.toml").write_text("""
+units = "in, lbf, rpm"
 omega2 = "60 rpm"
 gravity = [0, "-9.81 m/s^2"]
 
@@ -74,12 +76,8 @@ ax = ls.plot.mechanism(feeder, theta2=60.0, forces=True)
 # ## Does it go round, and how far does it swing?
 
 # %%
-motion = ls.geometry(feeder)
-checks = ls.check(feeder)
-print(f"arc of the crank:          {float(checks.arc_start[0]):.0f}° to {float(checks.arc_end[0]):.0f}°")
-print(f"swing of the rocker:       {float(motion.swing):.1f}°")
-print(f"slow way over fast way:    {float(motion.time_ratio):.2f}")
-print(f"least transmission angle:  {float(motion.transmission_angle_min):.1f}°")
+print(ls.check(feeder).linksweep)
+print(ls.geometry(feeder).linksweep)
 
 # %% [markdown]
 # ## How hard are the pins loaded?
@@ -89,7 +87,7 @@ print(f"least transmission angle:  {float(motion.transmission_angle_min):.1f}°"
 
 # %%
 worst = ls.peaks(feeder)
-worst.linksweep.to_pandas().T
+worst.linksweep
 
 # %% [markdown]
 # ## Why is pin C loaded?

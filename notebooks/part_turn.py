@@ -63,8 +63,8 @@ for ax in (left, right):
     ax.grid(alpha=0.3)
 
 # %% [markdown]
-# The cylinder's force is largest at the start: there it pushes at its flattest, and the load is farthest out. Its stroke
-# and its bore:
+# The cylinder's force is largest at the start: there the load is farthest out from the hinge, and it comes nearer as the
+# body rises. The cylinder's stroke and its bore:
 
 # %%
 stroke = float(lift.slide.max() - lift.slide.min())
@@ -75,7 +75,7 @@ print(f"stroke {1e3 * stroke:.0f} mm, {largest / 1e3:.1f} kN: a bore of {1e3 * b
 # %% [markdown]
 # ## Where should the cylinder stand?
 #
-# A study: the place of D, over the same arc. Where the body cannot be reached, results are NaN, and the others are untouched.
+# A study: the direction in which D lies from A, over the same arc.
 
 # %%
 angle = np.linspace(-45.0, -10.0, 36)
@@ -89,6 +89,8 @@ ax.legend()
 ax.grid(alpha=0.3)
 
 # %% [markdown]
+# From −45° to −20° it hardly matters; above, both forces grow fast.
+#
 # ## The hinges
 #
 # Bushes that turn by 50° and back. `bearings` takes the angles, too, and assumes that the machine returns as it came:

@@ -49,10 +49,7 @@ scene = ls.Scene(
 # First: does it go round, and how well does it transmit? `check` answers in closed form, before anything is swept.
 
 # %%
-checks = ls.check(scene)
-print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
-print("assembles:", checks.assembly.attrs["flag_meanings"].split()[int(checks.assembly)])
-print(f"least transmission angle: {float(checks.transmission_angle_min):.1f}°")
+ls.check(scene).linksweep
 
 # %% [markdown]
 # Now one revolution. The result is an xarray Dataset indexed by the crank angle, in degrees; every variable says its unit and its
@@ -77,9 +74,7 @@ ax = cycle.linksweep.mechanism(theta2=17.5, forces=True)
 
 # %%
 worst = ls.peaks(scene)
-for pin in ("F12", "F32", "F43", "F14"):
-    print(f"{pin}: {float(worst[f'{pin}_peak']):6.1f} N at {float(worst[f'{pin}_peak_at']):5.1f}°")
-print(f"T12: {float(worst.T12_min):.2f} … {float(worst.T12_max):.2f} N m")
+worst.linksweep
 
 # %% [markdown]
 # ## Can we trust them?

@@ -52,7 +52,7 @@ cycle = ls.sweep(pump)
 fig, (upper, lower) = plt.subplots(2, 1, figsize=(9, 6), layout="constrained")
 cycle.linksweep.forces(ax=upper)
 cycle.linksweep.torque(ax=lower)
-ls.peaks(pump, of=["F12", "F32", "F43", "F14", "T12"]).linksweep.to_pandas().T
+ls.peaks(pump, of=["F12", "F32", "F43", "F14", "T12"]).linksweep
 
 # %% [markdown]
 # ## The guide's share

@@ -67,7 +67,7 @@ for ax, place in zip(panels, (180.0, 330.0), strict=True):
 # pair closes over the whole turn, and how far it stays from a toggle, where it would jam.
 
 # %%
-ls.check(scene)
+ls.check(scene).linksweep
 
 # %% [markdown]
 # ## Why a knuckle

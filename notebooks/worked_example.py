@@ -200,9 +200,7 @@ for label, system in {"row 3 in numbers": matrix, "row 3 in symbols": as_in_symb
 # where coupler and rocker lie in one line, and near there everything grows without bound:
 
 # %%
-checks = ls.check(page)
-print("Grashof class:", checks.grashof.attrs["flag_meanings"].split()[int(checks.grashof)])
-print(f"assembles from {float(checks.arc_start[0]):.3f}° to {float(checks.arc_end[0]):.3f}°")
+print(ls.check(page).linksweep)
 torques = ls.sweep(page, theta2=[45.0, 80.0, 86.0]).T12.values
 print("T12 at 45°, 80°, 86°:", *(f"{torque:.1f} N m" for torque in torques))
 ax = ls.sweep(page).linksweep.forces(["F12", "F43"])
