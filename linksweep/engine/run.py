@@ -1,7 +1,7 @@
-"""Run a plan: by numpy while it is small, by its compiled kernel once that pays; both return equal bits.
+"""Run a plan: by the interpreter while it is small, by its own kernel once that pays; both return equal bits.
 
-A kernel takes seconds to load and compile, numpy a millisecond for a 720-angle cycle. So the first samples of a plan
-are interpreted, operation by operation, and the kernel is compiled once the interpreted work has added up.
+A kernel takes half a second to load and compile, the interpreter 20 µs for a 720-angle cycle. So the first samples of a
+plan are interpreted, and the kernel is compiled once the interpreted work has added up.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import numpy as np
 from linksweep.base import low_words
 from linksweep.base.memory import require_memory
 from linksweep.engine.blocks import block as new_block
+from linksweep.engine.interpreter import evaluate as interpreter
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
@@ -28,8 +29,8 @@ from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.graph import LOW_WORDS, Node
 from linksweep.engine.trace.plan import Plan
 
-COMPILE_AFTER = 100_000
-"""Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 0.1 s of numpy."""
+COMPILE_AFTER = 1_000_000
+"""Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 20 ms of the interpreter."""
 
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
@@ -150,9 +151,7 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
     """Return every output of the plan over its own dims."""
     ready = runner(plan, ())
     if ready.should_interpret(_samples(plan, grid, sizes)):
-        values = interpret(plan.nodes, aligned(plan, inputs, grid))
-        stored = {node: _field(plan, node, values[node], grid, sizes) for node in plan.outputs.values()}
-        return {name: stored[node] for name, node in plan.outputs.items()}
+        return _interpreted(plan, inputs, grid, sizes)
     layout = ready.layout(sizes)
     block, single = _execute(ready, inputs, grid, sizes, threads)
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
@@ -172,8 +171,7 @@ def reduce_rows(
     index."""
     ready = runner(plan, reductions)
     if plan.late or ready.should_interpret(_samples(plan, grid, sizes)):
-        values = interpret(plan.nodes, aligned(plan, inputs, grid))
-        fields = {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
+        fields = _interpreted(plan, inputs, grid, sizes)
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
     layout = ready.layout(sizes)
     _, single = _execute(ready, inputs, grid, sizes, threads)
@@ -182,6 +180,13 @@ def reduce_rows(
 
 
 # ------------------------------------------------------------------------------------------ interpreted
+
+
+def _interpreted(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes) -> dict[str, Field]:
+    """Return every output of the plan without a kernel of its own."""
+    values = interpreter.evaluate(plan, aligned(plan, inputs, grid), {**sizes, grid.dim: len(grid.angles)})
+    interpret(plan.late, values)
+    return {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
 
 
 def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[Node, Numbers]:

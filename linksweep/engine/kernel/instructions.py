@@ -113,10 +113,10 @@ class Instructions:
         return self._called(f"llvm.{name}.{suffix}", *x)
 
     def _called(self, name: str, *x: Any) -> Any:
-        from numba.core import cgutils
-
+        module = self.builder.module
         kind = self.ir.FunctionType(x[0].type, [one.type for one in x])
-        return self.builder.call(cgutils.get_or_insert_function(self.builder.module, kind, name), x)
+        known = module.globals.get(name)
+        return self.builder.call(known or self.ir.Function(module, kind, name), x)
 
     def _sum_low(self, plus: Callable[..., Any], minus: Callable[..., Any], x: Any, y: Any) -> Any:
         """Write Knuth's way to what a rounded sum or difference misses (`base.low_words`)."""

@@ -60,7 +60,7 @@ class Solver:
 
     def should_interpret(self, samples: int) -> bool:
         self.interpreted += samples
-        return self.interpreted <= run.COMPILE_AFTER
+        return 10 * self.interpreted <= run.COMPILE_AFTER  # numpy takes longer for a system than the interpreter
 
     @cached_property
     def compiled(self) -> Callable:

@@ -1,0 +1,139 @@
+"""Machine code that interprets programs of vector instructions, compiled once on a machine and kept.
+
+A program is a table of integers, one row for each operation: its code, the register of its result, and those of its
+operands. A register holds `TILE` samples; the whole program runs on one tile after the other, so that registers stay in
+the cache. Operations are written by `engine.kernel.instructions`, so results have the bits of any compiled kernel.
+LLVM's own compiler is called directly: it wakes in a tenth of the time that numba takes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import inspect
+import sys
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from linksweep.base.cache import keep, recall
+from linksweep.engine.kernel import instructions
+from linksweep.engine.kernel.instructions import REGISTER, Instructions
+from linksweep.engine.trace.graph import LOW_WORDS
+
+TILE = 8 * REGISTER
+"""Samples of a register: enough to make the choice of an operation cheap, few enough for the fastest cache."""
+OPERATORS = ("+", "-", "*", "/", "<", "negate", "abs", "sqrt", "where", *sorted(LOW_WORDS))
+OPERANDS = {"negate": 1, "abs": 1, "sqrt": 1, "where": 3}
+"""Operands of those operations that have not two."""
+CODES = {name: code for code, name in enumerate([*OPERATORS, "load", "store"])}
+COLUMNS = 5
+"""Code of the operation, register of the result, registers of up to three operands; `load` and `store` have the number
+of a row in place of their operand and their result."""
+SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
+
+
+def interpret(program: np.ndarray, registers: np.ndarray, rows: np.ndarray, samples: int) -> None:
+    """Run a program (operation, column) on registers (register, sample of a tile) and on rows of at least `REGISTER`
+    samples, given by their addresses."""
+    _function()(address(program), address(registers), address(rows), len(program), samples)
+
+
+def address(array: np.ndarray) -> int:
+    return array.__array_interface__["data"][0]
+
+
+@cache
+def _function() -> Callable[..., None]:
+    """Return the interpreter: kept machine code, or compiled now."""
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    features = binding.get_host_cpu_features().flatten()
+    target = binding.Target.from_default_triple().create_target_machine(binding.get_host_cpu_name(), features, opt=3)
+    made_of = f"{binding.llvm_version_info} {target.triple} {binding.get_host_cpu_name()} {features} {SOURCE}"
+    name = f"interpreter_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
+    code = recall(name)
+    if code is None:
+        code = target.emit_object(binding.parse_assembly(str(_module())))
+        keep(name, code)
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
+    engine.add_object_file(binding.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
+    function = kind(engine.get_function_address("interpret"))
+    function.engine = engine  # type: ignore[attr-defined]  # the code lives as long as that
+    return function
+
+
+def _module() -> Any:
+    """Return LLVM's module with the one function."""
+    from llvmlite import ir
+
+    module, integer, double = ir.Module(), ir.IntType(64), ir.DoubleType()
+    arrays = [integer.as_pointer(), double.as_pointer(), integer.as_pointer()]
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [*arrays, integer, integer]), "interpret")
+    program, registers, rows, length, samples = function.args
+    builder = ir.IRBuilder(function.append_basic_block())
+    write = Instructions(builder)
+    last = builder.sub(samples, integer(REGISTER))
+
+    def smaller(x: Any, y: Any) -> Any:
+        return builder.select(builder.icmp_signed("<", x, y), x, y)
+
+    def operation(tile: Any, count: Any, row: Any) -> None:
+        """Write the choice of an operation, and each operation on a tile."""
+        start = builder.mul(row, integer(COLUMNS))
+        code, *place = (builder.load(builder.gep(program, [builder.add(start, integer(k))])) for k in range(COLUMNS))
+        done = builder.append_basic_block()
+        choice = builder.switch(code, done)
+
+        def vectors(name: str, body: Callable[[Any], None]) -> None:
+            choice.add_case(CODES[name], builder.append_basic_block(name))
+            builder.position_at_end(choice.cases[-1][1])
+            _loop(builder, integer(0), count, REGISTER, body)
+            builder.branch(done)
+
+        def at(register: Any, k: Any) -> Any:
+            return builder.add(builder.mul(register, integer(TILE)), k)
+
+        def row_start(number: Any) -> Any:
+            return builder.inttoptr(builder.load(builder.gep(rows, [number])), double.as_pointer())
+
+        for name in OPERATORS:
+            operands = place[1 : 1 + OPERANDS.get(name, 2)]
+
+            def operate(k: Any, name: str = name, operands: list[Any] = operands) -> None:
+                values = [write.load(registers, at(x, k)) for x in operands]
+                write.store(write.operators[name](*values), registers, at(place[0], k))
+
+            vectors(name, operate)
+        here = lambda k: smaller(builder.add(tile, k), last)  # noqa: E731  # the last vector ends with the row
+        vectors("load", lambda k: write.store(write.load(row_start(place[1]), here(k)), registers, at(place[0], k)))
+        vectors("store", lambda k: write.store(write.load(registers, at(place[1], k)), row_start(place[0]), here(k)))
+        builder.position_at_end(done)
+
+    def run(tile: Any) -> None:
+        count = smaller(builder.sub(samples, tile), integer(TILE))
+        _loop(builder, integer(0), length, 1, lambda row: operation(tile, count, row))
+
+    _loop(builder, integer(0), samples, TILE, run)
+    builder.ret_void()
+    return module
+
+
+def _loop(builder: Any, first: Any, last: Any, step: int, body: Callable[[Any], None]) -> None:
+    """Write a loop of at least one pass; `body(k)` writes what is done in each."""
+    before, inside, after = builder.block, builder.append_basic_block(), builder.append_basic_block()
+    builder.branch(inside)
+    builder.position_at_end(inside)
+    k = builder.phi(first.type)
+    k.add_incoming(first, before)
+    body(k)
+    following = builder.add(k, first.type(step))
+    k.add_incoming(following, builder.block)
+    builder.cbranch(builder.icmp_signed("<", following, last), inside, after)
+    builder.position_at_end(after)
