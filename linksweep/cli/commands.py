@@ -177,7 +177,7 @@ def _write_png(figure: Figure, path: Path) -> None:
 
 def _animate(options: argparse.Namespace) -> None:
     without_a_screen()
-    ls.plot.animate(one_design(options.scene), frames=options.frames).save(options.output)
+    ls.plot.animate(one_design(options.scene), frames=options.frames, title=options.scene.stem).save(options.output)
     print(f"written: {options.output}")
 
 

@@ -53,6 +53,7 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
         "figures": pictures(_figures(machine, mains, threads)),
         "more": "",
         "signs": SIGNS,
+        "explore": "",
         "scene": engine.to_toml(),
     }
 

@@ -37,6 +37,10 @@ from linksweep.studies.scene_at import scene_at
 ENDINGS = (".html", ".htm")
 ADVICE = ": a report is a page, which a browser prints, to PDF as well"
 EXACTNESS = "Peaks are exact; the bound says how much higher one could be."
+EXPLORER = "linksweep explore scene.toml"
+EXPLORE = tag(
+    "p", joined("Saved as scene.toml, it can be changed under the mouse: ", tag("code", EXPLORER)), class_="note"
+)
 SIGNS = "Fᵢⱼ is the force of link i on link j; angles and torques count counter-clockwise, from x."
 
 
@@ -116,6 +120,7 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None, thre
         "figures": page_figures.of_the_cycle(results),
         "more": page_figures.of_bearings_and_shaking(results),
         "signs": SIGNS if results.scene.mechanism.bodies else "",
+        "explore": EXPLORE if scene.mechanism.drawing else "",
         "scene": write_scene(scene),
     }
     return _filled(parts)

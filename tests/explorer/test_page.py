@@ -26,8 +26,8 @@ COUNT = "window.frames = []; (function next(t) { frames.push(t); requestAnimatio
 
 @pytest.fixture(scope="module")
 def browser():
-    with chromium() as found:
-        yield found
+    with chromium() as started:
+        yield started
 
 
 @pytest.fixture(scope="module")
@@ -36,8 +36,8 @@ def address():
     command = [sys.executable, "-u", "-m", "linksweep", "explore", "press", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as server:
         for line in server.stdout:
-            if found := re.search(r"http://\S+", line):
-                yield found[0]
+            if url := re.search(r"http://\S+", line):
+                yield url[0]
                 break
         server.terminate()
 

@@ -110,13 +110,16 @@ def test_arrows_start_at_their_pins_with_the_length_of_the_dense_solution(films)
 def test_current_values_are_written_and_marked_on_the_curves(films):
     cycle = ls.sweep(PRESS, theta2=FRAMES, of=["F12", "F32", "F43", "F14"])
     np.testing.assert_allclose(angles_of(films["press"]), 60.0 * np.arange(FRAMES))
-    machine, curves = films["press"].figure.axes
+    machine, curves, drive = films["press"].figure.axes
     films["press"].show(2)
     sizes = [float(cycle[name].values[2]) for name in ("F12", "F32", "F43", "F14")]
     labels = [text.get_text() for text in machine.texts if text.get_text().endswith(" N")]
     assert [float(text.removesuffix(" N")) for text in labels] == [pytest.approx(size, rel=5e-4) for size in sizes]
     (dots,) = (drawn for drawn in curves.collections if len(drawn.get_offsets()) == 4)
     np.testing.assert_allclose(dots.get_offsets(), [(120.0, size) for size in sizes])
+    (dot,) = (drawn for drawn in drive.collections if len(drawn.get_offsets()) == 1)
+    torque = ls.sweep(PRESS, theta2=[120.0], of=["T12"], solver="dense").T12
+    np.testing.assert_allclose(dot.get_offsets(), [(120.0, float(torque[0]))])
 
 
 @pytest.mark.parametrize("name", ["press", "pump", "shaper", "loop"])
@@ -231,6 +234,12 @@ def test_a_page_embeds_every_frame(films, tmp_path):
     assert {Image.open(io.BytesIO(frame)).size for frame in frames} == {film.image(0).size}
     assert len(page) * 72 / FRAMES < 2e6
     assert film._repr_html_().count("<img") == 1
+    assert "<title>Four-bar</title>" in page and "max-width:100%;height:auto" in page
+
+
+def test_a_film_has_the_title_that_is_stated():
+    film = ls.plot.animate(PRESS, frames=2, title="Press <1>")
+    assert "<figcaption" in film._repr_html_() and ">Press &lt;1&gt;</figcaption>" in film._repr_html_()
 
 
 def test_other_suffixes_are_refused_and_leave_no_file(films, tmp_path):

@@ -181,6 +181,11 @@ def test_the_page_contains_the_scene(press):
     assert parse_scene(Page(press).texts["pre"]) == ls.example("press")
 
 
+@pytest.mark.parametrize(("name", "is_named"), [("press", True), ("loop", False)])
+def test_the_page_names_the_command_that_changes_its_numbers(name, is_named):
+    assert ("<code>linksweep explore scene.toml</code>" in text_of(name)) == is_named
+
+
 # ------------------------------------------------------------------------------------- contents
 
 

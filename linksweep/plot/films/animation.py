@@ -28,8 +28,9 @@ def animate(
     frames: int = 72,
     point: tuple[float, float] | None = None,
     link: str | None = None,
+    title: str | None = None,
 ) -> Film:
-    """Make a film of a machine over its cycle: forces as arrows at the pins, and dots on the curves below.
+    """Make a film of a machine over its cycle: forces as arrows at the pins, dots on their curves and the drive's.
 
     Parameters
     ----------
@@ -42,6 +43,8 @@ def animate(
         Point whose curve is drawn, (distance [m], angle [degree]) as `mechanism` takes it.
     link : str, default None
         Role of the link of that point, as `mechanism` takes it.
+    title : str, default None
+        Heading of the film in a notebook or page; None for the kind of mechanism.
 
     Returns
     -------
@@ -69,13 +72,14 @@ def animate(
     if isinstance(scene, MultiCylinder):
         refuse([f"point = {quote(point)}: must be left out for several cylinders"] if point is not None else [])
         with small_type():
-            return film_of_cylinders(scene.in_memory, frames)
+            return film_of_cylinders(scene.in_memory, frames, title or f"Engine of {len(scene.crank_angles)} cylinders")
     one = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     index = one.mechanism.index
     sound = isinstance(scene, Scene) or index in scene.dims
     refuse([] if sound else [f"scene has no dimension {index}: take what ls.sweep returns"])
     angles: Any = SAMPLES if isinstance(scene, Scene) else scene[index].values
+    heading = title or one.mechanism.title or type(one.mechanism).__name__
     with small_type():
         if one.mechanism.track:
-            return film_of_track(one, one.mechanism.track, angles, frames)
-        return film_of_crank(one, drawing_with_point(one, link), angles, frames, point)
+            return film_of_track(one, one.mechanism.track, angles, frames, heading)
+        return film_of_crank(one, drawing_with_point(one, link), angles, frames, point, heading)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 WIDTH = 2.0  # inches of a throw's panel
 
 
-def film_of_cylinders(machine: MultiCylinder, frames: int) -> Film:
+def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     """Return a film over the engine's cycle: every cylinder with the forces in its pins, and the torque of them all."""
     from linksweep.plot.kit.film import Film
 
@@ -70,7 +70,7 @@ def film_of_cylinders(machine: MultiCylinder, frames: int) -> Film:
         texts = write(float(angles[k]), {"T12": f"{signals.number(now)} N m"})
         return [*(artist for there in moving for artist in there), *texts, *follow(float(angles[k]), {"T12": now})]
 
-    return Film(figure, draw, frames)
+    return Film(figure, draw, frames, title)
 
 
 def _turned(machine: MultiCylinder, k: int) -> Scene:

@@ -188,12 +188,13 @@ def scale(ax: Axes, top: float, longest: float) -> None:
     ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} N", "lower left", **style))
 
 
-def panels() -> tuple[Figure, Axes, Axes]:
-    """Return a figure with axes for the machine above and for the curves below."""
+def panels(*curves: float) -> tuple[Figure, Axes, list[Axes]]:
+    """Return a figure with axes for the machine above and for curves below, of these shares of a curve's height."""
     from matplotlib.figure import Figure
 
-    figure = Figure(SIZE, DPI, layout="constrained")
-    upper, lower = figure.subplots(2, 1, height_ratios=(2.0, 1.0))
+    width, height = SIZE
+    figure = Figure((width, height * (2.0 + sum(curves)) / 3.0), DPI, layout="constrained")
+    upper, *lower = figure.subplots(1 + len(curves), 1, height_ratios=(2.0, *curves))
     return figure, upper, lower
 
 

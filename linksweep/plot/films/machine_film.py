@@ -9,7 +9,7 @@ import numpy as np
 
 from linksweep.mechanisms.drawing import Drawing, Track
 from linksweep.plot import track as track_plot
-from linksweep.plot.curves import forces, headroom
+from linksweep.plot.curves import forces, headroom, torque
 from linksweep.plot.films.frames import (
     TINY,
     arrows_of,
@@ -35,16 +35,23 @@ if TYPE_CHECKING:
     from linksweep.plot.kit.film import Film
 
 
-def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: Any) -> Film:
+EFFORT = 0.7  # of the height of the forces' curves: the drive's
+
+
+def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, point: Any, title: str) -> Film:
     """Return the film of a machine with a crank."""
     from linksweep.plot.kit.film import Film
 
-    outputs = [f"{force}{axis}" for force in drawing.forces for axis in "xy"]
+    drive = scene.mechanism.drives[scene.drive]
+    outputs = [*(f"{force}{axis}" for force in drawing.forces for axis in "xy"), drive]
     cycle = sweep(scene, angles, of=[*outputs, "omega2"])
     signals.require_one_design(cycle[name] for name in outputs)
     shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
-    figure, machine, curves = panels()
+    efforts = signals.spread(sweep(scene, [shot.angle for shot in shots], of=[drive])[drive], len(shots))
+    figure, machine, (curves, effort) = panels(1.0, EFFORT)
     forces(cycle, ax=curves)
+    torque(cycle, ax=effort)
+    curves.set_xlabel("")
     top = curves.get_ylim()[1] / headroom(len(drawing.forces))
     draw_ground(machine, scene, drawing, shots[0].shape)
     longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
@@ -52,19 +59,20 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     fit(machine, drawing, shots, arrows)
     scale(machine, top, longest)
     say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
-    follow = follower(curves, list(drawing.forces))
+    follow, follow_drive = follower(curves, list(drawing.forces)), follower(effort, [drive])
     moving: list[Artist] = []
 
     def draw(k: int) -> list[Artist]:
         shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
         renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
         texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
-        return [*moving, *say(shot.angle, texts), *follow(shot.angle, sizes)]
+        marks = [*follow(shot.angle, sizes), *follow_drive(shot.angle, {drive: efforts[k]})]
+        return [*moving, *say(shot.angle, texts), *marks]
 
-    return Film(figure, draw, len(shots))
+    return Film(figure, draw, len(shots), title)
 
 
-def film_of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
+def film_of_track(scene: Scene, track: Track, angles: Any, frames: int, title: str) -> Film:
     """Return the film of a car on a track."""
     from linksweep.plot.kit.film import Film
 
@@ -74,7 +82,7 @@ def film_of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
     at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
     shots = sweep(scene, at, of=names).rename(index)
     force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
-    figure, ax, curve = panels()
+    figure, ax, (curve,) = panels(1.0)
     radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))
     track_plot.draw_track(ax, cycle, track.force, radius)
     track_plot.draw_force(curve, cycle, scene)
@@ -87,7 +95,7 @@ def film_of_track(scene: Scene, track: Track, angles: Any, frames: int) -> Film:
         values = {track.force: f"{signals.number(force[k])} N", track.speed: f"{signals.number(speed[k])} m/s"}
         return [*moving, *write(at[k], values), *follow(at[k], {track.force: force[k]})]
 
-    return Film(figure, draw, len(at))
+    return Film(figure, draw, len(at), title)
 
 
 def _car(ax: Axes, angle: float, radius: float, share: float) -> None:
