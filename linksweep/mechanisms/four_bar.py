@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linksweep.base.fields import of_kind, parameter
+from linksweep.base.frozen import bare
 from linksweep.base.validate import Number, is_lazy
 from linksweep.chains.on_crank import rrr
 from linksweep.chains.on_crank.machine import OnCrank
@@ -120,7 +121,10 @@ class FourBar(SingleDyad):
         """True where a design may be a parallelogram or a kite, which change sides; other designs keep their bits."""
         if any(map(is_lazy, self.by_role.values())):
             return True
-        a, b, c, d = self.by_role.values()
+        a, b, c, d = map(bare, self.by_role.values())
         near = 1e-9 * (a + b + c + d)
+        folds = abs(a + d - b - c) < near
+        if not np.any(folds):
+            return False
         opposite, adjacent = abs(a - c) < near, abs(a - b) < near
-        return bool(np.any((abs(a + d - b - c) < near) & (opposite | adjacent)))
+        return bool(np.any(folds & (opposite | adjacent)))

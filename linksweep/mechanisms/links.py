@@ -16,7 +16,7 @@ import numpy as np
 from linksweep.base.degrees import cos_sin
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import CheckedPartField, PairField, declared, of_kind, parameter, word
-from linksweep.base.frozen import normalise
+from linksweep.base.frozen import bare, normalise
 from linksweep.base.validate import Number, Rule, as_float, overflow_problems
 from linksweep.mechanisms.beams.sections import SECTION, AnySection, Section, rectangle
 
@@ -343,7 +343,7 @@ class LinkField(CheckedPartField):
         if problems := super().problems(path, value):
             return problems
         with np.errstate(over="ignore"):
-            return overflow_problems(path, getattr(value, "inertia", 0.0), "moment of inertia")
+            return overflow_problems(path, getattr(bare(value), "inertia", 0.0), "moment of inertia")
 
 
 LINK = LinkField((Link, Bar, Disk), AnyLink, default=Link)

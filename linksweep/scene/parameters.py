@@ -5,12 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from linksweep.base.fields import FieldKind, below, declared, has_fields
-from linksweep.base.frozen import Owner, with_sound, with_values
-from linksweep.base.validate import is_array
+from linksweep.base.frozen import Owner, with_arrays, with_values
 from linksweep.scene.dimensions import aligned
 
 
@@ -29,26 +28,12 @@ def replaced(owner: Owner, values: Mapping[str, Any], prefix: str = "") -> Owner
     return with_values(owner, **{name: _replaced(part, prefix + name, kind, values) for name, kind, part in parts})
 
 
-def bare(value: Any) -> Any:
-    """Return a number, or a part of a scene, without labels: arrays become Variables of xarray, which are faster."""
-    return _with_arrays(value, lambda array: array.variable)
-
-
 def along(value: Any, dims: tuple[str, ...]) -> Any:
     """Return a number, or a part of a scene, with its arrays in numpy, an axis for each of these dims.
 
     Arrays with further dims stay as they are.
     """
-    return _with_arrays(value, lambda array: aligned(array, dims) if {*array.dims} <= {*dims} else array)
-
-
-def _with_arrays(value: Any, convert: Callable[[Any], Any]) -> Any:
-    if has_fields(value):
-        parts = {name: _with_arrays(getattr(value, name), convert) for name, *_ in declared(value)}
-        return with_sound(value, **parts)
-    if isinstance(value, tuple | list):
-        return tuple(_with_arrays(item, convert) for item in value)
-    return convert(value) if is_array(value) else value
+    return with_arrays(value, lambda array: aligned(array, dims) if {*array.dims} <= {*dims} else array)
 
 
 def _replaced(value: Any, path: str, kind: FieldKind, values: Mapping[str, Any]) -> Any:

@@ -24,7 +24,7 @@ from linksweep.base.fields import (
     of_kind,
     parameter,
 )
-from linksweep.base.frozen import field_values, normalise, with_sound
+from linksweep.base.frozen import bare, field_values, normalise, with_sound
 from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
@@ -36,7 +36,6 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.inputs import Inputs, engine_inputs
 from linksweep.scene.loads.action import LOADS, Action
 from linksweep.scene.loads.kinds import Load
-from linksweep.scene.parameters import bare
 from linksweep.scene.revolution import Revolution
 from linksweep.scene.shown_units import UNITS_FIELD
 from linksweep.scene.storable import own_label, storable_coordinate

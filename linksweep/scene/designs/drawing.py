@@ -88,7 +88,10 @@ def seed_range_problems(seed: Any) -> list[str]:
 def _numbers(designs: Any) -> np.ndarray:
     """Return the numbers of designs as an array."""
     advice = "must be numbers of designs, whole and from 0, such as [17, 20] or range(100)"
-    numbers = np.asarray(designs if isinstance(designs, range) else list(designs) if _several(designs) else None)
+    if isinstance(designs, range) and max(map(abs, (designs.start, designs.stop))) < 2**62:
+        numbers = np.arange(designs.start, designs.stop, designs.step)
+    else:
+        numbers = np.asarray(list(designs) if _several(designs) else None)
     sound = numbers.ndim == 1 and numbers.size and numbers.dtype.kind in "iu"
     refuse([] if sound and numbers.min() >= 0 else [f"designs = {quote(designs)}: {advice}"])
     return numbers.astype(np.int64)

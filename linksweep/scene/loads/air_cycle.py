@@ -22,12 +22,13 @@ import xarray as xr
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.equality import ByContent
 from linksweep.base.fields import field_problems, numbers, parameter
+from linksweep.base.frozen import bare
 from linksweep.base.validate import Number, as_float, is_lazy, quote, refuse
 from linksweep.mechanisms import Mechanism
 from linksweep.mechanisms.capabilities import lack
 from linksweep.mechanisms.cylinder import PistonCylinder
 from linksweep.scene.dimensions import dims_of
-from linksweep.scene.parameters import along, bare
+from linksweep.scene.parameters import along
 
 ATMOSPHERE = 101325.0
 
