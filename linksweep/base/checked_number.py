@@ -7,7 +7,7 @@ from typing import Any
 
 from linksweep.base.conversion import to_float64
 from linksweep.base.fields import PairField, numbers_in
-from linksweep.base.units import unit_problems
+from linksweep.base.units import text_problems, unit_problems
 from linksweep.base.validate import Number, Rule, is_array, number_problems, refuse
 
 
@@ -20,6 +20,7 @@ def checked_number(path: str, value: Any, rule: Rule) -> Number:
         For a number that the rule does not allow, and for an array whose `units` attribute names another unit.
     """
     number = to_float64(value, rule.kind)
+    refuse(text_problems(path, number, rule.kind) if isinstance(number, str) else [])
     refuse(number_problems(path, number, rule) or array_unit_problems(path, number, rule.kind))
     return number
 

@@ -2,7 +2,8 @@
 
 numpy computes in an array's own dtype, where a mass of int8 overflows; so the constructor converts every number to
 float64. An integer that float64 cannot hold is rounded to the nearest. A quantity of pint is recognised by its
-attributes and converted by its own registry, so that pint need not be imported.
+attributes and converted by its own registry, so that pint need not be imported. A text such as "80 mm" is read as in a
+scene file.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from linksweep.base.units import quantity
 from linksweep.base.validate import UNITS, as_float, is_array, is_quantity
 
 
@@ -19,8 +21,10 @@ def to_float64(value: Any, kind: str) -> Any:
 
     The angles of an array over theta2 are converted, too.
     """
-    if type(value) is float or isinstance(value, str) or value is None:
+    if type(value) is float or value is None:
         return value
+    if isinstance(value, str):
+        return _of_text(value, kind)
     if is_array(value):
         return _with_angles(_array(value, kind))
     if is_quantity(value):
@@ -28,6 +32,14 @@ def to_float64(value: Any, kind: str) -> Any:
         return magnitude if magnitude is value or np.ndim(magnitude) else float(magnitude)
     number = as_float(value)
     return value if number is None else number
+
+
+def _of_text(text: str, kind: str) -> Any:
+    """Return the number that a text states; the text itself where it states none, for validation to say why."""
+    try:
+        return quantity(text, kind)
+    except ValueError:
+        return text
 
 
 def all_to_float64(values: Any, kind: str) -> Any:

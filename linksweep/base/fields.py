@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base.conversion import to_float64
+from linksweep.base.units import text_problems
 from linksweep.base.validate import Rule, choice_problems, is_array, is_quantity, number_problems, quote
 
 
@@ -60,6 +61,8 @@ class NumberField(FieldKind):
         return to_float64(value, self.rule.kind)
 
     def problems(self, path: str, value: Any) -> list[str]:
+        if isinstance(value, str):
+            return text_problems(path, value, self.rule.kind)
         return [] if isinstance(value, tuple(self.parts)) else number_problems(path, value, self.rule)
 
 
@@ -123,7 +126,8 @@ class PairField(ListField):
         return type(value) is tuple and len(value) == 2 and all(map(NumberField.sound, self.numbers, value))
 
     def converted(self, value: Any) -> Any:
-        return self.numbers[0].converted(value) if self.may_be_first(value) else super().converted(value)
+        alone = self.may_be_first(value) or (self.or_first and isinstance(value, str))
+        return self.numbers[0].converted(value) if alone else super().converted(value)
 
     @cached_property
     def numbers(self) -> tuple[NumberField, NumberField]:

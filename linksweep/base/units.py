@@ -1,4 +1,4 @@
-"""Numbers as a scene file has them: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``.
+"""Numbers as a text has them, in a scene file or in Python: ``"8 cm"``, ``"1500 rpm"``, ``"0.4 lbf in s^2"``.
 
 The grammar is one decimal number, a space, one unit. A unit is a product of factors, in any order, then its
 divisors: ``lbf in s^2``, ``rad/s^2``; also ``*``, ``·``, ``-`` between factors, ``²``, ``**2`` for ``^2``.
@@ -25,7 +25,6 @@ from importlib.metadata import version
 from typing import Any
 
 from linksweep.base.cache import keep, recall
-from linksweep.base.conversion import to_float64
 from linksweep.base.validate import UNITS, did_you_mean
 
 
@@ -119,6 +118,8 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
         if isinstance(value, str):
             _require_short(value, LONGEST_TEXT)
             return _scaled(*_parted(value.strip().replace("−", "-"), kind), kind)
+        from linksweep.base.conversion import to_float64  # here: it reads texts by this function
+
         number = to_float64(value, kind)
         if not isinstance(number, float):
             raise ValueError(f'must be a number or a text such as "{KINDS[kind].example}"')
@@ -127,6 +128,15 @@ def quantity(value: Any, kind: str, unit: str | None = None) -> float:
         raise ValueError(f"{as_toml(value)}: {FINITE}") from None
     except ValueError as error:
         raise ValueError(f"{as_toml(value)}: {error}") from None
+
+
+def text_problems(path: str, text: str, kind: str) -> list[str]:
+    """Return the problem of a text that is no number with a unit of this kind."""
+    try:
+        quantity(text, kind)
+    except ValueError as error:
+        return [f"{path} = {error}"]
+    return []
 
 
 def _require_short(text: str, longest: int) -> None:

@@ -116,7 +116,7 @@ def number_problems(path: str, value: Any, rule: Rule) -> list[str]:
     if isinstance(value, bool | np.bool_):
         return [f"{path} = {value}: must be {rule.number}, not a truth value"]
     if isinstance(value, str):
-        return [f"{path} = {value!r}: must be {rule.number}, not text; in Python write a number, or a quantity of pint"]
+        return [f"{path} = {value!r}: must be {rule.number}, or a text with a unit of that kind"]
     number = as_float(value)
     if number is None:
         return [f"{path} = {quote(value)}: must be {rule.number}, or an xarray.DataArray of them"]

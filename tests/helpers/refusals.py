@@ -16,7 +16,8 @@ LOAD = ls.Load("coupler", force=(0.0, -80.0), at=(0.1, 15.0), torque=2.0)
 LOOP = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, thrust=10_000.0)
 SCENE = ls.Scene(FOUR_BAR, omega2=30.0, loads=[ls.Load("rocker", torque=1.0), LOAD])
 TURNED = "; for a point on the other side turn its angle by 180 degrees"
-ADVICE = "must|give|make|write|name |leave|hold|less|begin|once|did you mean|shorten|there are|every angle|declare"
+ADVICE = "must|give|make|write|name |leave|hold|less|begin|once|did you mean|shorten|there are"
+ADVICE += "|every angle|declare|accepted: "
 
 
 def coupler(**changes) -> ls.Scene:

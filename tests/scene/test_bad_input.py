@@ -124,14 +124,14 @@ def test_all_problems_of_a_mechanism_are_reported_together():
     assert refusal(
         ls.FourBar,
         crank=None,
-        coupler=ls.Link("8 cm", np.nan, 1.0, cg_distance=-0.1),
+        coupler=ls.Link("8 kg", np.nan, 1.0, cg_distance=-0.1),
         rocker=ls.Disk(0.0, 0.1, 0.1, True),
         ground=[0.2],
         branch="opn",
         ground_angle=np.inf,
     ) == [
         "crank = None: must be a Link, Bar or Disk",
-        "coupler.length = '8 cm': must be a number in m, not text; in Python write a number, or a quantity of pint",
+        'coupler.length = "8 kg": kg is a unit of mass, not of length; accepted: m, mm, cm, km, um, in, ft',
         "coupler.mass = nan kg: must be finite and at least 0",
         f"coupler.cg_distance = -0.1 m: must be at least 0{TURNED}",
         "rocker.length = 0 m: must be greater than 0",
@@ -150,11 +150,11 @@ def test_all_problems_of_a_scene_are_reported_together():
         alpha2=True,
         gravity=(np.nan, "9.81"),
         drive="croupler",
-        loads=[ls.Load("coupler"), ls.Load("rokcer", force=(1.0, 1j), at=(-1.0, np.nan), frame="x", torque="1 N m")],
+        loads=[ls.Load("coupler"), ls.Load("rokcer", force=(1.0, 1j), at=(-1.0, np.nan), frame="x", torque="1 Nm")],
     ) == [
         "alpha2 = True: must be a number in rad/s^2, not a truth value",
         "gravity[1] = nan m/s^2: must be finite",
-        "gravity[2] = '9.81': must be a number in m/s^2, not text; in Python write a number, or a quantity of pint",
+        'gravity[2] = "9.81": has no unit; write "9.81 m/s^2", or 9.81 without the quotes, which is in m/s^2',
         "omega2: missing; give FourBar a number in rad/s",
         "drive = 'croupler': must be one of crank, coupler, rocker; did you mean \"coupler\"?",
         "loads[1] has neither force nor torque: give force=(Fx, Fy), torque=..., or both",
@@ -163,7 +163,7 @@ def test_all_problems_of_a_scene_are_reported_together():
         f"loads[2].at[1] = -1 m: must be at least 0{TURNED}",
         "loads[2].at[2] = nan degree: must be finite",
         "loads[2].frame = 'x': must be one of ground, link",
-        "loads[2].torque = '1 N m': must be a number in N m, not text; in Python write a number, or a quantity of pint",
+        'loads[2].torque = "1 Nm": "Nm" runs its units together; write them with a space, "N m"',
     ]
 
 

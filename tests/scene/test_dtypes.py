@@ -11,6 +11,7 @@ from refusals import refusal
 
 import linksweep as ls
 from benchmarks.stress.attacks.dtypes import engine, four_bar, loop, quick_return
+from linksweep.base import units
 from linksweep.base.validate import UNITS as UNITS_OF_KINDS
 from linksweep.scene.parameters import free, replaced
 from linksweep.studies.job import scene_digest
@@ -235,3 +236,30 @@ def test_angles_and_positions_of_another_unit_are_refused():
 def test_arrays_with_a_units_attribute_of_another_unit_are_refused(call, path):
     (line,) = refusal(call, xr.DataArray([20.0], dims="design", attrs={"units": "mm"}))
     assert line.startswith(f'{path} has attrs["units"] = "mm": must be in m')
+
+
+# ----------------------------------------------------------------------------------------------- texts
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_texts_with_units_are_converted_in_every_parameter(name):
+    made = SCENES[name]
+    for path, value in numbers(made).items():
+        _, kind = free(made)[path]
+        other = units.KINDS[kind].spellings[-1]
+        size = units.quantity(f"1 {other}", kind)
+        texts = (f"{float(value)!r} {UNITS_OF_KINDS[kind]}", f"{float(value) / size!r} {other}")
+        for text in texts[kind == "dimensionless" :]:
+            assert numbers(replaced(made, {path: text}))[path] == pytest.approx(value, rel=1e-15), (path, text)
+
+
+def test_other_constructors_and_functions_accept_texts():
+    gravity = ("0 m/s^2", "-9810 mm/s^2")
+    assert ls.Scene(ls.example("press").mechanism, "3 rad/s", gravity=gravity).gravity == (0.0, -9.81)
+    assert ls.Spring(("ground", "30 cm", 0), ("rocker", 1, "90 deg"), "1 N/m", 1).from_ == ("ground", 0.3, 0.0)
+    assert ls.Load("slider", force="2 kN").force == 2000.0
+    assert ls.Motor(["0 rpm", "60 rpm"], ["20 N cm", 0]).speeds == pytest.approx((0.0, 2.0 * np.pi))
+    assert ls.sweep(ls.example("press"), ["30 deg", "0.25 rev"]).theta2.values.tolist() == [30.0, 90.0]
+    assert ls.Bearing(diameter="20 mm").diameter == 0.02
+    with pytest.raises(ValueError, match=r'^radius = "6 kg": kg is a unit of mass, not of length'):
+        ls.counterweights(ls.example("press"), radius="6 kg")

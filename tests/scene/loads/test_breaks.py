@@ -55,7 +55,7 @@ def test_files_keep_breaks_and_read_units():
     [
         (30.0, r"loads\[1\].breaks = 30.0: must be a list, each item a number in degrees"),
         ([10.0, np.nan], r"loads\[1\].breaks\[2\] = nan degree: must be finite"),
-        (["30 deg"], r"loads\[1\].breaks\[1\] = '30 deg': must be a number in degrees, not text"),
+        (["30 degs"], r'loads\[1\].breaks\[1\] = "30 degs": "degs" is not an accepted unit of angle'),
         ([xr.DataArray([1.0], dims="a")], r"loads\[1\].breaks\[1\] is an array: must be a number in degrees, for all"),
     ],
 )

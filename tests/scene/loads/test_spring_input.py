@@ -103,7 +103,10 @@ REFUSED = [
     (replace(WOUND, to="ground"), "loads[1].to = 'ground': must be another link than that of from_"),
     (replace(WOUND, from_="frame"), "loads[1].from_ = 'frame': must be one of ground, crank, coupler, rocker"),
     (replace(WOUND, rate=-5.0), "loads[1].rate = -5 N m/rad: must be at least 0"),
-    (replace(WOUND, free_angle="90"), "loads[1].free_angle = '90': must be a number in degrees, not text"),
+    (
+        replace(WOUND, free_angle="90"),
+        'loads[1].free_angle = "90": has no unit; write "90 degree", or 90 without',
+    ),
 ]
 
 
