@@ -10,6 +10,7 @@ from linksweep.analysis.balance.shaking import shaking_moment
 from linksweep.analysis.design.geometry import coupler_curve, geometry
 from linksweep.analysis.design.objective import objective
 from linksweep.analysis.design.pareto import pareto
+from linksweep.analysis.design.sensitivities import sensitivities
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.drive.motor import Motor, motor_load
@@ -114,6 +115,7 @@ __all__ = [
     "save",
     "scene_at",
     "screen",
+    "sensitivities",
     "shaking_moment",
     "speed_limit",
     "speed_separation",

@@ -30,6 +30,8 @@ def cos_sin(degrees):
 
 def cos_sin_low_words(degrees: Any) -> tuple[Any, ...]:
     """Return cosine and sine of an angle [degree], then the low word of each; four of the kind passed in."""
+    if hasattr(degrees, "cos_sin_low_words"):  # a number with slopes, of the scene's
+        return degrees.cos_sin_low_words()
     if hasattr(degrees, "dims"):
         return tuple(degrees.copy(data=values) for values in cos_sin_low_words(degrees.values))
     return _of_angles(np.asarray(degrees, dtype=float)) if np.ndim(degrees) else _of_angle(float(degrees))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from linksweep.base.validate import Number, Rule, is_lazy, refuse
 from linksweep.engine.run import Grid, evaluate
 from linksweep.engine.trace.plan import plan
 from linksweep.mechanisms import Mechanism
+from linksweep.mechanisms.strokes import Stroke
 from linksweep.scene.curves.acceleration import acceleration, acceleration_problems
 from linksweep.scene.curves.derivatives import with_derivatives
 from linksweep.scene.curves.over_angle import at_angles
@@ -35,6 +37,11 @@ class Revolution:
     @property
     def mechanism(self) -> Mechanism:
         return self.scene.mechanism
+
+    @property
+    def angles(self) -> Any:
+        """Angles of the grid [degree]."""
+        return self.grid.angles
 
     @cached_property
     def omega2(self) -> Number:
@@ -72,7 +79,11 @@ class Revolution:
         curve = self.scene.curves.get(path)
         return with_derivatives(path, length, LENGTH, self.grid, self.mechanism.period, curve)
 
-    def kinematics(self, *names: str) -> list[xr.DataArray]:
+    def stroke(self, name: str, stroke_of: Callable[[Scene, str], Stroke]) -> Stroke:
+        """Return the stroke of a position by its name, as `stroke_of` of a scene."""
+        return stroke_of(self.scene, name)
+
+    def kinematics(self, *names: str) -> list[Any]:
         """Return quantities over the angles, of those that angles and lengths alone decide."""
         unloaded = self.scene.unloaded.at(self.grid)
         request = plan(unloaded.table, names, unloaded.inputs.forms)

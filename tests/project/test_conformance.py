@@ -125,6 +125,7 @@ CALLS = {
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
     "scene_at": lambda s, path: ls.scene_at(s.study, design=2),
     "screen": lambda s, path: ls.screen(s.machine, s.range, n=3, minimize=f"{s.force}_peak", **s.samples),
+    "sensitivities": lambda s, path: ls.sensitivities(s.machine, s.force, to=[s.word]),
     "shaking_moment": lambda s, path: ls.shaking_moment(s.shaking, about=(0.1, 0.0)),
     "speed_limit": lambda s, path: ls.speed_limit(s.machine, s.force, below=1e5),
     "speed_separation": lambda s, path: ls.speed_separation(s.machine, theta2=SAMPLES),
@@ -214,7 +215,8 @@ LACKING: dict[str, str] = {
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
         draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
-        speed_limit speed_separation study sweep system with_counterweights plot.balance plot.bearing plot.bearings
+        sensitivities speed_limit speed_separation study sweep system with_counterweights plot.balance
+        plot.bearing plot.bearings
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
         plot.torque_with_flywheel accessor.mechanism accessor.scene
     """,

@@ -23,9 +23,11 @@ import xarray as xr
 from linksweep.analysis.drive.duty import steady_problems
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, quote, refuse
+from linksweep.engine.run import Field
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
+from linksweep.results.derivatives.samples import sample_derivatives
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
@@ -114,6 +116,46 @@ def flywheel(
         "energy_fluctuation": (most - least, "J", ENERGY),
     }
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.flywheel(scene, ...)")
+
+
+def flywheel_slopes(
+    scene: Scene, to: tuple[str, ...], *, fluctuation: float, theta2: int = 720, threads: int | None = None
+) -> tuple[xr.DataArray, dict[str, xr.DataArray]]:
+    """Return the inertia of the flywheel [kg m²] for a coefficient of fluctuation, and its derivatives to parameters.
+
+    Both extremes of the module's equation stay at their angles; the work of a torque is linear in it.
+    """
+    size = flywheel(scene, fluctuation=fluctuation, theta2=theta2, threads=threads).flywheel_inertia
+    steady = replace(scene, alpha2=0.0)
+    grid, index, names = steady.grid(theta2), steady.mechanism.index, ("reduced_torque", "reduced_inertia")
+    samples = sample_derivatives(steady, grid, names, tuple(path for path in to if path != "alpha2"), threads)
+    angles = xr.Variable(index, grid.angles)
+
+    def over_angles(field: Field) -> xr.DataArray:
+        return xr.DataArray(xr.Variable(*field), {index: angles} if index in field.dims else None) + 0.0 * xr.DataArray(
+            angles, {index: angles}
+        )
+
+    torque, J = (over_angles(samples.values[name]) for name in names)
+    mean, stored = abs(steady.omega2), _work(torque, steady.period, index)[0]
+    fast, slow = 1.0 + 0.5 * fluctuation, 1.0 - 0.5 * fluctuation
+    high, low = (stored + 0.5 * mean**2 * J * (1.0 - part**2) for part in (fast, slow))
+    known = np.isfinite(size)
+    at_high, at_low = high.fillna(0.0).argmax(index), low.fillna(0.0).argmin(index)
+    slopes = dict.fromkeys(to, 0.0 * size)
+    for path in to:
+        if path == "alpha2":
+            continue
+        d_torque, dJ = (over_angles(samples.derivatives[name, path]) for name in names)
+        of_speed = np.sign(steady.omega2) if path == "omega2" else 0.0
+        work = _work(d_torque, steady.period, index)[0]
+        d_high, d_low = (
+            work + 0.5 * mean**2 * dJ * (1.0 - part**2) + mean * of_speed * J * (1.0 - part**2) for part in (fast, slow)
+        )
+        rise = d_high.isel({index: at_high}, drop=True) - d_low.isel({index: at_low}, drop=True)
+        slope = rise / (fluctuation * mean**2) - 2.0 * of_speed * size / mean
+        slopes[path] = slope.where(size > 0.0, 0.0).where(known).reset_coords(drop=True)
+    return size, slopes
 
 
 def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:

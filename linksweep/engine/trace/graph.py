@@ -76,6 +76,11 @@ class Node:
     def low_word(self, name, x, y):
         return getattr(self.graph, name)(self.graph.node(x), self.graph.node(y))
 
+    def marked_low(self) -> Node:
+        """Mark as the low word of a double-double, which has no derivative."""
+        self.graph.low_words.add(self)
+        return self
+
     def where(self, x, y):
         x, y = self.graph.node(x), self.graph.node(y)
         return x if x is y else self.graph.operation("where", self, x, y)
@@ -89,6 +94,7 @@ class Graph:
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
+        self.low_words: set[Node] = set()
         self._known: dict[tuple[str, tuple[int, ...], object], Node] = {}
 
     def node(self, value: Node | float) -> Node:

@@ -19,6 +19,9 @@ LATE = {"atan2"}
 INSTRUCTIONS = {"sum_low": 5, "difference_low": 5, "ordered_low": 2}
 """Instructions of operations that take more than one, besides the sum itself."""
 
+LOW_WORD = "_lo"
+"""Ending of the names of low words."""
+
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -114,6 +117,7 @@ def plan(table: Table, request: tuple[str, ...], inputs: InputForms) -> Plan:
     values: dict[str, Node] = {
         name: graph.constant(form) if isinstance(form, float) else graph.input(name, form) for name, form in inputs
     }
+    _mark_low_words(graph, values)
     made_by: dict[str, range] = {}
     for name in request:
         _trace(name, table, graph, values, made_by)
@@ -142,4 +146,10 @@ def _trace(name: str, table: Table, graph: Graph, values: dict[str, Node], made_
         made = row.function(*(values[x] if isinstance(x, str) else graph.node(x) for x in row.wiring))
         made = made if isinstance(made, tuple) else (made,)
         values.update(zip(row.outputs, map(graph.node, made), strict=True))
+        _mark_low_words(graph, {output: values[output] for output in row.outputs})
         made_by[f"{row.function.__name__} → {', '.join(row.outputs)}"] = range(before, len(graph.nodes))
+
+
+def _mark_low_words(graph: Graph, values: Mapping[str, Node]) -> None:
+    """Mark the values whose names say that they are low words of double-doubles."""
+    graph.low_words |= {node for name, node in values.items() if name.endswith(LOW_WORD)}

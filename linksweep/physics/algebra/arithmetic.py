@@ -41,6 +41,11 @@ def _low_word(name: str, x: Number, y: Number) -> Number:
     return traced.low_word(name, x, y) if hasattr(traced, "low_word") else getattr(low_words, name)(x, y)
 
 
+def marked_low(x: Number) -> Number:
+    """Return x, marked in a trace as the low word of a double-double: what rounding left, without a derivative."""
+    return x.marked_low() if hasattr(x, "marked_low") else x
+
+
 def where(condition: Number, x: Number, y: Number) -> Number:
     """Return `x` where the condition holds, else `y`; both are evaluated."""
     return (x if condition else y) if isinstance(condition, bool) else condition.where(x, y)

@@ -5,7 +5,7 @@ contracted or reordered (Knuth, TAOCP 2, 4.2.2). Where high words cancel in a di
 remaining digits.
 """
 
-from linksweep.physics.algebra.arithmetic import Number, ordered_low, product_low, sum_low
+from linksweep.physics.algebra.arithmetic import Number, marked_low, ordered_low, product_low, sum_low
 
 Pair = tuple[Number, Number]
 """A double-double (high, low); high is the sum rounded to a float."""
@@ -39,7 +39,8 @@ def multiply(p: Pair, q: Pair) -> Pair:
 def divide(p: Pair, q: Pair) -> Pair:
     high = p[0] / q[0]
     product, product_lo = two_product(high, q[0])
-    return ordered_sum(high, (((p[0] - product) - product_lo) + (p[1] - high * q[1])) / q[0])
+    missed = (((p[0] - product) - product_lo) + (p[1] - high * q[1])) / q[0]
+    return ordered_sum(high, marked_low(missed))
 
 
 def difference(p: Pair, q: Pair) -> Number:

@@ -6,13 +6,18 @@ one their values hold.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import Rule, is_array, number_problems, quote, refuse
+from linksweep.scene.curves.acceleration import ROUNDING, STEPS, limit
 from linksweep.scene.curves.interpolation import curve_through
+
+Curve = Callable[[np.ndarray], np.ndarray]
 
 POSITION = "position"
 KINDS = ("linear", "pchip", "step")
@@ -42,12 +47,11 @@ def table_problems(path: str, value: Any) -> list[str]:
     return []
 
 
-def at_positions(
-    path: str, value: Any, rule: Rule, positions: xr.DataArray, kind: str, interpolation: str | None
-) -> Any:
+def at_positions(path: str, value: Any, rule: Rule, positions: Any, kind: str, interpolation: str | None) -> Any:
     """Return a table or function of positions at some of them, over their dims; any other number as it is.
 
-    Angles (`kind`) are taken by whole turns to the table's middle; a function has them in (-180, 180].
+    Angles (`kind`) are taken by whole turns to the table's middle; a function has them in (-180, 180]. Positions with
+    slopes give loads with slopes; those of a function are limits of central differences.
 
     Raises
     ------
@@ -56,11 +60,30 @@ def at_positions(
     """
     if is_table(value):
         known, values = _sorted(value)
-        middle = 0.5 * (known[0] + known[-1])
-        near = positions.values
-        near = middle + np.mod(near - middle + 180.0, 360.0) - 180.0 if kind == "angle" else near
-        return positions.copy(data=_looked_up(known, values, near, interpolation or KINDS[0]))
-    return _called(path, value, rule, positions) if is_function(value) else value
+        look_up = partial(_looked_up, known, values, interpolation or KINDS[0], kind == "angle")
+        return _through(positions, look_up, partial(look_up, order=1))
+    if is_function(value):
+        call = partial(_called, path, value, rule)
+        return _through(positions, call, partial(_slope, call))
+    return value
+
+
+def _through(positions: Any, curve: Curve, slope: Curve) -> Any:
+    """Return a curve at positions, DataArrays or numbers with slopes."""
+    if hasattr(positions, "through"):
+        return positions.through(curve, slope)
+    return positions.copy(data=curve(positions.values))
+
+
+def _slope(call: Curve, positions: np.ndarray) -> np.ndarray:
+    """Return the slope of a function of positions, the limit of central differences."""
+    size = np.max(np.abs(positions), initial=0.0, where=np.isfinite(positions)) or 1.0
+    steps = size * STEPS / 360.0
+    sides = (call((positions.ravel()[:, None] + sign * steps).ravel()).reshape(-1, len(steps)) for sign in (1.0, -1.0))
+    after, before = sides
+    noise = ROUNDING * np.nanmax(np.abs(after), initial=0.0) / steps
+    slopes = limit((after - before) / (2.0 * steps), np.broadcast_to(noise, after.shape))
+    return slopes.reshape(positions.shape)
 
 
 def corners(value: Any, interpolation: str | None) -> list[float]:
@@ -79,17 +102,23 @@ def _sorted(table: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
     return ordered[POSITION].values.astype(float), ordered.values.astype(float)
 
 
-def _looked_up(known: np.ndarray, values: np.ndarray, positions: np.ndarray, interpolation: str) -> np.ndarray:
-    held = np.clip(positions, known[0], known[-1])
+def _looked_up(
+    known: np.ndarray, values: np.ndarray, interpolation: str, turns: bool, positions: np.ndarray, order: int = 0
+) -> np.ndarray:
+    """Return a table at positions, or its derivative of this order."""
+    middle = 0.5 * (known[0] + known[-1])
+    near = middle + np.mod(positions - middle + 180.0, 360.0) - 180.0 if turns else positions
+    held = np.clip(near, known[0], known[-1])
     if interpolation == "step":  # the last value holds, too
         known, values = np.append(known, known[-1] + 1.0), np.append(values, values[-1])
-    return curve_through(interpolation, known, values)(held)
+    curve = curve_through(interpolation, known, values)
+    return curve(held, order) * (held == near) if order else curve(held)
 
 
-def _called(path: str, function: Any, rule: Rule, positions: xr.DataArray) -> xr.DataArray:
-    known = np.isfinite(positions.values)
+def _called(path: str, function: Any, rule: Rule, positions: np.ndarray) -> np.ndarray:
+    known = np.isfinite(positions)
     try:
-        values = np.broadcast_to(np.asarray(function(positions.values[known])), known.sum())
+        values = np.broadcast_to(np.asarray(function(positions[known])), known.sum())
     except Exception as error:
         text = " ".join(f"{type(error).__name__}: {error}".split())
         raise ValueError(
@@ -99,4 +128,4 @@ def _called(path: str, function: Any, rule: Rule, positions: xr.DataArray) -> xr
     refuse(number_problems(path, xr.DataArray(values, dims=POSITION), rule))
     loads = np.full(known.shape, np.nan)
     loads[known] = values
-    return positions.copy(data=loads)
+    return loads

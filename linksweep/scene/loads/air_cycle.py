@@ -214,10 +214,10 @@ class DieselCycle(Cycle):
 CYCLES = (OttoCycle, DieselCycle)
 
 
-def pressure_over(cycle: Cycle, cylinder: PistonCylinder, angles: np.ndarray, turning: Number) -> xr.Variable:
+def pressure_over(cycle: Cycle, cylinder: PistonCylinder, angles: Any, turning: Number) -> Any:
     """Return the pressure [Pa] over the dims of all numbers that it takes, then theta2; labels are left out.
 
-    NaN for designs whose crank does not turn fully. The module's equations.
+    NaN for designs whose crank does not turn fully. The module's equations. Of numbers with slopes one with slopes.
     """
     numbers_of_cycle = (*bare(cycle).combustion, cycle.compression_ratio, cycle.gamma, cycle.intake_pressure)
     taken = (turning, cylinder.slide_angle, cylinder.offset, cylinder.crank, cylinder.rod, *numbers_of_cycle)
@@ -231,4 +231,5 @@ def pressure_over(cycle: Cycle, cylinder: PistonCylinder, angles: np.ndarray, tu
     opens = bottom + (360.0 if cycle.strokes == 4 else 0.0)  # from blow-down to here the valves are open
     later = np.where(turned < opens, cycle.intake_pressure, compression)
     later = np.where(np.isnan(opened), np.nan, later)
-    return xr.Variable(dims, np.where(turned < bottom, expansion, later))
+    pressure = np.where(turned < bottom, expansion, later)
+    return xr.Variable(dims, pressure) if isinstance(pressure, np.ndarray) else pressure

@@ -126,7 +126,7 @@ class GasPressure(ChangingLoad):
             pressure = revolution.sample(f"{path}.pressure", self.pressure, PRESSURE)
             return with_sound(self, pressure=pressure, crankcase=crankcase)
         cylinder = revolution.mechanism.engine_cylinder
-        pressure = pressure_over(self.cycle, cylinder, revolution.grid.angles, revolution.turning)
+        pressure = pressure_over(self.cycle, cylinder, revolution.angles, revolution.turning)
         return with_sound(self, crankcase=crankcase, in_cylinder=pressure)
 
     def jumps(self, mechanism: Mechanism) -> tuple[Number, ...]:

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-import xarray as xr
-
 from linksweep.base.degrees import cos_sin
 from linksweep.base.fields import POLAR_POINT, PairField, choice, field_problems, of_kind, parameter, word
 from linksweep.base.frozen import with_sound
@@ -204,9 +202,9 @@ class Load(ChangingLoad):
         values = {"force": self.force and tuple(force), "torque": torque}
         return with_sound(self, **values) if self.over is None else with_sound(self, **values, **AT_ANGLES)
 
-    def _positions(self, revolution: Revolution) -> tuple[str, xr.DataArray, Number]:
+    def _positions(self, revolution: Revolution) -> tuple[str, Any, Number]:
         """Return the kind of the positions, the positions over the angles, and 1 where the load acts, 0 elsewhere."""
-        stroke = stroke_of(revolution.scene, str(self.over))
+        stroke = revolution.stroke(str(self.over), stroke_of)
         quantity, slope = revolution.kinematics(stroke.quantity, stroke.slope)
         positions = stroke.start + stroke.sense * quantity
         if self.while_ is None:
@@ -215,12 +213,13 @@ class Load(ChangingLoad):
         acting = forward > 0.0 if self.while_ == stroke.words[0] else forward < 0.0
         return stroke.kind, positions, 1.0 * acting
 
-    def _followed(self, kind: str, positions: xr.DataArray, acts: Number, path: str, number: Any, rule: Rule) -> Any:
+    def _followed(self, kind: str, positions: Any, acts: Number, path: str, number: Any, rule: Rule) -> Any:
         """Return a force or torque over the angles; one that is 0 at every position stays a number."""
         if number is None or (not hasattr(number, "dims") and not callable(number) and number == 0.0):
             return number
-        followed: xr.DataArray = at_positions(path, number, rule, positions, kind, self.interpolation) * acts
-        return followed.fillna(0.0)  # where it cannot be assembled there is no position
+        followed: Any = at_positions(path, number, rule, positions, kind, self.interpolation) * acts
+        # where it cannot be assembled there is no position; a plain number acts at every angle
+        return followed.fillna(0.0) if hasattr(followed, "fillna") else followed
 
     def parameters(self, load: str, machine: Mapping[str, Any]) -> dict[str, Number]:
         """Return the load's numbers under the names that its rows take; `machine` has its link's centre of gravity."""

@@ -1,0 +1,212 @@
+"""Derivatives of single results to parameters: peaks, means, strokes, transmission angles, the flywheel.
+
+An extreme has the derivative of its quantity at its own angle (`linksweep.results.derivatives.of_peaks`), a mean that
+of its integrals (`of_means`), and others follow:
+
+    travel = q(θ_max) − q(θ_min)        d(travel)/dp = ∂q/∂p at θ_max − ∂q/∂p at θ_min
+
+A stroke is the travel of the slider, a swing that of the rocker.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from linksweep.analysis.design.geometry import geometry
+from linksweep.analysis.design.travel import rate_of
+from linksweep.analysis.drive.flywheel import flywheel_slopes
+from linksweep.base.validate import name_problems
+from linksweep.engine.run import Field
+from linksweep.results.compute import quantity_problems
+from linksweep.results.derivatives.of_means import mean_derivatives, moving_unknown
+from linksweep.results.derivatives.of_peaks import (
+    JUMP,
+    NONE,
+    OK,
+    TIE,
+    peak_derivatives,
+    turning_point_derivatives,
+)
+from linksweep.results.peaks import peaks
+from linksweep.scene.scene import Scene
+
+ENDS = ("peak", "max", "min", "mean", "rms")
+OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
+"""The position of which a closed form gives the travel."""
+TRAVEL = "_travel"
+FLYWHEEL = "flywheel_inertia"
+OF_MOTION = "transmission_angle"
+EQUAL = 1e-12
+"""Difference of the largest and minus the least value that tie for a signed quantity's peak, relative to it."""
+
+
+class Derived(NamedTuple):
+    """A result with its derivatives by parameter, and the status of these, each over the design dims."""
+
+    value: xr.DataArray
+    slopes: Mapping[str, xr.DataArray]
+    status: xr.DataArray
+
+
+def derived(
+    scene: Scene, name: str, to: tuple[str, ...], threads: int | None = None, fluctuation: float = 0.02
+) -> Derived:
+    """Return a result by its name, with its derivatives to parameters; `fluctuation` is that of a flywheel."""
+    if name in OUTPUT or name.endswith(TRAVEL):
+        return _travel(scene, name, to, threads)
+    if name == FLYWHEEL:
+        return _flywheel(scene, to, threads, fluctuation)
+    stem, end = split(scene, name)
+    if end in ("mean", "rms"):
+        return _mean(scene, stem, end, to, threads)
+    return _peak(scene, stem, end, to, threads)
+
+
+def result_names(scene: Scene) -> list[str]:
+    """Return the names of all results that have derivatives."""
+    quantities = scene.table.quantity
+    signed = [name for name, q in quantities.items() if not q.squared and name != "cond"]
+    positions = [n for n in signed if quantities[n].units in ("m", "degree") and rate_of(n) in scene.table.maker]
+    outputs = [name for name in OUTPUT if name in _findings(scene)]
+    others = [*(f"{name}{TRAVEL}" for name in positions), *([FLYWHEEL] if "reduced_torque" in quantities else [])]
+    return [*outputs, *others, *(f"{n}_{end}" for n in quantities if n != "cond" for end in _ends(scene, n))]
+
+
+def result_problems(scene: Scene, path: str, name: str) -> list[str]:
+    """Return the problem of a name that is no result with derivatives."""
+    known = result_names(scene)
+    if name in known or name in scene.table.quantity:
+        return []
+    stem = name.rpartition("_")[0]
+    problems = quantity_problems(path, stem if stem and name.rpartition("_")[2] in ENDS else name, known, scene)
+    return problems or name_problems(path, name, known)
+
+
+def split(scene: Scene, name: str) -> tuple[str, str]:
+    """Return quantity and ending of a result's name; a quantity alone stands for its peak."""
+    if name in scene.table.quantity:
+        return name, "peak"
+    stem, _, end = name.rpartition("_")
+    return stem, end
+
+
+def whole_name(scene: Scene, name: str) -> str:
+    """Return the name of a result; of a quantity that of its peak."""
+    return f"{name}_peak" if name in scene.table.quantity else name
+
+
+def _ends(scene: Scene, name: str) -> tuple[str, ...]:
+    return ("peak", "mean", "rms") if scene.table.quantity[name].squared else ENDS
+
+
+def _findings(scene: Scene) -> tuple[str, ...]:
+    checks = scene.mechanism.stroke_findings()
+    return tuple(name for function, numbers in checks for name in function(*map(_plain, numbers)))
+
+
+def _plain(number: Any) -> np.ndarray:
+    return np.asarray(getattr(number, "values", number), dtype=float).ravel()[:1]
+
+
+# ------------------------------------------------------------------------------------------------------- extremes
+
+
+def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int | None) -> Derived:
+    """Return a peak, a largest or a least value."""
+    ds, quantity = peaks(scene, of=[stem], threads=threads), scene.table.quantity[stem]
+    value = ds[f"{stem}_{end}"]
+    if quantity.squared:
+        own = partial(_extreme, scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to)
+        slopes, status = own(True)
+        return Derived(value, {path: slope / (2.0 * value) for path, slope in slopes.items()}, status)
+    sides = {word: (ds[f"{stem}_{word}_at"], ds[f"{stem}_{word}"], word == "max") for word in ("max", "min")}
+    if end != "peak":
+        at, extreme, largest = sides[end]
+        return Derived(value, *_extreme(scene, stem, at, extreme, to, largest))
+    (above, above_status), (below, below_status) = (
+        _extreme(scene, stem, at, extreme, to, largest) for at, extreme, largest in sides.values()
+    )
+    highest, lowest = sides["max"][1], sides["min"][1]
+    upper = abs(highest) >= abs(lowest)
+    tie = (abs(abs(highest) - abs(lowest)) <= EQUAL * value) & (sides["max"][0] != sides["min"][0])
+    signs = np.sign(highest), np.sign(lowest)
+    slopes = {path: xr.where(upper, signs[0] * above[path], signs[1] * below[path]) for path in to}
+    unlike = sum(abs(signs[0] * above[path] - signs[1] * below[path]) for path in to) > 1e-8 * sum(
+        abs(slope) for slope in slopes.values()
+    )
+    status = xr.where(upper, above_status, below_status)
+    status = xr.where(tie & unlike, TIE, status)
+    return Derived(value, {path: slope.where(status == OK) for path, slope in slopes.items()}, status)
+
+
+def _extreme(
+    scene: Scene, name: str, at: xr.DataArray, value: xr.DataArray, to: tuple[str, ...], largest: bool
+) -> tuple[dict[str, xr.DataArray], xr.DataArray]:
+    """Return the derivatives of the largest (or least) value of a quantity, and their status."""
+    angle, height = (Field(tuple(map(str, array.dims)), array.values) for array in (at, value))
+    of_extreme = peak_derivatives(scene, name, angle, height, to, largest)
+    dims = of_extreme.pairs.dims
+    arrays = (xr.DataArray(of_extreme.pairs.field(row).values, dims=dims) for row in of_extreme.slopes)
+    status = xr.DataArray(of_extreme.pairs.field(of_extreme.status).values, dims=dims)
+    return dict(zip(to, arrays, strict=True)), status
+
+
+def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
+    """Return a stroke or swing, or the travel of a position."""
+    alone = replace(scene, omega2=1.0, alpha2=0.0, loads=())
+    position = OUTPUT.get(name) or name.removesuffix(TRAVEL)
+    motion = geometry(alone, None if name in OUTPUT else [position], threads=threads)
+    value = motion[name]
+    if name in OUTPUT:
+        ends = motion["reversal_angle"]
+        (dim,) = {*map(str, ends.dims)} & {"limit", "reversal"}
+        first, last = (ends.isel({dim: k}, drop=True) for k in (0, 1))
+    else:
+        first, last = motion[f"{position}_max_at"], motion[f"{position}_min_at"]
+    own = tuple(path for path in to if path in alone.numbers)
+    (q_first, ahead), (q_last, behind) = (_turning_point(alone, position, at, own) for at in (first, last))
+    way = q_first - q_last
+    # an angle may pass 180 degrees on its way
+    sense = xr.where(abs(np.mod(way - value + 180.0, 360.0) - 180.0) < 1e-6, 1.0, -1.0)
+    sense = xr.DataArray(sense) if scene.table.quantity[position].units == "degree" else np.sign(way)
+    slopes = {p: xr.DataArray(sense * (ahead[p] - behind[p])) if p in own else 0.0 * value for p in to}
+    return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
+
+
+def _turning_point(
+    scene: Scene, name: str, at: xr.DataArray, to: tuple[str, ...]
+) -> tuple[xr.DataArray, dict[str, xr.DataArray]]:
+    """Return a position where it turns round, and its derivatives there."""
+    pairs, value, slopes = turning_point_derivatives(scene, name, Field(tuple(map(str, at.dims)), at.values), to)
+    position, *others = (xr.DataArray(pairs.field(row).values, dims=pairs.dims) for row in (value, *slopes))
+    return position, dict(zip(to, others, strict=True))
+
+
+# ---------------------------------------------------------------------------------------------------------- means
+
+
+def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int | None) -> Derived:
+    """Return a mean or root mean square over time."""
+    name = f"{stem}_{end}"
+    ds, quantity = peaks(scene, of=[name], threads=threads), scene.table.quantity[stem]
+    value = ds[name]
+    squared = end == "rms" and quantity.squared
+    of, power = (quantity.squared, 1) if squared else (stem, 2 if end == "rms" else 1)
+    fields = mean_derivatives(scene, str(of), power, to, threads)
+    slopes = {path: xr.DataArray(field.values, dims=field.dims) for path, field in fields.items()}
+    if end == "rms":
+        slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
+    status = xr.where(np.isfinite(value), JUMP if moving_unknown(scene, to) else OK, NONE)
+    return Derived(value, {path: slope.where(status == OK) for path, slope in slopes.items()}, status)
+
+
+def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuation: float) -> Derived:
+    """Return the flywheel for a coefficient of fluctuation."""
+    value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation, threads=threads)
+    return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))

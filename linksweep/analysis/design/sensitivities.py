@@ -1,0 +1,186 @@
+"""Sensitivities: how much each parameter of a scene moves a result, by exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, whole_name
+from linksweep.base.validate import UNITS, count_problems, name_problems, quote, refuse
+from linksweep.engine.run import Field
+from linksweep.results.compute import angles_of, quantity_problems, requested, require_scene
+from linksweep.results.dataset import design_coordinates, flags, index_coordinate, provenance, status_attributes
+from linksweep.results.derivatives.of_peaks import MEANINGS
+from linksweep.results.derivatives.samples import sample_derivatives
+from linksweep.scene.derivatives.differentiated import number_problem
+from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.parameters import free
+from linksweep.scene.scene import Scene
+
+PARAMETER = "parameter"
+"""Dimension of the parameters of a result."""
+
+
+def sensitivities(
+    scene: Scene,
+    of: str | Iterable[str] | None = None,
+    *,
+    to: str | Iterable[str] | None = None,
+    theta2: ArrayLike | None = None,
+    theta: ArrayLike | None = None,
+    fluctuation: float = 0.02,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Compute the derivatives of results to a scene's parameters, and their elasticities.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of any number of designs.
+    of : str or iterable of str, default None
+        Names of results: "F32_peak", "T12_max", "T12_min", "F14_mean", "T12_rms", of a quantity alone its peak;
+        "stroke" or "swing", "x_ram_travel", "transmission_angle_min", "flywheel_inertia". With angles, names of
+        quantities. None for the peaks of all pin forces and of the drive.
+    to : str or iterable of str, default None
+        Paths of parameters: "coupler.length", "loads[1].force[2]", "gravity[2]". None for all that are numbers, without
+        coefficients of friction that are 0.
+    theta2 : int or array_like, default None
+        Count of crank angles, or angles [degree]: the derivatives of quantities at these angles instead.
+    theta : int or array_like, default None
+        Count of positions of a car in a loop, or positions [degree], in place of theta2.
+    fluctuation : float, default 0.02
+        Coefficient of speed fluctuation of "flywheel_inertia" [1].
+    threads : int, default None
+        Largest number of threads; None for all cores.
+
+    Returns
+    -------
+    Dataset
+        Over the design dims, for each result such as F32_peak: its value, and over the dim `parameter`
+        `F32_peak_derivative`, per unit of the parameter as `parameter_unit` states it, and `F32_peak_elasticity` [1],
+        the percent by which the result grows for one percent of the parameter. `F32_peak_status` states whether a peak
+        has derivatives: "ok"; "tie", of two equal rises that change differently; "moving_jump", at a jump, a kink or an
+        end of the motion whose way is not known; "unbounded"; "no_peak". Where it is not ok they are NaN. With angles
+        there is the `status` of a sweep.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, or a parameter is no number, changes with the angle, or is a coefficient of friction of 0.
+
+    Notes
+    -----
+    Derivatives are exact: of the operations themselves, to rounding. A peak has that of its quantity at its own angle,
+    to 1e-8. Friction, jumps and magnitudes have one-sided derivatives. Equations and sources:
+    `linksweep.engine.trace.gradient`, `linksweep.results.derivatives.of_peaks`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> press = ls.example("press")
+    >>> ds = ls.sensitivities(press, of=["F32_peak"], to=["coupler.length", "ground"])
+    >>> dict(ds.sizes), ds.parameter_unit.values.tolist()
+    ({'parameter': 2}, ['m', 'm'])
+    >>> bool(abs(ds.F32_peak_elasticity.sel(parameter="ground")) > 1)
+    True
+    """
+    require_scene(scene)
+    refuse(count_problems("threads", threads))
+    angles = angles_of(scene, theta2=theta2, theta=theta)
+    scene = in_memory(scene)
+    paths = parameters_of(scene, to)
+    if angles is not None:
+        return _of_samples(scene, angles, of, paths, threads)
+    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of)
+    refuse([problem for name in names for problem in result_problems(scene, "of", name)])
+    variables: dict[str, Any] = {}
+    for name in dict.fromkeys(whole_name(scene, name) for name in names):
+        variables |= _variables(scene, name, derived(scene, name, paths, threads, fluctuation=fluctuation))
+    command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)})"
+    return _labelled(scene, variables, paths, command)
+
+
+def parameters_of(scene: Scene, to: str | Iterable[str] | None = None) -> tuple[str, ...]:
+    """Return the paths of parameters in a request; by default of all that have derivatives."""
+    own = free(scene)
+    if to is None:
+        return tuple(path for path in own if not number_problem(scene, path))
+    paths = requested("to", to)
+    known = [problem for path in paths for problem in name_problems("to", path, own)]
+    refuse(known or [problem for path in paths if (problem := number_problem(scene, path))])
+    return tuple(paths)
+
+
+def _variables(scene: Scene, name: str, result: Derived) -> dict[str, xr.DataArray]:
+    """Return the variables of one result."""
+    units, text = str(result.value.attrs.get("units", "")), str(result.value.attrs.get("long_name", name))
+    value = result.value.reset_coords(drop=True)
+    slopes = stacked(result.slopes)
+    numbers = stacked({path: values_of(scene, path) for path in result.slopes})
+    with np.errstate(all="ignore"):
+        elasticity = (slopes * numbers / value).transpose(..., PARAMETER)
+    per = "per unit of the parameter (parameter_unit)"
+    words = flags(f"whether these derivatives exist: {name}", MEANINGS)
+    return {
+        name: value.assign_attrs(units=units, long_name=text),
+        f"{name}_derivative": slopes.assign_attrs(units=units, long_name=f"derivative, {per}, of: {text}"),
+        f"{name}_elasticity": elasticity.assign_attrs(units="1", long_name=f"percent per percent of: {text}"),
+        f"{name}_status": result.status.astype(np.int8).reset_coords(drop=True).assign_attrs(words),
+    }
+
+
+def stacked(by_path: Mapping[str, xr.DataArray]) -> xr.DataArray:
+    """Return arrays by parameter as one over the dim `parameter`, the last."""
+    arrays = xr.broadcast(*(xr.DataArray(array).reset_coords(drop=True).drop_attrs() for array in by_path.values()))
+    index = xr.Variable(PARAMETER, list(by_path))
+    return xr.concat(arrays, index, coords="minimal", compat="override", join="override").transpose(..., PARAMETER)
+
+
+def values_of(scene: Scene, path: str) -> xr.DataArray:
+    """Return a parameter of a scene as an array over its dims."""
+    value, _ = free(scene)[path]
+    return xr.DataArray(0.0 if value is None else value).reset_coords(drop=True)
+
+
+def _labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...], command: str) -> xr.Dataset:
+    own = free(scene)
+    units = {"long_name": "unit of the parameter, per which the derivatives are"}
+    coordinates = design_coordinates(scene)
+    labels = {
+        PARAMETER: xr.Variable(PARAMETER, list(paths), {"long_name": "path of the parameter"}),
+        "parameter_unit": xr.Variable(PARAMETER, [UNITS[own[path][1]] for path in paths], units),
+    }
+    return xr.Dataset(variables, coordinates | labels, provenance(scene, command, coordinates))
+
+
+def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...], threads: int | None) -> xr.Dataset:
+    """Return the derivatives of quantities at crank angles."""
+    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of)
+    known = [name for name in scene.table.quantity if name != "cond"]
+    refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
+    grid = scene.grid(angles)
+    samples = sample_derivatives(scene, grid, tuple(names), paths, threads)
+    index = index_coordinate(scene, grid)
+
+    def array(field: Field) -> xr.DataArray:
+        return xr.DataArray(xr.Variable(field.dims, field.values)).assign_coords(
+            {dim: variable for dim, variable in index.items() if dim in field.dims}
+        )
+
+    variables: dict[str, Any] = {}
+    for name in names:
+        quantity = scene.table.quantity[name]
+        value = array(samples.values[name]).assign_attrs(units=quantity.units, long_name=quantity.long_name)
+        slopes = {path: array(samples.derivatives[name, path]) for path in paths}
+        own = _variables(scene, name, Derived(value, slopes, xr.DataArray(0)))
+        variables |= {key: variable for key, variable in own.items() if key != f"{name}_status"}
+    status = samples.status
+    words = status_attributes(scene.mechanism.status_meanings)
+    variables["status"] = xr.Variable(status.dims, status.values, words)
+    count = angles if isinstance(angles, int | np.integer) else f"<{np.size(angles)} angles>"
+    command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)}, {grid.dim}={quote(count)})"
+    return _labelled(scene, variables, paths, command)

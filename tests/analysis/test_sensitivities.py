@@ -1,0 +1,302 @@
+"""Sensitivities against 60-digit differences of the references, closed forms and virtual work; ties and jumps."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import oracle
+import oracle_inverted_slider_crank as inverted
+import oracle_slider_crank as slider
+import pytest
+import xarray as xr
+from long import long_but
+from references import mp
+from shifted import derivative, shifted, step_of
+
+import linksweep as ls
+from linksweep.engine.run import OPERATORS, interpret
+from linksweep.engine.trace.gradient import gradient
+from linksweep.engine.trace.graph import LOW_WORDS
+from linksweep.engine.trace.plan import Plan, plan
+from linksweep.scene.examples import names as examples
+from linksweep.scene.parameters import free, replaced
+
+ORACLES = {"four-bar": oracle, "slider-crank": slider, "inverted slider-crank": inverted}
+MP = {
+    "+": lambda x, y: x + y,
+    "-": lambda x, y: x - y,
+    "*": lambda x, y: x * y,
+    "/": lambda x, y: x / y,
+    "<": lambda x, y: x < y,
+    "negate": lambda x: -x,
+    "abs": abs,
+    "sqrt": mp.sqrt,
+    "atan2": mp.atan2,
+    "where": lambda c, x, y: x if c else y,
+    **dict.fromkeys(LOW_WORDS, lambda x, y: mp.mpf(0)),
+}
+
+
+def random_cases(kind: str, seed: int, count: int):
+    """Random reference data with an angle [degree] away from toggles."""
+    rng, of = np.random.default_rng(seed), ORACLES[kind]
+    while count:
+        data = of.random_data(rng)
+        try:
+            angle = of.random_theta2(rng, data)
+            of.solve(data, angle)
+        except ValueError:
+            continue
+        count -= 1
+        yield of, data, angle
+
+
+def names_of(result) -> list[str]:
+    return [name for name in result if name[:1] in "FT" and name[-1] in "xy234"] + ["omega3", "alpha3"]
+
+
+def parameters_in(scene, data) -> list[str]:
+    """Parameters of a scene that have derivatives and are in the reference's data."""
+    paths = []
+    for path in ls.sensitivities(scene, of=["T12"] if scene.drive == "crank" else None, theta2=[0.0]).parameter.values:
+        try:
+            step_of(data, path)
+        except AttributeError:
+            continue
+        paths.append(path)
+    return paths
+
+
+@pytest.mark.parametrize("kind", ORACLES)
+@pytest.mark.parametrize("seed", long_but(range(4), 0))
+def test_derivatives_of_samples_are_those_of_60_digits(kind, seed):
+    for of, data, angle in random_cases(kind, seed, 1):
+        scene = of.to_scene(data)
+        exact = of.solve(data, angle)
+        names = [name for name in names_of(exact) if name in scene.table.quantity]
+        paths = parameters_in(scene, data)
+        ds = ls.sensitivities(scene, of=names, to=paths, theta2=[angle])
+        assert len(paths) > 12 and len(names) > 8
+        for path in paths:
+            step = step_of(data, path)
+            after, before = (of.solve(shifted(data, path, sign * step), angle) for sign in (1, -1))
+            for name in names:
+                expected = float((after[name] - before[name]) / (2 * step))
+                ours = ds[f"{name}_derivative"].sel(parameter=path).item()
+                slopes = [abs(after[other] - before[other]) / (2 * step) for other in names if other[0] == name[0]]
+                rounding = 1e-15 * max(abs(exact[other]) for other in names if other[0] == name[0]) * 1e-24 / step
+                tolerance = (1e-12 * max(slopes) + rounding) / min(of.toggle_margin(data, angle), 1.0)
+                assert abs(ours - expected) <= tolerance, (kind, seed, path, name)
+
+
+def in_60_digits(value, at: dict, node) -> float:
+    """The derivative of a traced value to an input, by a difference of its operations in 60 digits."""
+    exact, nodes = {one: mp.mpf(float(number)) for one, number in at.items()}, Plan("", {"q": value}, ()).nodes
+    step = mp.mpf("1e-24") * (abs(exact[node]) or 1)
+    after, before = (interpret(nodes, exact | {node: exact[node] + away}, MP)[value] for away in (step, -step))
+    return float((after - before) / (2 * step))
+
+
+@pytest.mark.parametrize("name", long_but(sorted(examples()), "engine", "scotch-yoke", "wipers"))
+def test_gradients_of_the_traced_operations_are_those_of_60_digits(name):
+    """The first pin force and the drive of every machine to every input, at an arbitrary angle."""
+    scene = ls.example(name)
+    grid = scene.grid([77.7])
+    sampled = scene.at(grid)
+    inputs = sampled.inputs
+    forms = tuple((own, field.dims) for own, field in inputs.fields.items())
+    rows = {row: float(number[0]) for row, number in zip(grid.names, grid.table, strict=True)}
+    every = scene.mechanism.peak_quantities(scene.drive)
+    of = tuple(dict.fromkeys((every[0], every[-1])))
+    request = plan(scene.table, of, (*forms, *((row, (grid.dim,)) for row in rows)))
+    numbers = {own: float(np.ravel(field.values)[0]) for own, field in inputs.fields.items()} | rows
+    nodes = {node.value: node for node in request.nodes if node.operator == "input"}
+    # low words take for granted that a pin, its distance and its direction change together, and a branch not at all
+    words = ("branch", "cos", "sin", "_lo", "_distance")
+    paired = {own.removesuffix("_lo") for own in numbers if own.endswith("_lo")}
+    active = [node for own, node in nodes.items() if not any(word in own for word in words) and own not in paired]
+    for quantity in of:
+        value = request.outputs[quantity]
+        slopes = gradient(value, active)
+        at = {node: np.float64(numbers[own]) for own, node in nodes.items()}
+        ours = interpret(Plan("", {n.value: slope for n, slope in slopes.items()}, ()).nodes, dict(at), OPERATORS)
+        expected = {node: in_60_digits(value, at, node) for node in slopes}
+        largest = max(abs(expected[node] * (at[node] or 1.0)) for node in slopes)
+        for node, slope in slopes.items():
+            error = abs(float(ours[slope]) - expected[node]) * abs(at[node] or 1.0)
+            assert error <= 1e-12 * largest, (name, quantity, node.value)
+
+
+def differences(scene, path: str, angles, names):
+    """Fourth-order differences of samples to a parameter, and the step."""
+    value, _ = free(scene)[path]
+    step = 1e-4 * (abs(value) or 1.0)
+    moved = {k: ls.sweep(replaced(scene, {path: value + k * step}), angles, of=names) for k in (-2, -1, 1, 2)}
+    return {n: (moved[-2][n] - 8 * moved[-1][n] + 8 * moved[1][n] - moved[2][n]) / (12 * step) for n in names}, step
+
+
+LINKS = {"crank": ls.Link(0.08, 0.3, 1e-3, 0.03, 20.0), "coupler": ls.Link(0.22, 0.7, 3e-3, 0.1, 5.0)}
+FOUR = ls.FourBar(**LINKS, rocker=ls.Link(0.18, 0.5, 2e-3, 0.08, -4.0), ground=0.2, ground_angle=12.0)
+PISTON = ls.SliderCrank(
+    LINKS["crank"],
+    LINKS["coupler"],
+    slider_mass=0.5,
+    offset=0.01,
+    slide_angle=-7.0,
+    friction=0.12,
+    slider_cg_distance=0.02,
+)
+ENDS = ("ground", 0.3, 0.05), ("rocker", 0.1, 25.0)
+PUSH = xr.DataArray([-5e3, -800.0, 0.0, 0.0], {"position": [0.0, 0.05, 0.1, 0.3]}, "position")
+THETA = np.arange(0.0, 360.0, 5.0)
+TORQUE = xr.DataArray(3.0 + np.cos(np.radians(3 * THETA)), {"theta2": THETA}, "theta2")
+LOADS = {
+    "spring": (FOUR, ls.Spring(*ENDS, rate=900.0, free_length=0.06)),
+    "damper": (FOUR, ls.Damper(*ENDS, coefficient=60.0)),
+    "torsion spring": (FOUR, ls.TorsionSpring("ground", "rocker", rate=5.0, free_angle=80.0)),
+    "torsion damper": (FOUR, ls.TorsionDamper("crank", "coupler", coefficient=0.3)),
+    "cg": (FOUR, ls.Load("coupler", force=(30.0, -80.0), at=(0.05, 15.0), frame="link", origin="cg")),
+    "over theta2": (FOUR, ls.Load("rocker", torque=TORQUE)),
+    "function": (FOUR, ls.Load("rocker", torque=lambda theta2: 3.0 + np.cos(np.radians(2 * theta2)))),
+    "pressure": (PISTON, ls.GasPressure(bore=0.08, pressure=3e5)),
+    "Otto": (PISTON, ls.GasPressure(bore=0.08, pressure=ls.OttoCycle(compression_ratio=9.0, peak_pressure=5e6))),
+    "Diesel": (PISTON, ls.GasPressure(bore=0.08, pressure=ls.DieselCycle(compression_ratio=18.0, cutoff_ratio=2.0))),
+    "position": (PISTON, ls.Load("slider", force=PUSH, over="slider.to_end", interpolation="pchip")),
+    "function of position": (
+        PISTON,
+        ls.Load("slider", force=lambda x: 400.0 * np.sin(20.0 * x), over="slider.position"),
+    ),
+    "rocker's angle": (
+        FOUR,
+        ls.Load("rocker", torque=lambda angle: 0.1 * angle, over="rocker.angle", while_="clockwise"),
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", long_but(LOADS, "spring", "Otto", "position", "rocker's angle", "over theta2"))
+def test_every_kind_of_load_has_the_derivatives_of_differences(kind):
+    mechanism, load = LOADS[kind]
+    speed = {"omega2": TORQUE * 10.0} if kind == "over theta2" else {"omega2": 30.0, "alpha2": 4.0}
+    scene = ls.Scene(mechanism, **speed, gravity=(1.0, -9.81), loads=[load])
+    angles, names = [33.0, 101.0, 260.0], ["F32x", "F14y", "T12"]
+    ds = ls.sensitivities(scene, of=names, theta2=angles)
+    assert {"crank.length", "gravity[2]", "ground" if mechanism is FOUR else "offset"} <= {
+        *ds.parameter.values.tolist()
+    }
+    for path in ds.parameter.values:
+        if (path == "alpha2" and scene.alpha2 is None) or (path.endswith("at[1]") and free(scene)[path][0] == 0.0):
+            continue  # no difference on both sides
+        expected, step = differences(scene, path, angles, names)
+        for name in names:
+            ours = ds[f"{name}_derivative"].sel(parameter=path)
+            rounding = 1e-12 * float(abs(ds[name]).max()) / step
+            error = float(abs(ours - expected[name]).max())
+            assert error <= 1e-6 * float(abs(expected[name]).max()) + rounding, (path, name)
+
+
+def test_a_car_in_a_loop_has_the_derivatives_of_its_closed_form():
+    """N = m (v²/R + g cos θ) with v² = v0² − 2gR(1 − cos θ)."""
+    R, m, v, g, theta = 30.0, 700.0, 60.0, 9.81, np.radians(50.0)
+    car = ls.Scene(ls.LoopTrack(radius=R, mass=m), speed=v, gravity=(0.0, -g), profile="energy")
+    ds = ls.sensitivities(car, of=["normal_force"], to=["radius", "mass", "speed"], theta=[50.0])
+    expected = [-m * v**2 / R**2, v**2 / R + g * (3 * math.cos(theta) - 2), 2 * m * v / R]
+    assert ds.normal_force_derivative.values[0] == pytest.approx(expected, rel=1e-13)
+
+
+# ----------------------------------------------------------------------------------------------------------- peaks
+
+
+def peak_in_60_digits(of, data, name, angle):
+    """The largest value of a magnitude about an angle [degree], where its slope is zero."""
+    step = mp.mpf("1e-18")
+    place = mp.mpf(angle)
+
+    def slope(at):
+        return (of.solve(data, at + step)[name] - of.solve(data, at - step)[name]) / (2 * step)
+
+    h = mp.mpf("1e-6")
+    for _ in range(6):
+        middle = slope(place)
+        place -= middle * 2 * h / (slope(place + h) - slope(place - h))
+        h = h / 100
+    return of.solve(data, place)[name]
+
+
+@pytest.mark.parametrize("kind", ["four-bar", "inverted slider-crank"])
+@pytest.mark.parametrize("seed", long_but(range(3, 8), 3))
+def test_derivatives_of_exact_peaks_are_those_of_60_digits(kind, seed):
+    of, data, _ = next(random_cases(kind, seed, 1))
+    scene = of.to_scene(data)
+    paths = ["crank.length", "rocker.mass", "omega2"]
+    ds = ls.sensitivities(scene, of=["F14_peak"], to=paths)
+    if ds.F14_peak_status != 0:
+        pytest.skip("no smooth peak")
+    angle = float(ls.peaks(scene, of=["F14"]).F14_peak_at)
+    exact = [float(derivative(lambda d: peak_in_60_digits(of, d, "F14", angle), data, path)) for path in paths]
+    assert ds.F14_peak_derivative.values == pytest.approx(exact, rel=1e-8, abs=1e-8 * max(map(abs, exact)))
+
+
+def test_two_equal_rises_that_change_differently_have_no_derivative():
+    """A centric slider-crank's pin force is as high at θ as at −θ; an offset raises one and lowers the other."""
+    machine = replace(PISTON, offset=0.0, slide_angle=0.0, friction=0.0)
+    links = {name: replace(getattr(machine, name), cg_angle=0.0) for name in ("crank", "rod")}
+    scene = ls.Scene(
+        replace(machine, **links, slider_cg_distance=0.0), omega2=30.0, loads=[ls.GasPressure(0.01, 1.2e6)]
+    )
+    at = float(ls.peaks(scene, of=["F12"]).F12_peak_at)
+    assert 1.0 < at % 180.0 < 179.0
+    ds = ls.sensitivities(scene, of=["F12_peak"], to=["offset"])
+    assert int(ds.F12_peak_status) == 1 and np.isnan(ds.F12_peak_derivative).all()
+    assert int(ls.sensitivities(scene, of=["F12_peak"], to=["rod.mass", "omega2"]).F12_peak_status) == 0
+
+
+def test_a_peak_at_a_dead_centre_moves_with_it():
+    """The peak is at top dead centre, where combustion makes it jump, and turns with the guide."""
+    scene = ls.example("engine")
+    ds = ls.sensitivities(scene, of=["F12_peak"], to=["slide_angle", "rod.length"])
+    assert int(ds.F12_peak_status) == 0
+    for path in ("slide_angle", "rod.length"):
+        value = free(scene)[path][0]
+        h = 1e-5 * abs(value)
+        above, below = (float(ls.peaks(replaced(scene, {path: value + s * h}), of=["F12"]).F12_peak) for s in (1, -1))
+        assert float(ds.F12_peak_derivative.sel(parameter=path)) == pytest.approx((above - below) / (2 * h), rel=1e-5)
+
+
+def test_a_stroke_has_the_derivative_of_its_closed_form():
+    """stroke = √((b + a)² − e²) − √((b − a)² − e²)."""
+    a, b, e = 0.08, 0.22, 0.01
+    scene = ls.Scene(PISTON, omega2=30.0)
+    ds = ls.sensitivities(scene, of=["stroke"], to=["crank.length", "rod.length", "offset"])
+    out, back = math.hypot(b + a, 0) ** 2 - e * e, (b - a) ** 2 - e * e
+    expected = [
+        (b + a) / math.sqrt(out) + (b - a) / math.sqrt(back),
+        (b + a) / math.sqrt(out) - (b - a) / math.sqrt(back),
+        -e / math.sqrt(out) + e / math.sqrt(back),
+    ]
+    assert ds.stroke_derivative.values == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_mean_torque_of_a_drive_is_the_work_of_the_loads():
+    """Over a cycle a conservative machine takes no work: the mean torque and its derivatives are those of the loads."""
+    scene = ls.Scene(FOUR, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("crank", torque=-7.0)])
+    ds = ls.sensitivities(scene, of=["T12_mean"], to=["loads[1].torque", "coupler.mass", "ground", "omega2"])
+    assert ds.T12_mean_derivative.values == pytest.approx([-1.0, 0.0, 0.0, 0.0], abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("to", "words"),
+    [
+        ("coupler.lenght", "did you mean"),
+        ("friction", "friction begins to act"),
+        ("omega2", "changes over the cycle"),
+    ],
+)
+def test_refusals_name_the_parameter(to, words):
+    scene = ls.Scene(replace(PISTON, friction=0.0), omega2=TORQUE * 10.0)
+    with pytest.raises(ValueError, match=words):
+        ls.sensitivities(scene, of=["T12"], to=[to])
+
+
+def test_a_result_that_is_unknown_is_refused():
+    with pytest.raises(ValueError, match="F32_paek"):
+        ls.sensitivities(ls.example("press"), of=["F32_paek"])
