@@ -300,14 +300,14 @@ def numbers(owner: Any, prefix: str = "") -> Numbers:
 
     Numbers that are the same for all designs are left out.
     """
-    found: Numbers = []
+    listed: Numbers = []
     for name, kind, _ in declared(owner):
         value = getattr(owner, name)
         if type(value) in (float, str, type(None)):  # most fields: one look is enough
-            found += [(prefix + name, value, kind.rule.kind)] if type(kind) is NumberField else []
+            listed += [(prefix + name, value, kind.rule.kind)] if type(kind) is NumberField else []
         else:
-            found += numbers_in(prefix + name, value, kind)
-    return found
+            listed += numbers_in(prefix + name, value, kind)
+    return listed
 
 
 def below(path: str, kind: FieldKind) -> str:

@@ -239,7 +239,7 @@ def test_each_mechanism_takes_its_own_words():
         "speed: missing; give LoopTrack a number in m/s",
     ]
     assert refusal(ls.Scene, four_bar, speed=3.0) == [
-        "speed = 3.0: is no parameter of FourBar; give its own: omega2, alpha2, drive, loads, gravity",
+        "speed = 3.0: is no parameter of FourBar; give its own: omega2, alpha2, drive, loads, section, gravity",
         "omega2: missing; give FourBar a number in rad/s",
     ]
     assert refusal(ls.Scene, CAR, speed=3.0, profile="energie") == [

@@ -321,7 +321,7 @@ def register():
 
 @pytest.fixture(autouse=True)
 def no_server(monkeypatch):
-    monkeypatch.setattr("linksweep.cli.commands.serve", lambda scene, **options: print(ls.explore(scene)))
+    monkeypatch.setattr("linksweep.explorer.explore.serve", lambda scene, **options: print(ls.explore(scene)))
 
 
 @pytest.fixture(autouse=True)

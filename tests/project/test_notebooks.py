@@ -1,4 +1,4 @@
-"""What notebooks need of the package; the build of the documentation executes them all, and looks at their outputs."""
+"""Notebooks find in the package what they need; the documentation's build executes them and looks at their outputs."""
 
 import os
 import subprocess

@@ -186,7 +186,7 @@ def test_crank_angles_that_are_some(theta2, angles):
         (lambda: ls.sweep(SCENE, 8, of=["wibble"]), "of: nothing is named 'wibble'; there are theta3, theta4, "),
         (
             lambda: ls.sweep(SCENE, 8, of=["F99"]),
-            "of: nothing is named 'F99'; there are F12, F21, F32, F23, F43, F34 and 88 others: see ls.quantities(scene",
+            "of: nothing is named 'F99'; there are F12, F21, F32, F23, F43, F34 and 94 others: see ls.quantities(scene",
         ),
         (lambda: ls.sweep(SCENE, 8, of=[5]), "of = 5: must be names of quantities"),
         (lambda: ls.sweep(SCENE, 8, of=[""]), "of: nothing is named ''; there are theta3, theta4, "),

@@ -30,17 +30,17 @@ def programs(plan: Plan) -> tuple[Program, ...]:
     """Return the programs of all that a plan stores, those of fewer dims first: later ones read what they need."""
     late = set(plan.late)
     work = [node for node in plan.nodes if node.operands and node not in late]
-    wanted = {*plan.stored} | {x for node in work for x in node.operands if x.dims != node.dims}
+    output = {*plan.stored} | {x for node in work for x in node.operands if x.dims != node.dims}
     groups = sorted({node.dims for node in work}, key=lambda dims: (len(dims), sorted(dims)))
-    return tuple(_program(plan, [node for node in work if node.dims == dims], wanted) for dims in groups)
+    return tuple(_program(plan, [node for node in work if node.dims == dims], output) for dims in groups)
 
 
-def _program(plan: Plan, work: list[Node], wanted: set[Node]) -> Program:
+def _program(plan: Plan, work: list[Node], output: set[Node]) -> Program:
     own = set(work)
     read = dict.fromkeys(x for node in work for x in node.operands if x not in own)
     numbers = tuple(node for node in read if not node.dims)
     rows = tuple(node for node in read if node.dims)
-    results = tuple(node for node in work if node in wanted)
+    results = tuple(node for node in work if node in output)
     registers = _Registers(work, numbers)
     place = {node: k for k, node in enumerate((*rows, *results))}
     code: list[list[int]] = []
@@ -51,7 +51,7 @@ def _program(plan: Plan, work: list[Node], wanted: set[Node]) -> Program:
         operands = [registers.of[x] for x in node.operands]
         registers.release(node.operands, step)
         code.append([CODES[node.operator], registers.take(node), *operands])
-        if node in wanted:
+        if node in output:
             code.append([CODES["store"], place[node], registers.of[node]])
         registers.release([node], step)
     table = np.array([row + [0] * (COLUMNS - len(row)) for row in code], dtype=np.int64)

@@ -182,8 +182,8 @@ class Evaluators:
         here = self._emitted(vectors, self._row(vectors, constants, self.constants) | place)
         number, chosen = vectors.load(tag.data, at), here[self.signals[0]]
         for k, signal in enumerate(self.signals[1:], 1):
-            asked = vectors.operators["=="](number, k)
-            chosen = vectors.operators["where"](asked, here[signal], chosen)
+            this_one = vectors.operators["=="](number, k)
+            chosen = vectors.operators["where"](this_one, here[signal], chosen)
         vectors.store(chosen, values.data, at)
 
     def _emitted(self, vectors: Instructions, values: Values) -> Values:
