@@ -27,7 +27,7 @@ from linksweep.cli.commands import (
     write_figure,
 )
 from linksweep.files.atomic import target_of
-from linksweep.files.netcdf import RESULTS, SCENES
+from linksweep.files.netcdf import RESULTS, SCENES, TABLES
 from linksweep.scene.examples import names, title
 from linksweep.tables.answers import answer_of
 
@@ -97,14 +97,14 @@ def _parser() -> argparse.ArgumentParser:
 
     cycle = add("sweep", _sweep, "one revolution to a file, and to a figure")
     _add_angles(cycle, "number of angles (720)", default=720)
-    cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc or .csv")
+    cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc, .csv or .xlsx")
     add_plot(cycle)
     _add_of(cycle, "--outputs")
 
     worst = add("peaks", _peaks, "the worst of each pin force and of the torque")
     _add_angles(worst, "number of angles: the largest of these samples, not the exact peaks")
     _add_of(worst)
-    worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc or .csv")
+    worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc, .csv or .xlsx")
 
     listed = add("quantities", _quantities, "all quantities of sweep and peaks: names, units, meanings")
     listed.add_argument("words", nargs="*", help="only those with these words in name, unit or meaning, such as force")
@@ -113,6 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     many.add_argument("-o", "--output", type=Path, required=True, help="NetCDF file to write: .nc")
     _add_of(many)
     chunks = "designs computed at a time (50000; 1000 where loads or speeds change with the angle)"
+    many.add_argument("--table", type=a_file(tuple(TABLES)), metavar="FILE", help="table of it to write: .csv or .xlsx")
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
 
     add("check", _check, "assembly, Grashof class, limits, toggles")
@@ -186,7 +187,11 @@ def _study(options: argparse.Namespace) -> None:
     there = options.output.exists()
     with ls.study(scene, options.output, of=options.of, chunk=options.chunk) as ds:
         print(answer_of(ds))
+        if options.table:
+            ls.save(ds, options.table)
     print(f"\n{'was done already' if there else 'written'}: {options.output}")
+    if options.table:
+        print(f"written: {options.table}")
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -203,7 +208,7 @@ def _report(options: argparse.Namespace) -> None:
 def _stem(text: str) -> Path:
     """Return the name of files that differ by their endings."""
     path = Path(text)
-    if path.suffix.lower() in (*RESULTS, *SCENES, *PICTURES, *FILMS, ".xlsx"):
+    if path.suffix.lower() in (*RESULTS, *SCENES, *PICTURES, *FILMS):
         raise argparse.ArgumentTypeError(
             f"{text}: give a name without ending; {path.stem}.nc and {path.stem}.png follow"
         )

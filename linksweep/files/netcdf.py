@@ -12,6 +12,7 @@ import xarray as xr
 from linksweep.base.validate import did_you_mean, quote, refuse
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.seal import SAVED, mark_of, seal, sealed
+from linksweep.files.spreadsheet import to_excel
 from linksweep.files.table import to_csv
 from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.lazy import in_memory
@@ -23,8 +24,10 @@ from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 from linksweep.scene.storable import label_problem, name_problem
 
-RESULTS, SCENES = (".nc", ".csv"), (".toml", ".nc")
+RESULTS, SCENES = (".nc", ".csv", ".xlsx"), (".toml", ".nc")
 """Endings of the files of Datasets, and of scenes."""
+TABLES = {".csv": to_csv, ".xlsx": to_excel}
+"""Writers of tables, by the ending of their files."""
 NETCDF = RLock()
 """Lock around the NetCDF library: used by two threads at once, it crashes the process."""
 
@@ -40,8 +43,8 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
         Dataset of linksweep, or any that NetCDF can hold; or a scene.
     path : str or PathLike
         File to write; an existing one is replaced only once the new one is complete. Its ending decides the format:
-        a Dataset goes to "cycle.nc" (NetCDF), or to "cycle.csv", a table as of `Dataset.linksweep.to_csv`, without
-        its scene; a scene goes to "scene.toml", a text to edit, or to "scene.nc".
+        a Dataset goes to "cycle.nc" (NetCDF), or to "cycle.csv" or "cycle.xlsx" (Excel), tables as of
+        `Dataset.linksweep.to_csv` and `.to_excel`; a scene goes to "scene.toml", a text to edit, or to "scene.nc".
 
     Raises
     ------
@@ -66,8 +69,8 @@ def save(ds: xr.Dataset | Scene, path: str | os.PathLike[str]) -> None:
         write_text(ds.to_toml(), path)
     elif isinstance(ds, Scene):
         save_dataset(_as_dataset(ds), path)
-    elif ending_of(path, RESULTS) == ".csv":
-        to_csv(ds, path)
+    elif (ending := ending_of(path, RESULTS)) in TABLES:
+        TABLES[ending](ds, path)
     else:
         save_dataset(ds, path)
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from linksweep.files.atomic import ending_of, whole
 from linksweep.mechanisms import indices
+from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,8 +31,8 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Table with a row per design, or per design and crank angle. The columns are the dims (labels, or positions
-        from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]". Status
-        is in words.
+        from 0), the parameters that vary, then the results; each has its unit in its name, "F32_peak [N]", always
+        of SI. Status is in words.
 
     Examples
     --------
@@ -45,14 +46,14 @@ def to_pandas(ds: xr.Dataset) -> pd.DataFrame:
     sizes = {dim: ds.sizes[dim] for dim in sorted(ds.sizes, key=lambda dim: dim in indices())}  # angles innermost
     known = ds.assign_coords({dim: np.arange(n) for dim, n in sizes.items() if dim not in ds.coords})
     names = [*sizes, *(name for name in known.coords if name not in sizes), *known.data_vars]
-    return pd.DataFrame({_header(known[name]): _column(known[name].variable, sizes) for name in names})
+    return pd.DataFrame({header_of(known[name]): _column(known[name].variable, sizes) for name in names})
 
 
 def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a Dataset as a CSV file, whole or not at all, with the columns of `to_pandas`.
 
-    Numbers are written with all their digits, NaN as an empty cell. A label that a spreadsheet would evaluate as a
-    formula is preceded by an apostrophe.
+    They are in the units in which results are shown, see `linksweep.units`, and have all their digits, NaN as an empty
+    cell. A label that a spreadsheet would evaluate as a formula is preceded by an apostrophe.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def to_csv(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         When the folder is missing, cannot be written or is full; an existing file stays.
     """
     ending_of(path, (".csv",))
-    table = to_pandas(ds)
+    table = to_pandas(in_shown_units(ds))
     with whole(path) as temporary:
         table.map(_no_formula).rename(columns=_no_formula).to_csv(temporary, index=False, encoding="utf-8")
 
@@ -90,7 +91,8 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _header(values: xr.DataArray) -> str:
+def header_of(values: xr.DataArray) -> str:
+    """Return the title of a variable's column, "F32_peak [N]"."""
     units = str(values.attrs.get("units", ""))
     return str(values.name) if units in ("", "1") else f"{values.name} [{units}]"
 

@@ -13,7 +13,7 @@ from inspect import Parameter, cleandoc, signature
 from typing import TYPE_CHECKING, Any
 
 from linksweep import plot
-from linksweep.files import table
+from linksweep.files import spreadsheet, table
 from linksweep.files.netcdf import scene_of
 from linksweep.scene.scene import Scene
 from linksweep.tables.answers import answer_of
@@ -83,6 +83,16 @@ class Cycle:
             File to write.
         """
         table.to_csv(self._ds, path)
+
+    def to_excel(self, path: str | os.PathLike[str]) -> None:
+        """Write the table of `to_pandas` as an Excel file: see `linksweep.files.spreadsheet.to_excel`.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            File to write, "study.xlsx".
+        """
+        spreadsheet.to_excel(self._ds, path)
 
 
 def _method(draw: Callable[..., Any]) -> Callable[..., Any]:

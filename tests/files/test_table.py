@@ -2,8 +2,10 @@
 
 import csv
 import math
+import sys
 
 import numpy as np
+import openpyxl
 import pandas as pd
 import pytest
 import xarray as xr
@@ -103,3 +105,65 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 def test_a_missing_folder_of_a_table_is_refused(tmp_path):
     with pytest.raises(FileNotFoundError, match="there is no folder"):
         study(n=4).linksweep.to_csv(tmp_path / "nowhere" / "study.csv")
+
+
+# ------------------------------------------------------------------------------------------- Excel, units
+
+
+def sheets(path) -> dict[str, list[tuple]]:
+    """Return the cells of each sheet of an Excel file, formulas as formulas."""
+    book = openpyxl.load_workbook(path)
+    return {sheet.title: [tuple(cell.value for cell in row) for row in sheet.rows] for sheet in book}
+
+
+def test_an_excel_file_has_the_table_its_meanings_and_the_scene(tmp_path):
+    designs = study()
+    designs["F32_peak"][2] = math.inf
+    ls.save(designs, tmp_path / "study.xlsx")
+    book, table = sheets(tmp_path / "study.xlsx"), designs.linksweep.to_pandas()
+    header, *rows = book["results"]
+    assert list(header) == list(table.columns) and len(rows) == 8
+    for k, name in enumerate(header):
+        for cell, value in zip((row[k] for row in rows), table[name], strict=True):
+            if isinstance(value, str) or math.isinf(value):
+                assert cell == str(value)
+            else:
+                assert cell is None if math.isnan(value) else cell == pytest.approx(value, rel=1e-15)
+    meanings = {row[0]: row[1:] for row in book["columns"]}
+    assert meanings["F32_peak [N]"] == ("N", designs.F32_peak.long_name)
+    assert "\n".join(row[0] or "" for row in book["scene"]) == designs.scene.rstrip("\n")
+
+
+def test_no_label_of_an_excel_file_is_a_formula(tmp_path):
+    cases = xr.DataArray([1.0, 2.0], {"case": ["=1+1", "@x"]}, "case")
+    peaks = ls.peaks(ls.Scene(PRESS.mechanism, 30.0, loads=[ls.Load("rocker", torque=cases)]), of=["F32"], theta2=8)
+    peaks.linksweep.to_excel(tmp_path / "cases.xlsx")
+    cells = openpyxl.load_workbook(tmp_path / "cases.xlsx")["results"]
+    assert [(cell.value, cell.data_type) for cell in cells["A"][1:]] == [("=1+1", "s"), ("@x", "s")]
+
+
+def test_more_rows_than_a_sheet_has_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("linksweep.files.spreadsheet.MOST_ROWS", 7)
+    with pytest.raises(ValueError, match="ds has 8 rows: an Excel sheet holds 7; write"):
+        study().linksweep.to_excel(tmp_path / "study.xlsx")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_openpyxl_excel_files_say_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(ImportError, match=r'need openpyxl: pip install "linksweep\[excel\]"'):
+        study(n=2).linksweep.to_excel(tmp_path / "study.xlsx")
+
+
+def test_tables_have_the_units_of_the_session_and_netcdf_those_of_si(tmp_path):
+    peaks = ls.peaks(PRESS, of=["F32"], theta2=36)
+    with ls.units("US"):
+        for name in ("peaks.csv", "peaks.xlsx", "peaks.nc"):
+            ls.save(peaks, tmp_path / name)
+    pounds = float(peaks.F32_peak) / 4.4482216152605
+    (row,) = csv.DictReader((tmp_path / "peaks.csv").read_text().splitlines())
+    assert float(row["F32_peak [lbf]"]) == pytest.approx(pounds, rel=1e-15)
+    header, cells = sheets(tmp_path / "peaks.xlsx")["results"]
+    assert dict(zip(header, cells, strict=True))["F32_peak [lbf]"] == pytest.approx(pounds, rel=1e-15)
+    with xr.open_dataset(tmp_path / "peaks.nc") as ds:
+        xr.testing.assert_identical(ds.load(), peaks)

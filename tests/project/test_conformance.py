@@ -155,6 +155,7 @@ CALLS = {
     "accessor.mechanism": lambda s, path: s.cycle.linksweep.mechanism(45.0),
     "accessor.scene": lambda s, path: s.cycle.linksweep.scene,
     "accessor.to_csv": lambda s, path: s.cycle.linksweep.to_csv(path / "cycle.csv"),
+    "accessor.to_excel": lambda s, path: s.cycle.linksweep.to_excel(path / "cycle.xlsx"),
     "accessor.to_pandas": lambda s, path: s.cycle.linksweep.to_pandas(),
 }
 """A call of each public function, plot and method of results, by what it takes of a machine and a folder.
