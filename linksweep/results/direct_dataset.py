@@ -88,7 +88,7 @@ def _public_variable(dims: tuple[str, ...], values: np.ndarray, attributes: dict
 
 def _direct_variable(dims: tuple[str, ...], values: np.ndarray, attributes: dict[str, Any]) -> xr.Variable:
     """Return what ``xr.Variable`` makes of these, by its private fields."""
-    made: Any = object.__new__(xr.Variable)
+    made: Any = xr.Variable.__new__(xr.Variable)
     made._dims, made._data, made._attrs, made._encoding = dims, values, attributes or None, None
     return made
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -15,33 +15,27 @@ from linksweep.results.peak_search.quadrature import cycle_time
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
 
+Results = Mapping[str, tuple[str, str]]
+"""Source in `peaks` and description of each result; work is mean power times the time of a cycle."""
 
-class Entry(NamedTuple):
-    """A result: its name, the name of its source in `peaks`, and its description.
-
-    Work is mean power times the time of a cycle.
-    """
-
-    name: str
-    source: str
-    long_name: str
-    work: bool = False
-
-
-REGENERATED = "work that the drive takes back in a cycle, where its power is negative, counted positive"
-ENTRIES = (
-    Entry("effort_mean", "{drive}_mean", "mean over time of the drive's torque or force"),
-    Entry("effort_rms", "{drive}_rms", "root mean square over time of the drive's torque or force"),
-    Entry("effort_peak", "{drive}_peak", "largest magnitude of the drive's torque or force"),
-    Entry("power_mean", "power_mean", "mean power of the drive over time"),
-    Entry("power_max", "power_max", "largest power that the drive feeds"),
-    Entry("power_min", "power_min", "least power of the drive; negative where the mechanism drives it"),
-    Entry("work", "power_mean", "work of the drive in a cycle", work=True),
-    Entry("work_fed", "power_fed_mean", "work that the drive feeds in a cycle, where its power is positive", work=True),
-    Entry("work_regenerated", "power_regenerated_mean", REGENERATED, work=True),
-    Entry("work_of_loads", "load_power_mean", "work of all loads in a cycle, positive when they feed", work=True),
-)
-LOSS = Entry("work_of_friction", "friction_power_mean", "work of friction in a cycle, never positive", work=True)
+OF_DRIVE: Results = {
+    "effort_mean": ("{drive}_mean", "mean over time of the drive's torque or force"),
+    "effort_rms": ("{drive}_rms", "root mean square over time of the drive's torque or force"),
+    "effort_peak": ("{drive}_peak", "largest magnitude of the drive's torque or force"),
+    "power_mean": ("power_mean", "mean power of the drive over time"),
+    "power_max": ("power_max", "largest power that the drive feeds"),
+    "power_min": ("power_min", "least power of the drive; negative where the mechanism drives it"),
+}
+WORK: Results = {
+    "work": ("power_mean", "work of the drive in a cycle"),
+    "work_fed": ("power_fed_mean", "work that the drive feeds in a cycle, where its power is positive"),
+    "work_regenerated": (
+        "power_regenerated_mean",
+        "work that the drive takes back in a cycle, where its power is negative, counted positive",
+    ),
+    "work_of_loads": ("load_power_mean", "work of all loads in a cycle, positive when they feed"),
+}
+LOSS: Results = {"work_of_friction": ("friction_power_mean", "work of friction in a cycle, never positive")}
 
 
 def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Dataset:
@@ -83,15 +77,16 @@ def duty(scene: Scene | MultiCylinder, *, threads: int | None = None) -> xr.Data
     require(one, "drives")
     refuse(turning_problems(one))
     drive = one.mechanism.drives[one.drive]
-    entries = (*ENTRIES, LOSS) if "friction_power" in one.table.quantity else ENTRIES
-    sources = [entry.source.format(drive=drive) for entry in entries]
+    work = {**WORK, **LOSS} if "friction_power" in one.table.quantity else WORK
+    entries = {name: (source.format(drive=drive), words) for name, (source, words) in {**OF_DRIVE, **work}.items()}
+    sources = [source for source, _ in entries.values()]
     names = [name if name.endswith(("_mean", "_rms")) else name.rpartition("_")[0] for name in sources]
     worst = peaks(scene, of=list(dict.fromkeys(names)), threads=threads)
     time, whole = xr.DataArray(cycle_time(one, threads)), worst["status"] == 0
     time = time if bool(whole.all()) else time.where(whole)
     results = {
-        entry.name: (value * time, "J", entry.long_name) if entry.work else (value, value.units, entry.long_name)
-        for entry, value in zip(entries, (worst[source] for source in sources), strict=True)
+        name: (worst[source] * time, "J", words) if name in work else (worst[source], worst[source].units, words)
+        for name, (source, words) in entries.items()
     }
     return worst[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.duty(scene)")
 
