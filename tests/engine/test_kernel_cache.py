@@ -54,6 +54,17 @@ def test_a_second_process_finds_the_compiled_kernel(folder):
     assert kept(folder).stat().st_mtime_ns == written
 
 
+def test_kernels_are_compiled_where_numba_is_told_not_to_compile(folder, monkeypatch):
+    """NUMBA_DISABLE_JIT=1 makes a user's own functions plain Python, to be debugged; kernels have no such form."""
+    import numba
+
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
+    assert root_of_two() == math.sqrt(2)
+    forget()
+    assert root_of_two() == math.sqrt(2)  # from the cache
+    assert numba.njit(root_of_two) is root_of_two and numba.config.DISABLE_JIT == 1
+
+
 DAMAGE = {
     "cut": lambda whole: whole[: len(whole) // 2],
     "empty": lambda whole: b"",

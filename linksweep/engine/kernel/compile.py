@@ -89,11 +89,23 @@ def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> di
     vars(module).update({"vectorised": vectors.intrinsic, **helpers})
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
-    jitted = {key: numba.njit(**SETTINGS)(function) for key, function in functions.items()}
+    jitted = {key: _dispatcher(function) for key, function in functions.items()}
     for key, function in jitted.items():
         function._cache = KernelCache(f"{name}.{key}")
     vars(module).update(jitted)  # so that they call each other compiled
     return jitted
+
+
+def _dispatcher(function: FunctionType) -> Any:
+    """Return a function as numba compiles it: with NUMBA_DISABLE_JIT=1 set, too, for its code is no Python to debug."""
+    import numba
+
+    config: Any = numba.config
+    disabled, config.DISABLE_JIT = config.DISABLE_JIT, 0
+    try:
+        return numba.njit(**SETTINGS)(function)
+    finally:
+        config.DISABLE_JIT = disabled
 
 
 def _is_function_of(module: ModuleType, value: object) -> bool:
