@@ -49,7 +49,7 @@ def explore(scene: Scene | xr.Dataset, *, title: str | None = None) -> Any:
     one = scene if isinstance(scene, Scene) else scene_of(scene)
     drawing_of(one.mechanism)
     panel = _panel()
-    panel.extension()
+    panel.extension(inline=True)  # its scripts in the notebook, which then needs no network
     return _explorer(one, title)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,22 +15,24 @@ from linksweep.plot.kit.colors import force_color
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.shape import axes_of, curve_of, places_of, positions
 from linksweep.results.check import check
+from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import SI, UnitSystem
+from linksweep.tables.of_check import check_table
 
 ANGLES = 720  # in a turn
-NOT_SHOWN = {"arc_start", "arc_end", "toggle_angle", "jam_end", "jam_place", "overshoot"}
 
 
-def cycle(scene: Scene) -> dict[str, Any]:
-    """Return a cycle of a scene of one design, for the page to draw.
+def cycle(scene: Scene, system: UnitSystem = SI) -> dict[str, Any]:
+    """Return a cycle of a scene of one design, for the page to draw, in its units.
 
     Returns
     -------
     dict
-        ``step`` and ``turn`` [degree]; ``pins``, ``curve``, ``blocks``: places [m] and directions at each angle of the
-        motion; ``forces`` [N] and ``drive`` at each angle of the cycle. Arrays are float32, (2, angles) for x and y; of
+        ``step`` and ``turn`` [degree]; ``pins``, ``curve``, ``blocks``: places and directions at each angle of the
+        motion; ``forces`` and ``drive`` at each angle of the cycle. Arrays are float32, (2, angles) for x and y; of
         what stands still (2, 1). NaN where there is no result.
     """
     drawing = drawing_of(scene.mechanism)
@@ -43,23 +45,24 @@ def cycle(scene: Scene) -> dict[str, Any]:
         scene, round(ANGLES * turn / 360.0), of=[*(f"{f}{axis}" for f in drawing.forces for axis in "xy"), drive]
     )
     count = effort.sizes["theta2"]
+    metre, newton, of_drive = (system.size(unit) for unit in ("m", "N", scene.table.quantity[drive].units))
     return {
         "step": 360.0 / ANGLES,
         "turn": turn,
-        "pins": {pin: _packed(place[:, :1] if pin in still else place) for pin, place in places.items()},
-        "curve": _packed(curve_of(scene, drawing, motion, places)),
+        "pins": {pin: _packed((place[:, :1] if pin in still else place) / metre) for pin, place in places.items()},
+        "curve": _packed(curve_of(scene, drawing, motion, places) / metre),
         "blocks": [_packed(axes_of(scene, motion, block.sides)) for block in drawing.blocks],
-        "rails": [_rail(scene, block.guide) for block in drawing.blocks],
-        "wheels": [[pin, float(radius)] for pin, radius in drawing.wheels(scene.mechanism)],
-        "forces": {force: _packed(_force(effort, force, count)) for force in drawing.forces},
-        "drive": _packed(signals.spread(effort[drive], count)),
+        "rails": [_rail(scene, block.guide, metre) for block in drawing.blocks],
+        "wheels": [[pin, float(radius) / metre] for pin, radius in drawing.wheels(scene.mechanism)],
+        "forces": {force: _packed(_force(effort, force, count) / newton) for force in drawing.forces},
+        "drive": _packed(signals.spread(effort[drive], count) / of_drive),
         "rate": float(np.nanmean(scene.omega2)) if not callable(scene.omega2) else 1.0,
         "problem": _gaps(effort),
     }
 
 
-def picture(scene: Scene) -> dict[str, Any]:
-    """Return what the page draws of a machine that does not change with its numbers: its parts and their names."""
+def picture(scene: Scene, system: UnitSystem = SI) -> dict[str, Any]:
+    """Return the parts of a machine that the page draws, with their names and units, whatever its numbers are."""
     drawing = drawing_of(scene.mechanism)
     drive = scene.mechanism.drives[scene.drive]
     return {
@@ -68,25 +71,30 @@ def picture(scene: Scene) -> dict[str, Any]:
         "blocks": [{"number": b.number, "pin": b.pin, "on": list(b.on) if b.on else None} for b in drawing.blocks],
         "cylinders": [list(ends) for ends in drawing.telescopes],
         "forces": [_named(drawing, force) for force in drawing.forces],
-        "drive": {"name": drive, "unit": written(scene.table.quantity[drive].units)},
+        "drive": {"name": drive, "unit": written(system.unit(scene.table.quantity[drive].units))},
+        "units": {"length": written(system.unit("m")), "force": written(system.unit("N"))},
     }
 
 
-def exact(scene: Scene) -> dict[str, Any]:
+def exact(scene: Scene, system: UnitSystem = SI) -> dict[str, Any]:
     """Return exact peaks and checks of a scene, as rows for tables."""
-    return {"peaks": [*_peaks(peaks(scene))], "checks": [*_checks(check(scene))]}
+    findings = check_table(in_shown_units(check(scene), system)).rows
+    return {
+        "peaks": [*_peaks(in_shown_units(peaks(scene), system))],
+        "checks": [(title.strip().removesuffix(":"), text) for title, text in findings if text != "none"],
+    }
 
 
 def _packed(values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(values, dtype=np.float32)
 
 
-def _rail(scene: Scene, guide: Any) -> list[list[float]] | None:
+def _rail(scene: Scene, guide: Any, metre: float) -> list[list[float]] | None:
     """Return a point and the direction of a guide on the ground."""
     if guide is None:
         return None
     rail = guide(scene.mechanism)
-    return [[float(number) for number in part] for part in (rail.point, rail.along)]
+    return [[float(number) for number in part] for part in (rail.point / metre, rail.along)]
 
 
 def _force(cycle: xr.Dataset, force: str, count: int) -> np.ndarray:
@@ -120,29 +128,3 @@ def _peaks(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
                 "at": float(ds[f"{name}_at"]),
             }
             yield row | {"unit": written(str(ds[name].attrs["units"]))}
-
-
-def _checks(ds: xr.Dataset) -> Iterator[tuple[str, str]]:
-    """Yield the title of each finding, and its result in words."""
-    for name, finding in ds.data_vars.items():
-        text = "" if name in NOT_SHOWN or str(name).endswith("_at") else _finding(finding)
-        if text:
-            yield str(name).replace("_", " "), text
-
-
-def _finding(finding: xr.DataArray) -> str:
-    attributes: Mapping[str, Any] = finding.attrs
-    if "flag_meanings" in attributes:
-        words = str(attributes["flag_meanings"]).split()
-        meant = [words[int(k)] for k in np.unique(finding.values) if 0 <= int(k) < len(words)]
-        return ", ".join(word.replace("_", "-") for word in meant)
-    unit = written(str(attributes.get("units", "")))
-    unit = unit if unit == "°" else f" {unit}".rstrip()
-    named = finding.ndim == 1 and finding.dims[0] == "pin"
-    labels = [f"{label} " for label in finding["pin"].values] if named else [""] * finding.size
-    texts = (
-        f"{label}{value:.5g}{unit}"
-        for label, value in zip(labels, finding.values.ravel(), strict=True)
-        if value == value
-    )
-    return ", ".join(dict.fromkeys(texts))

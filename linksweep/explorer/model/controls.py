@@ -7,9 +7,11 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from linksweep.base.units import quantity
 from linksweep.base.validate import UNITS
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import SI, UnitSystem
 
 STEPS = 200  # of a slider, at least
 SIGNED = {"length", "angle", "force", "torque", "velocity", "acceleration", "angular_velocity", "angular_acceleration"}
@@ -34,15 +36,27 @@ class Control(NamedTuple):
     step: float
 
 
-def controls(scene: Scene) -> list[Control]:
+def controls(scene: Scene, system: UnitSystem = SI) -> list[Control]:
     """Return a control for each plain number of a scene; none for what changes over the angle, or is left out."""
     kinds = {path: kind for path, (_, kind) in free(scene).items()}
-    return [_control(scene, path, value, kinds) for path, (value, _) in free(scene).items() if is_plain(value)]
+    return [_control(scene, path, value, kinds, system) for path, (value, _) in free(scene).items() if is_plain(value)]
 
 
-def values(scene: Scene) -> dict[str, float]:
+def values(scene: Scene, system: UnitSystem = SI) -> dict[str, float]:
     """Return the value of each control by its path."""
-    return {path: float(value) for path, (value, _) in free(scene).items() if is_plain(value)}
+    plain = {path: number for path, number in free(scene).items() if is_plain(number[0])}
+    return {path: float(system.value(value, UNITS[kind])) for path, (value, kind) in plain.items()}
+
+
+def read(number: float | str, kind: str, system: UnitSystem = SI) -> float:
+    """Return a number in SI units, of one in the units of the page, or of a text with a unit of its own, "80 mm".
+
+    Raises ValueError for a text that is no number with a unit of this kind.
+    """
+    try:
+        return float(number) * system.size(UNITS[kind])
+    except ValueError:
+        return quantity(str(number), kind)
 
 
 def is_plain(value: Any) -> bool:
@@ -50,12 +64,13 @@ def is_plain(value: Any) -> bool:
     return isinstance(value, int | float)
 
 
-def _control(scene: Scene, path: str, value: float, kinds: Mapping[str, str]) -> Control:
-    low, high = _range(scene, path, value, kinds[path])
+def _control(scene: Scene, path: str, value: float, kinds: Mapping[str, str], system: UnitSystem) -> Control:
+    unit = UNITS[kinds[path]]
+    value, low, high = (float(system.value(v, unit)) for v in (value, *_range(scene, path, value, kinds[path])))
     step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
     ends = math.floor(low / step) * step, math.ceil(high / step) * step
     low, high, step = (float(f"{number:.12g}") for number in (*ends, step))
-    return Control(path, *_names(scene, path, kinds), written(UNITS[kinds[path]]), float(value), low, high, step)
+    return Control(path, *_names(scene, path, kinds), written(system.unit(unit)), value, low, high, step)
 
 
 def written(unit: str) -> str:

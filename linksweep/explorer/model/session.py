@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.explorer.model import answers
-from linksweep.explorer.model.controls import controls, values
+from linksweep.explorer.model.controls import controls, read, values
 from linksweep.explorer.model.dragging import dragged, handles
 from linksweep.explorer.model.exports import EXPORTS
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.parameters import free, replaced
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 Reply = dict[str, Any]
 
@@ -28,7 +28,7 @@ class Session:
     def __init__(self, scene: Scene, title: str) -> None:
         several = ", ".join(f"{dim} ({len(labels)})" for dim, labels in design_labels(scene).items())
         refuse([f"scene: has several designs, over {several}: choose one, ls.scene_at(scene, ...)"] if several else [])
-        self.scene, self.title = scene, title
+        self.scene, self.title, self.system = scene, title, shown_units(scene.units)
         self.pinned: Scene | None = None
         self._past: list[Scene] = []
         self._future: list[Scene] = []
@@ -50,7 +50,7 @@ class Session:
             case "drag":
                 return self._drag(**details)
             case "exact":
-                return answers.exact(self.scene)
+                return answers.exact(self.scene, self.system)
             case "undo":
                 return self._step(self._past, self._future)
             case "redo":
@@ -66,32 +66,33 @@ class Session:
         raise ValueError(f"ask = {ask!r}: is no question of the page")
 
     def _start(self) -> Reply:
-        view = [control._asdict() for control in controls(self.scene)]
+        view = [control._asdict() for control in controls(self.scene, self.system)]
         return {
             "title": self.title,
-            "picture": answers.picture(self.scene),
+            "picture": answers.picture(self.scene, self.system),
             "handles": handles(self.scene),
             "controls": view,
-            "pinned": self.pinned and _pinned(self.pinned),
+            "pinned": self.pinned and self._compared(self.pinned),
             **self._state(),
         }
 
     def _state(self) -> Reply:
         """Return the cycle and the numbers of the present scene."""
-        return {**_view(self.scene), "undo": bool(self._past), "redo": bool(self._future)}
+        return {**self._view(self.scene), "undo": bool(self._past), "redo": bool(self._future)}
 
     def _set(self, numbers: Mapping[str, Any], gesture: Any = None) -> Reply:
         known = free(self.scene)
-        read = {path: _number(text, known[path][1]) for path, text in numbers.items()}
-        return self._changed(replaced(self.scene, read), gesture)
+        new = {path: read(number, known[path][1], self.system) for path, number in numbers.items()}
+        return self._changed(replaced(self.scene, new), gesture)
 
     def _drag(self, pin: str, place: tuple[float, float], angle: float, gesture: Any = None) -> Reply:
-        move = dragged(self.scene, pin, place, angle)
+        metre = self.system.size("m")
+        move = dragged(self.scene, pin, (place[0] * metre, place[1] * metre), angle)
         return self._changed(replaced(self.scene, move.numbers), gesture) | {"angle": move.angle}
 
     def _changed(self, scene: Scene, gesture: Any = None) -> Reply:
         """Take another scene, and begin a new step unless it belongs to the last gesture."""
-        view = _view(scene)  # first: where it fails, the old scene stays
+        view = self._view(scene)  # first: where it fails, the old scene stays
         if gesture is None or gesture != self._gesture:
             self._past.append(self.scene)
         self._gesture, self._future, self.scene = gesture, [], scene
@@ -105,26 +106,14 @@ class Session:
 
     def _pin(self) -> Reply:
         self.pinned = self.scene
-        return {"pinned": _pinned(self.scene)}
+        return {"pinned": self._compared(self.scene)}
 
     def _unpin(self) -> Reply:
         self.pinned = None
         return {"pinned": None}
 
+    def _view(self, scene: Scene) -> Reply:
+        return {"cycle": answers.cycle(scene, self.system), "values": values(scene, self.system)}
 
-def _view(scene: Scene) -> Reply:
-    return {"cycle": answers.cycle(scene), "values": values(scene)}
-
-
-def _pinned(scene: Scene) -> Reply:
-    return {**_view(scene), **answers.exact(scene)}
-
-
-def _number(value: Any, kind: str) -> float:
-    """Return a number in SI units: of a slider as it is, of a field as it is written, "80 mm"."""
-    if not isinstance(value, str):
-        return float(value)
-    try:
-        return float(value)
-    except ValueError:
-        return quantity(value, kind)
+    def _compared(self, scene: Scene) -> Reply:
+        return {**self._view(scene), **answers.exact(scene, self.system)}

@@ -105,7 +105,7 @@ class LoadDiagram {
   show(pair, ghost) {
     this.pair = pair;
     this.top = Math.max(...[pair, ghost].filter(Boolean).map(one => top(sizes(one)))) || 1;
-    const ring = ticks(0, this.top, 2)[1] ?? this.top, middle = SIDE / 2, rings = [];
+    const ring = ticks(0, this.top, 3)[1], middle = SIDE / 2, rings = [];
     for (let value = ring; value <= this.top * 1.0001; value += ring)
       rings.push(svg("circle", {cx: middle, cy: middle, r: value / this.top * (middle - 3)}));
     rings.push(svg("line", {x1: 3, x2: SIDE - 3, y1: middle, y2: middle}), svg("line", {y1: 3, y2: SIDE - 3, x1: middle, x2: middle}));

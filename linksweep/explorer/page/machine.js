@@ -170,7 +170,7 @@ class Machine {
       lines.push(svg("line", {x1: 0, x2: this.width, y1: py, y2: py}));
       if (py > 12 && py < this.height - 20) lines.push(svg("text", {x: 4, y: py - 3}, number(y)));
     }
-    lines.push(svg("text", {x: this.width - 5, y: this.height - 5, "text-anchor": "end"}, "m"));
+    lines.push(svg("text", {x: this.width - 5, y: this.height - 5, "text-anchor": "end"}, this.picture.units.length));
     return lines;
   }
 

@@ -97,9 +97,9 @@ class Page {
     const cards = this.loads.map((load, k) => html("figure", {}, load.root, html("figcaption", {style: `color:${load.force.color}`},
       symbol(load.force.name), html("small", {}, ` ${load.force.joint}`))));
     return html("section", {class: "side"},
-      html("h2", {}, "Joint forces ", html("small", {}, "N")), html("div", {class: "legend"}, ...legend), this.forceChart.root,
+      html("h2", {}, "Joint forces ", html("small", {}, this.picture.units.force)), html("div", {class: "legend"}, ...legend), this.forceChart.root,
       html("h2", {}, `${word} `, html("small", {}, drive.unit), html("span", {class: "now"}, `${symbol(drive.name)} `, this.readings.drive)), this.driveChart.root,
-      html("h2", {}, "Load diagrams ", html("small", {}, "N, in ground axes, each to its own scale")), html("div", {class: "loads", style: `--columns:${cards.length > 6 ? 4 : cards.length > 4 ? 3 : 2}`}, ...cards));
+      html("h2", {}, "Load diagrams ", html("small", {}, `${this.picture.units.force}, in ground axes, each to its own scale`)), html("div", {class: "loads", style: `--columns:${cards.length > 6 ? 4 : cards.length > 4 ? 3 : 2}`}, ...cards));
   }
 
   results() {
