@@ -55,8 +55,12 @@ def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
 
 def in_period(angle: Array, period: float) -> Array:
     """Return angles reduced to [0, period)."""
-    folded = np.mod(angle, period)
-    return np.where(folded < period, folded, 0.0 * folded)  # mod rounds -1e-20 up to the period itself
+    folded = np.array(angle, dtype=float)
+    folded += 0.0  # never -0
+    outside = ~((folded >= 0.0) & (folded < period))
+    within = np.mod(folded[outside], period)  # slow
+    folded[outside] = np.where(within < period, within, 0.0 * within)  # mod rounds -1e-20 up to the period itself
+    return folded
 
 
 def places_of(sizes: Mapping[str, int], designs: Array) -> dict[str, Array]:

@@ -1,15 +1,18 @@
 """Designs side by side: the same bits compiled and interpreted, alone and in company."""
 
+from types import FunctionType
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import abreast
+from linksweep.engine.peaks import abreast, brackets, search
+from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_FAR, PEAK_X
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.find_peaks import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
-from linksweep.engine.peaks.search import BEST_ROWS, HALF, LANE_ROWS, PEAK, PEAK_FAR, PEAK_X, SAMPLES, TRIAL_ROWS
+from linksweep.engine.peaks.search import HALF, SAMPLES
 from linksweep.engine.trace.plan import plan
 
 LANEWISE = {name: value for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
@@ -36,11 +39,16 @@ def test_lanes_have_the_same_bits_compiled_and_interpreted(name):
     assert not np.array_equal(compiled, table(3), equal_nan=True)
 
 
+def test_a_constant_is_stored_in_all_lanes():
+    table = np.ones((2, 16))
+    Lanewise(lambda x: (2.5, x < 0.0), (0,), (0, 1)).compiled()(table, 16)
+    np.testing.assert_array_equal(table, np.repeat([[2.5], [0.0]], 16, axis=1))
+
+
 def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     """Against a plain loop over the samples of each signal."""
     columns, state = 8, np.zeros((abreast.STATE_ROWS, 8))
     rows = np.random.default_rng(1).normal(size=(SAMPLES, columns))
-    state[abreast.REACH] = state[abreast.OTHER] = -np.inf
     abreast.compare_sample(rows.ravel(), SAMPLES, state, columns)
     before, after = np.roll(rows, 1, axis=0), np.roll(rows, -1, axis=0)
     reach = np.where((before < rows) & (after <= rows), 3.0 * rows - before - after, -np.inf)
@@ -65,6 +73,15 @@ def four_bars(designs: int) -> ls.Scene:
     return ls.Scene(mechanism, omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81))
 
 
+def test_modules_that_are_compiled_as_one_have_no_name_in_common():
+    modules = (brackets, search, abreast)
+    own = [
+        {name for name, value in vars(one).items() if isinstance(value, int | float | FunctionType)} for one in modules
+    ]
+    for name in set.union(*own):
+        assert len({vars(one)[name] for one, names in zip(modules, own, strict=True) if name in names}) == 1, name
+
+
 def test_evaluators_have_the_same_bits_compiled_and_interpreted():
     """Also at the samples that share operations with those on the other side of the middle."""
     scene = four_bars(8)
@@ -81,12 +98,12 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted():
     compiled.sample(constants, of_turn, rows)
     x, far, tag = np.linspace(-0.9, 0.9, lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0
     values = np.empty(lanes)
-    compiled.evaluate(constants, x, far, tag, values, 0)
+    compiled.evaluate(constants, x, far, tag, values, 0, lanes)
     for lane in range(lanes):
         own, own_rows, value = np.empty(len(evaluators.constants)), np.empty(SAMPLES * len(signals)), np.empty(1)
         interpreted.prepare(inputs[:, lane].copy(), own)
         interpreted.sample(own, of_turn[lane::lanes].copy(), own_rows)
-        interpreted.evaluate(own, x[lane:], far[lane:], tag[lane:], value, 0)
+        interpreted.evaluate(own, x[lane:], far[lane:], tag[lane:], value, 0, 1)
         np.testing.assert_array_equal(constants.reshape(-1, lanes)[:, lane], own)
         np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
         assert values[lane] == value[0]
@@ -117,18 +134,19 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
         angles = [2.0 * np.arctan(abreast.place_of(x, 1, 0, j)) + np.pi * (j >= 2 * HALF) for j in range(SAMPLES)]
         rows[:SAMPLES] = height(np.array(angles), constants[2])
 
-    def evaluate(constants, x, far, tag, values, at):
+    def evaluate(constants, x, far, signal, values, first, last):
+        at = slice(first, last)
         values[at] = height(2.0 * np.arctan(x[at]) + np.pi * far[at], constants[2])
 
-    out, room = np.empty((BEST_ROWS + 1, 1, len(phase))), 512
+    best = np.empty((BEST_ROWS + 1, len(phase)))
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         abreast.search(
-            0, len(phase), 1, True, np.array([len(phase)]), phase, one, np.ones((1, 1), dtype=np.int64), grades(),
-            prepare, sample, evaluate, np.zeros(1), np.zeros((abreast.DESIGNS, 3)), np.zeros(2 * (HALF + 1)),
-            np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)), np.zeros((LANE_ROWS, room)),
-            np.zeros((TRIAL_ROWS, 3 * room)), np.zeros(3), np.zeros((BEST_ROWS + 1, abreast.DESIGNS)), out,
+            0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, one[:, None] + 1, grades(),
+            prepare, sample, evaluate, one[:, None].copy(), np.zeros(1), np.zeros((abreast.BLOCKS, 3)),
+            np.zeros(2 * (HALF + 1)), np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)),
+            np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip
-    places = 2.0 * np.arctan(out[PEAK_X, 0]) + np.pi * out[PEAK_FAR, 0]
-    np.testing.assert_allclose(out[PEAK, 0], 6.0 + little, rtol=2e-11)
+    places = 2.0 * np.arctan(best[PEAK_X]) + np.pi * best[PEAK_FAR]
+    np.testing.assert_allclose(best[PEAK], 6.0 + little, rtol=2e-11)
     np.testing.assert_allclose(np.cos(places - phase), 1.0, atol=1e-9)

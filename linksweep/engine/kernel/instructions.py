@@ -40,6 +40,11 @@ def intrinsic(emit: Callable[..., None], parameters: Iterable[str]) -> Callable:
     return numba.extending.intrinsic(typed)
 
 
+def call(function: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+    """Call a function that is an argument itself."""
+    function(*arguments)
+
+
 class Instructions:
     """Instructions on numbers and on vectors of `width` doubles, at the place of an `llvmlite` builder.
 
@@ -77,9 +82,13 @@ class Instructions:
         """Operations by name."""
 
     def _alike(self, function: Callable[..., Any], *operands: Any) -> Any:
-        values = [x if isinstance(x, self.ir.Value) else self.double(float(x)) for x in operands]
+        values = [self.value(x) for x in operands]
         vectors = any(isinstance(x.type, self.ir.VectorType) for x in values)
         return function(*map(self.wide, values) if vectors else values)
+
+    def value(self, number: Any) -> Any:
+        """Return a constant for Python's number; of LLVM's value itself."""
+        return number if isinstance(number, self.ir.Value) else self.double(float(number))
 
     def wide(self, value: Any) -> Any:
         """Return a vector that repeats a number; of a vector itself."""
@@ -100,6 +109,7 @@ class Instructions:
 
     def as_number(self, value: Any) -> Any:
         """Return 1 and 0 for a condition; of numbers themselves."""
+        value = self.value(value)
         vector = isinstance(value.type, self.ir.VectorType)
         holds = (value.type.element if vector else value.type) == self.condition
         return self.builder.uitofp(value, self.vector if vector else self.double) if holds else value

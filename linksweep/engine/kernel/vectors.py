@@ -166,7 +166,7 @@ class _Writer:
             return self.builder.load(pointer)
 
     def store(self, value: _Value | float, pointer: Any, sample: Any) -> None:
-        llvm = value.llvm if isinstance(value, _Value) else self.instructions.double(float(value))
+        llvm = value.llvm if isinstance(value, _Value) else value
         if sample is not None:
             self.instructions.store(llvm, pointer, sample)
         else:

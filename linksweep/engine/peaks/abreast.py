@@ -11,56 +11,60 @@ has the same bits whichever others stand beside it, and where nothing is compile
 
 import math
 
-from linksweep.engine.peaks.lanewise import around, lanewise
-from linksweep.engine.peaks.search import (
+from linksweep.engine.kernel.instructions import call
+from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
     BEYOND,
+    F1,
+    F2,
+    F3,
     FA,
     FAR,
     FB,
     FC,
     FIRST_WIDTH,
     FLOOR,
-    GRADES,
-    HALF,
     NOISE,
     PEAK,
     PEAK_FAR,
     PEAK_X,
     RISE,
     ROUNDS,
-    SAMPLES,
+    SIGNAL,
     TAG,
-    TRIAL_FAR,
-    TRIAL_TAG,
-    TRIALS,
-    VALUE,
     WIDTH,
+    X1,
+    X2,
+    X3,
     XA,
     XB,
     XC,
-    X,
     advance,
-    in_blocks,
-    might_reach,
+    insert_trials,
+    larger,
     place_trials,
 )
+from linksweep.engine.peaks.lanewise import around, lanewise
+from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES, might_reach
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
-DESIGNS = 256
-"""Designs whose brackets are refined together."""
+BLOCKS = 32
+"""Blocks of designs whose brackets are refined together."""
+ROOM = 4 * SAMPLES
+"""Brackets that are refined together, at most."""
 CAUTION = 3.0
 """Third derivatives that the error of a vertex allows for, of those that the samples show."""
 
-# rows of `state`, a column for each lane of each signal: results, in the order of the rows of `best`
-FINAL, NOISE_FLOOR = BEST_ROWS, BEST_ROWS + 1  # whether they are final; the rounding noise
+# rows of `state`, a column for each lane of each signal: results, in the order of the rows of `best`; whether they are
+# final, or confirmed while another summit may be higher; the rounding noise
+FINAL, CONFIRMED, NOISE_FLOOR = range(BEST_ROWS, BEST_ROWS + 3)
 # the largest magnitude; the number of the best summit, the height that it may reach, and any other
-SIZE, SUMMIT, REACH, OTHER = range(BEST_ROWS + 2, BEST_ROWS + 6)
-SAMPLED = BEST_ROWS + 6  # five samples about the summit
+SIZE, SUMMIT, REACH, OTHER = range(BEST_ROWS + 3, BEST_ROWS + 7)
+SAMPLED = BEST_ROWS + 7  # five samples about the summit
 PLACES = SAMPLED + 5  # the tangents at three of them
-# the half turn of the summit; the signal; the tangent of a trial
-HALF_TURN, SIGNAL, PLACE = range(PLACES + 3, PLACES + 6)
+# the half turn of the summit; the number of the signal; the tangent of a trial
+HALF_TURN, NUMBER, PLACE = range(PLACES + 3, PLACES + 6)
 # vertex of the quartic through the samples, curvature there, third derivative; all steps are those between samples
 VERTEX, CURVATURE, THIRD = range(PLACES + 6, PLACES + 9)
 # trials: steps from the summit, and values
@@ -74,73 +78,68 @@ TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
-    first, last, lanes, smooth, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate,
-    inputs, constants, x, rows, state, brackets, trials, gathered, best, out
+    first, last, designs, lanes, smooth, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate,
+    digits, inputs, constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
-    """Write the peaks of designs `first` … `last` to `out`: rows of `best` for each signal."""
+    """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each lane of each signal, block
+    after block."""
     columns = state.shape[1]
-    signals = columns // lanes
     none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
     for k in range(columns):
-        state[SIGNAL, k] = k // lanes
-    for start in range(first, last, DESIGNS):
-        end, count = min(start + DESIGNS, last), none
-        for front in range(start, end, lanes):
-            own = constants[(front - start) // lanes]
-            gather(front, last, lanes, sizes, parameters, parameter_at, strides, inputs)
-            prepare(inputs, own)
+        state[NUMBER, k] = k // lanes
+    for start in range(first, last, BLOCKS):
+        count = none
+        for block in range(start, min(start + BLOCKS, last)):
+            own = constants[block - start]
+            gather(block * lanes, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs)
+            call(prepare, (inputs, own))
             place_samples(own, lanes, grades, x)
-            sample(own, x, rows)
-            for k in range(columns):
-                state[SIZE, k], state[SUMMIT, k], state[REACH, k], state[OTHER, k] = 0.0, 0.0, -math.inf, -math.inf
+            call(sample, (own, x, rows))
             compare_sample(rows, SAMPLES, state, columns)
             pick_samples(rows, x, lanes, state)
             predict_vertices(state, columns)
             place_left(state, columns)
-            evaluate_places(own, lanes, evaluate, state, state[F_LEFT])
+            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_LEFT], none, columns))
             place_right(state, columns)
-            evaluate_places(own, lanes, evaluate, state, state[F_RIGHT])
+            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_RIGHT], none, columns))
             step_to_vertices(state, columns)
             place_middle(state, columns)
-            evaluate_places(own, lanes, evaluate, state, state[F_MIDDLE])
+            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_MIDDLE], none, columns))
             correct_vertices(state, columns)
             place_last(state, columns)
-            evaluate_places(own, lanes, evaluate, state, state[F_LAST])
+            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_LAST], none, columns))
             settle_peaks(state, columns)
-            for row in range(BEST_ROWS):
-                for k in range(columns):
-                    best[row, k // lanes * DESIGNS + front - start + k % lanes] = state[row, k]
-            for lane in range(min(lanes, end - front)):
-                for k in range(lane, columns, lanes):
-                    tag = k // lanes * DESIGNS + front - start + lane
-                    best[EVALUATIONS, tag] = SAMPLES + 4
-                    if not smooth or state[FINAL, k] == 0.0:
-                        if count + 2 * HALF > brackets.shape[1]:
-                            refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
-                            count = none
-                        count = open_brackets(rows, x, lanes, k, columns, state, tag, brackets, count, best)
-        refine(brackets, trials, count, lanes, constants, gathered, evaluate, best)
-        for row in range(best.shape[0]):
-            for signal in range(signals):
-                for design in range(end - start):
-                    out[row, signal, start + design] = best[row, signal * DESIGNS + design]
+            of_block = best[:, block * columns : (block + 1) * columns]
+            for k in range(columns):
+                for row in range(BEST_ROWS):
+                    of_block[row, k] = state[row, k]
+                of_block[EVALUATIONS, k] = SAMPLES + 4
+            for k in range(columns):
+                if not smooth or state[FINAL, k] == 0.0:
+                    if count + 2 * HALF > brackets.shape[1]:
+                        refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best)
+                        count = none
+                    tag = block * columns + k
+                    count = open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best)
+        refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best)
 
 
-def gather(front, last, lanes, sizes, parameters, parameter_at, strides, inputs):
+def gather(front, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs):
     """Copy the parameters of designs side by side, the last design into lanes without one; `strides` has a row for each
     design dim, a column for each parameter."""
     dims, numbers = strides.shape
     for lane in range(lanes):
-        left = min(front + lane, last - 1)
-        for k in range(numbers):
-            inputs[k * lanes + lane] = parameter_at[k]
-        for dim in range(dims - 1, -1, -1):
-            digit = left % sizes[dim]
+        left = min(front + lane, designs - 1)
+        for dim in range(dims - 1, 0, -1):
+            digits[dim, lane] = left % sizes[dim]
             left //= sizes[dim]
-            for k in range(numbers):
-                inputs[k * lanes + lane] += digit * strides[dim, k]
-    for k in range(numbers * lanes):
-        inputs[k] = parameters[int(inputs[k])]
+        digits[0, lane] = left
+    for k in range(numbers):
+        for lane in range(lanes):
+            at = parameter_at[k]
+            for dim in range(dims):
+                at += digits[dim, lane] * strides[dim, k]
+            inputs[k * lanes + lane] = parameters[at]
 
 
 def place_samples(constants, lanes, grades, x):
@@ -184,7 +183,7 @@ def after(x, lanes, lane, j):
     return place_of(x, lanes, lane, j + 1) if (j + 1) % (2 * HALF) > 0 else 1.0
 
 
-@around(SIZE, SUMMIT, REACH, OTHER)
+@around({SIZE: 0.0, SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf})
 def compare_sample(left, value, right, number, size, summit, reach, other):
     """Note the largest magnitude, the best summit, and the heights that it and any other summit may reach."""
     height = (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
@@ -231,12 +230,6 @@ def predict_vertices(f0, f1, f2, f3, f4):
     return vertex, d2 + vertex * (d3 + 0.5 * vertex * d4), d3, vertex - spread, vertex + spread
 
 
-def evaluate_places(constants, lanes, evaluate, state, values):
-    """Evaluate each signal in its lanes at the places of their trials."""
-    for at in range(0, state.shape[1], lanes):
-        evaluate(constants, state[PLACE], state[HALF_TURN], state[SIGNAL], values, at)
-
-
 def place_at(x1, x2, x3, step):
     """Return the tangent some steps from the middle one of three samples, on the parabola through them."""
     return x2 + step * (0.5 * (x3 - x1) + step * (0.5 * ((x3 - x2) - (x2 - x1))))
@@ -276,13 +269,13 @@ def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, 
 
 @lanewise(
     (*TRIED, Z_LAST, F_LAST, *THREE, SAMPLED + 2, HALF_TURN, OTHER, THIRD, GAIN, LOSS, SOUND, SIZE),
-    (PEAK, PEAK_X, PEAK_FAR, BEYOND, FINAL, NOISE_FLOOR),
+    (PEAK, PEAK_X, PEAK_FAR, BEYOND, FINAL, CONFIRMED, NOISE_FLOOR),
 )
 def settle_peaks(
     left, f_left, right, f_right, middle, f_middle, last, f_last, x1, x2, x3, f2, far, other, third, gain, loss, sound,
     size
 ):  # fmt: skip
-    """Note the peaks, and whether they are final: confirmed by the trials, and out of reach of other summits."""
+    """Note the peaks, whether the trials confirm them, and whether no other summit may be higher either."""
     slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
     to_left, to_right = middle - left, middle - right
     step = (slope + to_left * bend + third / 6.0 * to_left * to_right) / (
@@ -291,37 +284,43 @@ def settle_peaks(
     vertex = (abs(step) < 0.01).where(middle - step, last)
     best = (f_last < f_middle).where(f_middle, f_last)
     tolerance = RISE * abs(best)
-    final = (f_last < f_middle).where((gain < tolerance).where(sound, 0.0), sound)
-    final = (best < f2).where(0.0, (best + tolerance < other).where(0.0, final))
-    best = (best < f_left).where(f_left, best)
-    best = (best < f_right).where(f_right, best)
+    confirmed = (f_last < f_middle).where((gain < tolerance).where(sound, 0.0), sound)
+    confirmed = (best < f2).where(0.0, confirmed)
+    final = (best + tolerance < other).where(0.0, confirmed)
+    best = larger(f_right, larger(f_left, best))
     floor = NOISE * size
-    beyond = (gain + loss < floor).where(floor, gain + loss) + tolerance
-    return best, place_at(x1, x2, x3, vertex), far, beyond, final, floor
+    return best, place_at(x1, x2, x3, vertex), far, larger(gain + loss, floor) + tolerance, final, confirmed, floor
 
 
-def open_brackets(rows, x, lanes, k, columns, state, tag, brackets, count, best):
-    """Open brackets about all summits of a signal that may exceed its highest sample; return their number."""
-    lane, floor, top, at = k % lanes, state[NOISE_FLOOR, k], -math.inf, 0
-    for j in range(SAMPLES):
-        if rows[j * columns + k] > top:
-            top, at = rows[j * columns + k], j
-    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
-    best[PEAK_X, tag], best[PEAK_FAR, tag] = place_of(x, lanes, lane, at), 1.0 if at >= 2 * HALF else 0.0
-    if abs(top) == math.inf:
+def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
+    """Open brackets about all summits of a signal that may exceed its peak so far, or else its highest sample; return
+    their number."""
+    columns, lane, confirmed = state.shape[1], k % lanes, smooth and state[CONFIRMED, k] > 0.0
+    if not confirmed:
+        top, at = -math.inf, 0
+        for j in range(SAMPLES):
+            if rows[j * columns + k] > top:
+                top, at = rows[j * columns + k], j
+        best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * state[NOISE_FLOOR, k]
+        best[PEAK_X, tag], best[PEAK_FAR, tag] = place_of(x, lanes, lane, at), 1.0 if at >= 2 * HALF else 0.0
+    top = best[PEAK, tag]
+    if not abs(top) < math.inf:
         return count
+    known = int(state[SUMMIT, k]) if confirmed else -1
+    least = top + (RISE * abs(top) if confirmed else 10.0 * state[NOISE_FLOOR, k])
+    left, value = lower(rows[(SAMPLES - 1) * columns + k]), lower(rows[k])
     for j in range(SAMPLES):
-        left = lower(rows[(j - 1 if j > 0 else SAMPLES - 1) * columns + k])
-        value, right = rows[j * columns + k], lower(rows[(j + 1 if j < SAMPLES - 1 else 0) * columns + k])
-        if value > left and value >= right and might_reach(left, value, right, 1.0) > top + 10.0 * floor:
+        right = lower(rows[(j + 1) % SAMPLES * columns + k])
+        if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
             brackets[XA, count], brackets[FA, count] = before(x, lanes, lane, j), left
             brackets[XB, count], brackets[FB, count] = place_of(x, lanes, lane, j), value
             brackets[XC, count], brackets[FC, count] = after(x, lanes, lane, j), right
-            brackets[FAR, count], brackets[TAG, count] = 1.0 if j >= 2 * HALF else 0.0, tag
+            brackets[FAR, count], brackets[SIGNAL, count] = 1.0 if j >= 2 * HALF else 0.0, state[NUMBER, k]
+            brackets[TAG, count], brackets[FLOOR, count] = tag, state[NOISE_FLOOR, k]
             width = brackets[XC, count] - brackets[XA, count]
             brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
-            brackets[FLOOR, count] = floor
             count += 1
+        left, value = value, right
     return count
 
 
@@ -330,25 +329,23 @@ def lower(value):
     return value if value == value else -math.inf
 
 
-def refine(brackets, trials, count, lanes, constants, gathered, evaluate, best):
+def refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best):
     """Refine all brackets, several side by side, until none is left."""
     for _ in range(ROUNDS):
         if count == 0:
             break
-        place_trials(brackets, trials, count)
-        room = in_blocks(count)
+        place_trials(brackets, count)
         for front in range(0, count, lanes):
             for lane in range(lanes):
                 tag = int(brackets[TAG, min(front + lane, count - 1)])
-                design = tag % DESIGNS
-                own = constants[design // lanes]
+                own, its = constants[tag // columns - start], tag % lanes
                 for row in range(len(gathered) // lanes):
-                    gathered[row * lanes + lane] = own[row * lanes + design % lanes]
-                for trial in range(TRIALS):
-                    trials[TRIAL_TAG, trial * room + front + lane] = tag // DESIGNS
+                    gathered[row * lanes + lane] = own[row * lanes + its]
                 if front + lane < count:
-                    best[EVALUATIONS, tag] += TRIALS
-            for trial in range(TRIALS):
-                at = trial * room + front
-                evaluate(gathered, trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], trials[VALUE], at)
-        count = advance(brackets, trials, count, best)
+                    best[EVALUATIONS, tag] += 3
+            far, signal, end = brackets[FAR], brackets[SIGNAL], front + lanes
+            call(evaluate, (gathered, brackets[X1], far, signal, brackets[F1], front, end))
+            call(evaluate, (gathered, brackets[X2], far, signal, brackets[F2], front, end))
+            call(evaluate, (gathered, brackets[X3], far, signal, brackets[F3], front, end))
+        insert_trials(brackets, count)
+        count = advance(brackets, count, best)

@@ -2,7 +2,8 @@
 
     prepare(inputs, constants)                              numbers of designs from their parameters
     sample(constants, x, rows)                              all signals at all samples of the turn
-    evaluate(constants, x, far, tag, values, at)            one signal at one place in each lane, from position `at` on
+    evaluate(constants, x, far, signal, values, first, last)
+                                                            one signal at one place in each lane `first` … `last`
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples from the middle of each half turn on: those before it mirror them, and share
@@ -93,8 +94,10 @@ class Evaluators:
         for k, signal in enumerate(self.signals):
             rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
 
-    def _evaluate(self, constants, x, far, tag, values, at: int) -> None:
-        values[at] = self._at(constants, x[at], far[at])[self.signals[int(tag[at])]]
+    def _evaluate(self, constants, x, far, signal, values, first: int, last: int) -> None:
+        here = self._at(constants, x[first:last], far[first:last])
+        every = [np.broadcast_to(here[node], last - first) for node in self.signals]
+        values[first:last] = np.choose(signal[first:last].astype(int), every)
 
     def _at(self, constants: np.ndarray, tangent: Any, far: Any) -> Values:
         values: Values = dict(zip(self.constants, constants, strict=True)) | {self.tangent: tangent, self.far: far}
@@ -110,7 +113,7 @@ class Evaluators:
             LANES,
             compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
-            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8)", text),
+            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8, i8)", text),
         )
 
     def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:
@@ -176,15 +179,20 @@ class Evaluators:
                 parity[node] = 1 if all(each == 1 for each in x) else 0
         return parity
 
-    def _emit_evaluate(self, builder: Any, constants: Any, x: Any, far: Any, tag: Any, values: Any, at: Any) -> None:
+    def _emit_evaluate(
+        self, builder: Any, constants: Any, x: Any, far: Any, signal: Any, values: Any, first: Any, last: Any
+    ) -> None:
+        from numba.core import cgutils
+
         vectors = Instructions(builder)
-        place = {self.tangent: vectors.load(x.data, at), self.far: vectors.load(far.data, at)}
-        here = self._emitted(vectors, self._row(vectors, constants, self.constants) | place)
-        number, chosen = vectors.load(tag.data, at), here[self.signals[0]]
-        for k, signal in enumerate(self.signals[1:], 1):
-            this_one = vectors.operators["=="](number, k)
-            chosen = vectors.operators["where"](this_one, here[signal], chosen)
-        vectors.store(chosen, values.data, at)
+        known = self._row(vectors, constants, self.constants)
+        with cgutils.for_range_slice(builder, first, last, vectors.integer(LANES)) as (at, _):
+            place = {self.tangent: vectors.load(x.data, at), self.far: vectors.load(far.data, at)}
+            here = self._emitted(vectors, known | place)
+            number, chosen = vectors.load(signal.data, at), here[self.signals[0]]
+            for k, node in enumerate(self.signals[1:], 1):
+                chosen = vectors.operators["where"](vectors.operators["=="](number, k), here[node], chosen)
+            vectors.store(chosen, values.data, at)
 
     def _emitted(self, vectors: Instructions, values: Values) -> Values:
         """Return all values at a place, from those of the designs and of the place."""

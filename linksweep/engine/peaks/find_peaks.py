@@ -13,14 +13,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, compiled_entry, compiled_functions
-from linksweep.engine.peaks import abreast, lanewise, search
+from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, address, compiled_call, compiled_entry, compiled_functions
+from linksweep.engine.peaks import abreast, brackets, lanewise, search
+from linksweep.engine.peaks.brackets import (
+    BEST_ROWS,
+    BRACKET_ROWS,
+    F1,
+    ROUNDS,
+    TAG,
+    TRIALS,
+    X1,
+)
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
 from linksweep.engine.peaks.lanewise import Lanewise
 from linksweep.engine.run import Field, Fields, Sizes, flat, ordered, over_threads
 from linksweep.engine.trace.plan import Plan
 
-SEARCH_SOURCE = inspect.getsource(search)
 WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
 SIGNALS_AT_ONCE = 16
 """Signals searched together."""
@@ -70,12 +78,22 @@ def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
 @cache
 def compiled_search() -> Callable:
     """Return `abreast.search` as machine code."""
-    functions = (inspect.getsource(function) for function in vars(abreast).values() if is_of(abreast, function))
-    numbers = {name: value for name, value in vars(abreast).items() if isinstance(value, int | float)}
     vectors = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
-    helpers = {**compiled_functions(SEARCH_SOURCE), **numbers, **vectors}
-    enters = f"{inspect.getsource(abreast)} {SEARCH_SOURCE} {lanewise.SOURCE}"
-    return compiled_entry("search", "\n\n".join(functions), helpers, SEARCH_SIGNATURE, enters)
+    vectors["call"] = compiled_call()
+    enters = f"{lanewise.SOURCE} {inspect.getsource(brackets)} {inspect.getsource(abreast)}"
+    return compiled_entry("search", _plain(brackets, search, abreast), vectors, SEARCH_SIGNATURE, enters)
+
+
+def _plain(*modules: ModuleType) -> str:
+    """Return the source of the functions and numbers of modules."""
+    known = {name: value for module in modules for name, value in vars(module).items()}
+    numbers = [f"{name} = {value!r}" for name, value in known.items() if isinstance(value, int | float)]
+    functions = [inspect.getsource(value) for value in known.values() if _is_of(modules, value)]
+    return "\n".join(["import math", *numbers, *functions])
+
+
+def _is_of(modules: tuple[ModuleType, ...], value: object) -> bool:
+    return inspect.isfunction(value) and value.__module__ in (module.__name__ for module in modules)
 
 
 @lru_cache(maxsize=1)
@@ -115,28 +133,28 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
     functions = ready.functions(designs)
     lanes = functions.lanes
     run = abreast.search if lanes == 1 else compiled_search()
+    prepare, sample, evaluate = functions[1:] if lanes == 1 else map(address, functions[1:])
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
-    strides = np.ascontiguousarray(np.transpose([_strides(plan, inputs[node.value], sizes) for node in nodes]))
-    strides = strides.reshape(len(shape), len(nodes)).astype(np.int64)
-    columns = lanes * len(signals)
-    out = np.empty((search.BEST_ROWS + 1, len(signals), designs))
+    strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
+    strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
+    columns, blocks = lanes * len(signals), -(-designs // lanes)
+    best = np.empty((BEST_ROWS + 1, columns * blocks))
 
     def work(first: int, last: int) -> None:
-        blocks = -(-min(last - first, abreast.DESIGNS) // lanes)
-        room = search.in_blocks(abreast.DESIGNS + 2 * search.HALF)
         constants = len(ready.evaluators.constants) * lanes
         run(
-            first, last, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
-            strides, grades(), functions.prepare, functions.sample, functions.evaluate,
-            np.zeros(len(nodes) * lanes), np.zeros((blocks, constants)), np.zeros(2 * (search.HALF + 1) * lanes),
+            first, last, designs, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
+            strides, grades(), prepare, sample, evaluate,
+            np.zeros((max(len(shape), 1), lanes), dtype=np.int64), np.zeros(len(nodes) * lanes),
+            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * (search.HALF + 1) * lanes),
             np.zeros((search.SAMPLES + 1) * columns), np.zeros((abreast.STATE_ROWS, columns)),
-            np.zeros((search.LANE_ROWS, room)), np.zeros((search.TRIAL_ROWS, search.TRIALS * room)),
-            np.zeros(constants), np.zeros((search.BEST_ROWS + 1, abreast.DESIGNS * len(signals))), out,
+            np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(constants), best,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
-        over_threads(work, designs, 1 + designs // DESIGNS_PER_THREAD, threads)
-    stored = out.reshape(len(out), len(signals), *shape)
+        over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD, threads)
+    stored = best.reshape(len(best), blocks, len(signals), lanes).swapaxes(1, 2).reshape(len(best), len(signals), -1)
+    stored = stored[..., :designs].reshape(len(best), len(signals), *shape)
     return {name: Peak(*(Field(plan.loops, row[k, ...]) for row in stored)) for k, name in enumerate(signals)}
 
 
@@ -149,24 +167,23 @@ def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
     return strides[::-1]
 
 
-def is_of(module: ModuleType, value: object) -> bool:
-    """Return whether a value is a function that a module defines."""
-    return inspect.isfunction(value) and value.__module__ == module.__name__
-
-
 def search_functions(samples: int) -> Mapping[str, Callable]:
-    """Return the functions of `engine.peaks.search`, compiled where there are many samples to search."""
-    return compiled_functions(SEARCH_SOURCE) if samples > INTERPRETED_SAMPLES else vars(search)
+    """Return the functions of a search along paths, compiled where there are many samples to search."""
+    if samples <= INTERPRETED_SAMPLES:
+        return {**vars(search), **vars(brackets)}
+    vectors = {name: value.compiled() for name, value in vars(brackets).items() if isinstance(value, Lanewise)}
+    return {**compiled_functions(_plain(brackets, search)), **vectors}
 
 
-def refine(functions: Mapping[str, Callable], lanes: np.ndarray, count: int, best: np.ndarray, values: Values) -> None:
-    """Advance lanes, the first `count` of `lanes`, until none is left; `best` takes the peaks of their tags."""
-    trials = np.zeros((search.TRIAL_ROWS, search.TRIALS * search.in_blocks(count)))
-    for _ in range(search.ROUNDS):
+def refine(functions: Mapping[str, Callable], table: np.ndarray, count: int, best: np.ndarray, values: Values) -> None:
+    """Refine brackets, the first `count` of a table, until none is left; `best` takes the peaks of their tags."""
+    for _ in range(ROUNDS):
         if not count:
             return
-        functions["place_trials"](lanes, trials, count)
-        column = np.concatenate([k * search.in_blocks(count) + np.arange(count) for k in range(search.TRIALS)])
-        tag, x = trials[search.TRIAL_TAG, column].astype(int), trials[search.X, column]
-        trials[search.VALUE, column] = values(tag, x)
-        count = functions["advance"](lanes, trials, count, best)
+        functions["place_trials"](table, count)
+        tag = np.tile(table[TAG, :count].astype(int), len(TRIALS))
+        table[F1 : F1 + len(TRIALS), :count] = values(tag, table[X1 : X1 + len(TRIALS), :count].ravel()).reshape(
+            -1, count
+        )
+        functions["insert_trials"](table, count)
+        count = functions["advance"](table, count, best)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -30,22 +31,36 @@ class Lanewise:
     """
 
     def __init__(self, function: Callable[..., tuple[Node, ...]], inputs: tuple[int, ...], outputs: tuple[int, ...]):
-        self.__name__, self.rows, self.outputs = function.__name__, inputs, outputs
+        self.function, self.rows, self.outputs = function, inputs, outputs
+
+    @cached_property
+    def traced(self) -> tuple[list[Node], list[Node]]:
+        """The operations and the results of the function."""
         graph = Graph()
-        self.inputs = [graph.input(f"row {row}", ("lane",)) for row in inputs]
-        self.results = [graph.node(result) for result in function(*self.inputs)]
-        self.nodes = [node for node in graph.nodes if node.operator != "input"]
+        inputs = [graph.input(f"row {k}", ("lane",)) for k in range(len(self.rows))]
+        results = [graph.node(result) for result in self.function(*inputs)]
+        return graph.nodes, results
+
+    @property
+    def inputs(self) -> list[Node]:
+        return self.traced[0][: len(self.rows)]
+
+    @property
+    def nodes(self) -> list[Node]:
+        return self.traced[0][len(self.rows) :]
+
+    @property
+    def results(self) -> list[Node]:
+        return self.traced[1]
 
     def __call__(self, table: np.ndarray, columns: int) -> None:
-        self._interpret({node: table[row].copy() for node, row in zip(self.inputs, self.rows, strict=True)}, table)
-
-    def _interpret(self, values: Values, table: np.ndarray) -> None:
-        values = interpret(self.nodes, values)
+        inputs = (table[row, :columns].copy() for row in self.rows)
+        values = interpret(self.nodes, dict(zip(self.inputs, inputs, strict=True)))
         for row, node in zip(self.outputs, self.results, strict=True):
-            table[row] = values[node]
+            table[row, :columns] = values[node]
 
     def compiled(self) -> Callable[..., None]:
-        """Return the function of a table and the number of its columns as machine code."""
+        """Return the function of a table and the number of its first columns that count as machine code."""
         return compiled_vectors(self._emit, "void(f8[:, ::1], i8)", self.text)
 
     @property
@@ -60,28 +75,59 @@ class Lanewise:
 
         vectors = Instructions(builder)
         with cgutils.for_range_slice(builder, vectors.integer(0), columns, vectors.integer(LANES)) as (k, _):
-            read, written = (_places(vectors, columns, rows, k) for rows in (self.rows, self.outputs))
-            loaded = [vectors.load(table.data, place) for place in read]
+            loaded = [vectors.load(table.data, place) for place in _places(vectors, table, self.rows, k)]
             values = interpret(self.nodes, dict(zip(self.inputs, loaded, strict=True)), vectors.operators)
-            for place, node in zip(written, self.results, strict=True):
-                vectors.store(values[node], table.data, place)
+            self._store(vectors, table, k, [values[node] for node in self.results])
+
+    def _store(self, vectors: Instructions, table: Any, k: Any, values: list[Any]) -> None:
+        for place, value in zip(_places(vectors, table, self.outputs, k), values, strict=True):
+            vectors.store(value, table.data, place)
+
+
+def _places(vectors: Instructions, table: Any, rows: tuple[int, ...], k: Any) -> list[Any]:
+    """Return the positions of a column in rows of a table."""
+    builder = vectors.builder
+    length = builder.extract_value(table.shape, 1)
+    return [builder.add(builder.mul(length, vectors.integer(row)), k) for row in rows]
 
 
 class Around(Lanewise):
-    """A function of each sample around a turn: of its neighbour before, itself, the one after, and its number; and of
-    rows of a table that it updates.
+    """A function of each sample around a turn: of its neighbour before, itself, the one after, its number, and of rows
+    of a table that it updates from their `start` on.
 
     Called with the samples (row after row of lanes), their number, the table and the number of its columns.
     """
 
-    def __init__(self, function: Callable[..., tuple[Node, ...]], rows: tuple[int, ...]):
-        super().__init__(function, (-4, -3, -2, -1, *rows), rows)
+    def __init__(self, function: Callable[..., tuple[Node, ...]], start: dict[int, float]):
+        super().__init__(function, (-4, -3, -2, -1, *start), tuple(start))
+        self.start = tuple(start.values())
+
+    @cached_property
+    def of_samples(self) -> list[Node]:
+        """The nodes that depend on samples alone."""
+        known = set(self.inputs[:4])
+        for node in self.nodes:
+            known.update({node} if known.issuperset(node.operands) else ())
+        return [node for node in self.nodes if node in known]
 
     def __call__(self, samples: np.ndarray, count: int, table: np.ndarray, columns: int) -> None:  # type: ignore[override]
         row = samples[: count * columns].reshape(count, columns)
+        around = np.roll(row, 1, axis=0), row, np.roll(row, -1, axis=0), np.arange(count, dtype=float)[:, None]
+        every = interpret(self.of_samples, dict(zip(self.inputs, around, strict=False)))
+        samplewise = {node: np.broadcast_to(value, row.shape) for node, value in every.items()}
+        now: tuple[Any, ...] = self.start
+        running = [node for node in self.nodes if node not in every]
         for j in range(count):
-            now = (row[j - 1], row[j], row[(j + 1) % count], np.float64(j), *(table[k].copy() for k in self.outputs))
-            self._interpret(dict(zip(self.inputs, now, strict=True)), table)
+            values: Values = {node: value[j] for node, value in samplewise.items()} | dict(
+                zip(self.inputs[4:], now, strict=True)
+            )
+            now = tuple(interpret(running, values)[node] for node in self.results)
+        for k, value in zip(self.outputs, now, strict=True):
+            table[k, :columns] = value
+
+    @property
+    def text(self) -> str:
+        return f"{super().text} {self.start}"
 
     def compiled(self) -> Callable[..., None]:
         return compiled_vectors(self._emit_around, "void(f8[::1], i8, f8[:, ::1], i8)", self.text)
@@ -92,6 +138,7 @@ class Around(Lanewise):
         vectors = Instructions(builder)
         none, one = vectors.integer(0), vectors.integer(1)
         last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
+        start = [vectors.wide(vectors.double(number)) for number in self.start]
 
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
@@ -99,10 +146,9 @@ class Around(Lanewise):
         with cgutils.for_range_slice(builder, none, columns, vectors.integer(ABREAST * LANES)) as (first, _):
             blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
             blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
-            kept = [_places(vectors, columns, self.outputs, k) for k in blocks]
             running = [
-                [cgutils.alloca_once_value(builder, value) for value in (sample(last, k), sample(none, k), *loaded)]
-                for k, loaded in zip(blocks, [[vectors.load(table.data, x) for x in row] for row in kept], strict=True)
+                [cgutils.alloca_once_value(builder, value) for value in (sample(last, k), sample(none, k), *start)]
+                for k in blocks
             ]
             with cgutils.for_range(builder, count) as (j, _):
                 following = builder.select(builder.icmp_signed("==", j, last), none, builder.add(j, one))
@@ -114,15 +160,8 @@ class Around(Lanewise):
                     values = interpret(self.nodes, dict(now), vectors.operators)
                     for place, value in zip(block, (here, after, *(values[x] for x in self.results)), strict=True):
                         builder.store(value, place)
-            for places, block in zip(kept, running, strict=True):
-                for place, value in zip(places, block[2:], strict=True):
-                    vectors.store(builder.load(value), table.data, place)
-
-
-def _places(vectors: Instructions, columns: Any, rows: tuple[int, ...], k: Any) -> list[Any]:
-    """Return the positions of a column in rows of a table."""
-    builder = vectors.builder
-    return [builder.add(builder.mul(columns, vectors.integer(row)), k) for row in rows]
+            for k, block in zip(blocks, running, strict=True):
+                self._store(vectors, table, k, [builder.load(value) for value in block[2:]])
 
 
 def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Callable[..., Any]], Lanewise]:
@@ -130,6 +169,7 @@ def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Cal
     return lambda function: Lanewise(function, inputs, outputs)
 
 
-def around(*rows: int) -> Callable[[Callable[..., Any]], Around]:
-    """Decorate a function of a sample, its neighbours and its number, and of rows of a table that it updates."""
-    return lambda function: Around(function, rows)
+def around(start: dict[int, float]) -> Callable[[Callable[..., Any]], Around]:
+    """Decorate a function of a sample, its neighbours and its number, and of rows of a table that it updates from these
+    values on."""
+    return lambda function: Around(function, start)

@@ -1,14 +1,8 @@
-"""Search for exact peaks, in plain Python that numba compiles into a kernel and that also runs as is.
+"""Open brackets about the samples of a path that may lead to a peak: plain Python that numba compiles and that also
+runs as is.
 
-A signal is evaluated at samples x along a path. Each sample above its neighbours opens a lane (a bracket under
-refinement), unless its curvature rules out that it exceeds the largest sample:
-
-             b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
-        a    |            of the parabola through them, all lanes side by side, and keeps the best point with its
-        |    |    c       neighbours. Where that converges slowly (a kink, a jump), the two sides of b are bisected
-                          instead.
-
-A lane closes when its extended secants allow no further rise: a concave curve lies below them.
+A signal is evaluated at samples x along a path. Each sample above its neighbours opens a bracket (`engine.peaks.
+brackets`), unless its curvature rules out that it exceeds the largest sample.
 
 The path of a whole turn is split into two halves, each parametrised by the tangent x of half its angle from its own
 middle (`far` is 0 on one half, 1 on the other), so that x runs from −1 to 1 on both. Samples follow a sinh grade, dense
@@ -17,6 +11,25 @@ about x = 0 where a near-toggle is narrow.
 
 import math
 
+from linksweep.engine.peaks.brackets import (
+    BEYOND,
+    BLOCK,
+    FA,
+    FB,
+    FC,
+    FIRST_WIDTH,
+    FLOOR,
+    NOISE,
+    PEAK,
+    PEAK_X,
+    TAG,
+    WIDTH,
+    XA,
+    XB,
+    XC,
+    in_blocks,
+)
+
 HALF = 24
 """Samples on either side of the middle of each half turn. With 96 a turn, `benchmarks.accuracy.missed` finds no design
 of a million whose peak the search misses."""
@@ -24,37 +37,10 @@ SAMPLES = 4 * HALF
 GRADES = 27
 """Scales of the sinh grade: 1, 1/2, 1/4, … The finest, 2⁻²⁶, is narrower than any near-toggle that is not yet a toggle
 by its status (8e-8 rad)."""
-ROUNDS = 400
-"""Rounds, at most: more than bisecting a bracket down to its last digit takes."""
-
-# rows of `lanes`: the three points of a bracket; its half turn and signal; its width, at the last round and at first;
-# noise of the signal, rise that remains possible, whether it is done
-XA, FA, XB, FB, XC, FC, FAR, TAG, WIDTH, FIRST_WIDTH, FLOOR, REMAINING, DONE = range(13)
-LANE_ROWS, LASTING_ROWS = 13, 11  # a lane carries the first 11 from round to round
-TRIALS = 3
-"""Trials per lane and round."""
-# rows of `trials`: place, half turn, signal, value
-X, TRIAL_FAR, TRIAL_TAG, VALUE = range(4)
-TRIAL_ROWS = 4
-# rows of `best`, for each signal: the peak, its place and half turn, and how much higher it might be
-PEAK, PEAK_X, PEAK_FAR, BEYOND = range(4)
-BEST_ROWS = 4
-
-BLOCK = 8
-"""Lanes per block: 8 doubles fill a 512-bit register. Loops run over whole blocks, so that they become vector
-instructions; unused lanes of the last block hold arbitrary numbers."""
-
-NARROW = 1e-4
-"""Width, relative to the first, down to which a bracket is refined at least: its parabola then places the peak to 1e-5
-degree."""
-RISE = 1e-11
-"""Rise that may remain possible when a lane closes, relative to the peak: a tenth of the promised 1e-10."""
-NOISE = 1e-15
-"""Rounding noise of a signal, relative to its largest magnitude."""
 
 
-def open_lanes(row, x, before, after, joined, tag, lanes, count, best, flags):
-    """Note a signal's largest sample and open a lane at each that could lead higher; return the number of lanes.
+def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flags):
+    """Note a signal's largest sample and open a bracket at each that could lead higher; return their number.
 
     `joined` tells whether the path's ends meet; `before` and `after` are the places of the samples' neighbours.
     """
@@ -79,13 +65,16 @@ def open_lanes(row, x, before, after, joined, tag, lanes, count, best, flags):
         left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
         ratio = (after[j] - x[j]) / (x[j] - before[first])
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
-            lanes[XA, count], lanes[FA, count] = before[first], left
-            lanes[XB, count], lanes[FB, count] = x[j], value
-            lanes[XC, count], lanes[FC, count] = after[j], right
-            lanes[TAG, count] = float(tag)
+            brackets[XA, count], brackets[FA, count] = before[first], left
+            brackets[XB, count], brackets[FB, count] = x[j], value
+            brackets[XC, count], brackets[FC, count] = after[j], right
+            brackets[TAG, count] = float(tag)
             width = after[j] - before[first]
-            lanes[WIDTH, count], lanes[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow at first
-            lanes[FLOOR, count] = floor
+            brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = (
+                4.0 * width,
+                width,
+            )  # 4.0: not counted as slow at first
+            brackets[FLOOR, count] = floor
             count += 1
     return count
 
@@ -128,114 +117,12 @@ def neighbour(row, j, side, joined):
     return row[k] if row[k] == row[k] else -math.inf
 
 
-def open_path_lanes(rows, x, before, after, joined, lanes, best, flags):
-    """Open the lanes of all signals on all paths: rows (path, signal, sample), tagged path by path."""
+def open_on_paths(rows, x, before, after, joined, brackets, best, flags):
+    """Open the brackets of all signals on all paths: rows (path, signal, sample), tagged path by path."""
     count = 0
     paths, signals = rows.shape[:2]
     for path in range(paths):
         for k in range(signals):
             where = x[path], before[path], after[path]
-            count = open_lanes(rows[path, k], *where, joined, path * signals + k, lanes, count, best, flags)
+            count = open_on_path(rows[path, k], *where, joined, path * signals + k, brackets, count, best, flags)
     return count
-
-
-def in_blocks(count):
-    """Return the length of whole blocks that hold `count` lanes: second trials start there, third ones at twice as
-    much."""
-    return (count + BLOCK - 1) // BLOCK * BLOCK
-
-
-def place_trials(lanes, trials, count):
-    """Place three trials per lane: about the vertex of its parabola, or, where the last round shrank it little,
-    bisecting both sides."""
-    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
-    width, first_width, far, tag = lanes[WIDTH], lanes[FIRST_WIDTH], lanes[FAR], lanes[TAG]
-    x, trial_far, trial_tag, room = trials[X], trials[TRIAL_FAR], trials[TRIAL_TAG], in_blocks(count)
-    for k in range(room):
-        before, after, wide = xb[k] - xa[k], xc[k] - xb[k], xc[k] - xa[k]
-        rise, fall = (fb[k] - fa[k]) / before, (fb[k] - fc[k]) / after
-        vertex = xb[k] + 0.5 * (rise * after - fall * before) / (rise + fall)
-        spread = 0.3 * wide * wide / first_width[k]  # a parabola's vertex errs by the square of the bracket's width
-        reach = spread if spread < 0.2 * wide else 0.2 * wide
-        reach = reach if reach > 1e-6 * first_width[k] else 1e-6 * first_width[k]
-        sound = (wide < 0.6 * width[k]) & (vertex - reach > xa[k]) & (vertex + reach < xc[k])
-        longer = -0.25 * before if before > after else 0.25 * after
-        x[k] = vertex if sound else xb[k] + longer
-        x[room + k] = vertex - reach if sound else xb[k] - 0.5 * before
-        x[2 * room + k] = vertex + reach if sound else xb[k] + 0.5 * after
-        trial_far[k], trial_far[room + k], trial_far[2 * room + k] = far[k], far[k], far[k]
-        trial_tag[k], trial_tag[room + k], trial_tag[2 * room + k] = tag[k], tag[k], tag[k]
-        width[k] = wide
-
-
-def advance(lanes, trials, count, best):
-    """Insert the trials' values into the brackets, note the best, close lanes that are done; return how many remain."""
-    update_brackets(lanes, trials, count)
-    for k in range(count):
-        tag = int(lanes[TAG, k])
-        if lanes[FB, k] > best[PEAK, tag]:
-            best[PEAK, tag], best[PEAK_X, tag], best[PEAK_FAR, tag] = lanes[FB, k], lanes[XB, k], lanes[FAR, k]
-    still_open = 0
-    for k in range(count):
-        tag = int(lanes[TAG, k])
-        if lanes[DONE, k] > 0.0 or lanes[FB, k] + 2.0 * lanes[REMAINING, k] < best[PEAK, tag]:
-            close_lane(lanes, k, best, tag)
-        else:
-            if still_open < k:
-                for row in range(LASTING_ROWS):
-                    lanes[row, still_open] = lanes[row, k]
-            still_open += 1
-    return still_open
-
-
-def update_brackets(lanes, trials, count):
-    """Insert the trials of each lane into its bracket, and compute the rise that remains possible."""
-    xa, fa, xb, fb, xc, fc = lanes[XA], lanes[FA], lanes[XB], lanes[FB], lanes[XC], lanes[FC]
-    first_width, floor, remaining, done = lanes[FIRST_WIDTH], lanes[FLOOR], lanes[REMAINING], lanes[DONE]
-    x, value, room = trials[X], trials[VALUE], in_blocks(count)
-    for k in range(room):
-        bracket = insert_point((xa[k], fa[k], xb[k], fb[k], xc[k], fc[k]), x[k], value[k])
-        bracket = insert_point(bracket, x[room + k], value[room + k])
-        a, f_a, b, f_b, c, f_c = insert_point(bracket, x[2 * room + k], value[2 * room + k])
-        xa[k], fa[k], xb[k], fb[k], xc[k], fc[k] = a, f_a, b, f_b, c, f_c
-        remaining[k], done[k] = remaining_rise(a, f_a, b, f_b, c, f_c, first_width[k], floor[k])
-
-
-def insert_point(bracket, x, f):
-    """Return a bracket with another point: as its middle, if it is higher, else as its nearer end."""
-    a, f_a, b, f_b, c, f_c = bracket
-    f = f if f == f else -math.inf
-    inside, higher, before = (x > a) & (x < c) & (x != b), f > f_b, x < b
-    to_a, to_b, to_c = inside & (higher != before), inside & higher, inside & (higher == before)
-    end, f_end = b if higher else x, f_b if higher else f
-    return (
-        end if to_a else a, f_end if to_a else f_a,
-        x if to_b else b, f if to_b else f_b,
-        end if to_c else c, f_end if to_c else f_c,
-    )  # fmt: skip
-
-
-def remaining_rise(a, f_a, b, f_b, c, f_c, first_width, floor):
-    """Return how far a bracket's extended secants rise above its middle; and 1 if it has converged, 2 if empty."""
-    top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
-    forward, backward = (top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b))
-    rise = forward if forward > backward else backward
-    tolerance = RISE * abs(f_b) if RISE * abs(f_b) > floor else floor
-    empty = c - a <= 1e-15 * (1e-9 + abs(b))  # no number lies between its points
-    return rise, (2.0 if empty else (1.0 if (rise <= tolerance) & (c - a <= NARROW * first_width) else 0.0))
-
-
-def close_lane(lanes, k, best, tag):
-    """Note the result of a lane: its peak, the place, and the rise that remains possible."""
-    height, remaining, place = lanes[FB, k], lanes[REMAINING, k], lanes[XB, k]
-    if height < best[PEAK, tag]:
-        return
-    before, after = place - lanes[XA, k], lanes[XC, k] - place
-    if lanes[DONE, k] == 2.0:  # at a jump or a kink
-        remaining = height - max(lanes[FA, k], lanes[FC, k])
-    else:
-        rise, fall = (height - lanes[FA, k]) / before, (height - lanes[FC, k]) / after
-        step = 0.5 * (rise * after - fall * before) / (rise + fall)
-        place += step if -before < step < after else 0.0
-    best[PEAK_X, tag], best[PEAK_FAR, tag] = place, lanes[FAR, k]
-    best[BEYOND, tag] = max(remaining, 0.0) + RISE * abs(height)

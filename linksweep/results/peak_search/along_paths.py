@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks import search
+from linksweep.engine.peaks import brackets, search
 from linksweep.engine.peaks.find_peaks import refine, search_functions
 from linksweep.engine.run import Field
 from linksweep.results.peak_search.groups import Group
@@ -122,8 +122,8 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
     every = np.repeat(np.arange(count_of_paths), per_path)
     values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
     rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
-    lanes = np.zeros((search.LANE_ROWS, search.in_blocks(rows.size // 2 + 1)))
-    best, samples = np.empty((search.BEST_ROWS, count_of_paths * len(signals))), np.full(count_of_paths, per_path)
+    lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
+    best, samples = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals))), np.full(count_of_paths, per_path)
     run = search_functions(rows.size)
 
     def values_at(tag: Array, x: Array) -> Array:
@@ -134,12 +134,12 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
 
     with np.errstate(all="ignore"):
         where = paths.x, paths.before, paths.after, paths.ends == "meet"
-        count = run["open_path_lanes"](rows, *where, lanes, best, np.zeros(search.in_blocks(per_path), dtype=np.int64))
-        best[search.PEAK] = np.fmax(best[search.PEAK], current.ravel())
-        kept = np.flatnonzero(_promising(lanes[:, :count], best[search.PEAK], paths, len(signals)))
+        count = run["open_on_paths"](rows, *where, lanes, best, np.zeros(brackets.in_blocks(per_path), dtype=np.int64))
+        best[brackets.PEAK] = np.fmax(best[brackets.PEAK], current.ravel())
+        kept = np.flatnonzero(_promising(lanes[:, :count], best[brackets.PEAK], paths, len(signals)))
         lanes[:, : len(kept)] = lanes[:, kept]
         refine(run, lanes, len(kept), best, values_at)
-    value, x, bound = (best[row].reshape(-1, len(signals)) for row in (search.PEAK, search.PEAK_X, search.BEYOND))
+    value, x, bound = (best[row].reshape(-1, len(signals)) for row in (brackets.PEAK, brackets.PEAK_X, brackets.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)
 
@@ -149,11 +149,11 @@ def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:
 
     No lane at an end of a window counts, as the signals continue beyond: it may lie on a slope, not about a summit.
     """
-    tag, x = lanes[search.TAG].astype(int), lanes[search.XB]
-    ratio = (lanes[search.XC] - x) / (x - lanes[search.XA])
-    promise = search.might_reach(lanes[search.FA], lanes[search.FB], lanes[search.FC], ratio) > peak[tag]
+    tag, x = lanes[brackets.TAG].astype(int), lanes[brackets.XB]
+    ratio = (lanes[brackets.XC] - x) / (x - lanes[brackets.XA])
+    promise = search.might_reach(lanes[brackets.FA], lanes[brackets.FB], lanes[brackets.FC], ratio) > peak[tag]
     path = tag // signals
-    known = (lanes[search.FA] > -np.inf) & (lanes[search.FC] > -np.inf)
+    known = (lanes[brackets.FA] > -np.inf) & (lanes[brackets.FC] > -np.inf)
     return promise & ((paths.ends != "pass") | known & (x > paths.x[path, 0]) & (x < paths.x[path, -1]))
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks import search
+from linksweep.engine.peaks import brackets as search
 from linksweep.engine.peaks.find_peaks import refine, search_functions
 from linksweep.engine.quantity import Limit
 from linksweep.engine.roots import roots
@@ -130,7 +130,7 @@ def parabola(brackets: Extremes) -> tuple[Array, Array]:
 def _refined(curves: Curves, brackets: Extremes) -> Extremes:
     """Return the extremes at their places, by the search for peaks: each has a lane and a tag of its own."""
     count, (before, place, after) = len(brackets.curve), brackets.x
-    lanes, best = np.zeros((search.LANE_ROWS, search.in_blocks(count))), np.empty((search.BEST_ROWS, count))
+    lanes, best = np.zeros((search.BRACKET_ROWS, search.in_blocks(count))), np.empty((search.BEST_ROWS, count))
     lanes[[search.XA, search.XB, search.XC], :count] = brackets.x
     lanes[[search.FA, search.FB, search.FC], :count] = -brackets.sign * brackets.values
     lanes[search.FIRST_WIDTH, :count], lanes[search.WIDTH, :count] = after - before, 4.0 * (after - before)

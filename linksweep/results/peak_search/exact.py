@@ -163,9 +163,9 @@ def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
     middle, sizes = scene.mechanism.near_toggle_angle, scene.inputs.sizes
     dims = (*peak.value.dims, *(dim for dim in getattr(middle, "dims", ()) if dim not in peak.value.dims))
     shape = tuple(sizes[dim] for dim in dims)
+    numbers = (aligned(field, dims) for field in (peak.value, peak.beyond, peak.evaluations, peak.tangent, peak.far))
     value, beyond, evaluations, tangent, far = (
-        Field(dims, np.broadcast_to(aligned(field, dims), shape).copy())
-        for field in (peak.value, peak.beyond, peak.evaluations, peak.tangent, peak.far)
+        Field(dims, array if array.shape == shape else np.broadcast_to(array, shape).copy()) for array in numbers
     )
     angle = 2.0 * np.degrees(np.arctan(tangent.values)) + 180.0 * far.values + aligned(middle, dims)
     angle = np.where(np.isnan(value.values), np.nan, angle_in_period(angle, scene.period))

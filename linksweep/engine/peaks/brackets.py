@@ -1,0 +1,118 @@
+"""Refine brackets of peaks, each a column of a table, many side by side.
+
+             b            a < b < c bracket a peak. Each round evaluates the signal at three trials about the vertex
+        a    |            of the parabola through them, and keeps the best point with its neighbours. Where that
+        |    |    c       converges slowly (a kink, a jump), the two sides of b are bisected instead.
+
+A bracket closes when its extended secants allow no further rise: a concave curve lies below them.
+"""
+
+import math
+
+from linksweep.engine.peaks.lanewise import lanewise
+
+ROUNDS = 400
+"""Rounds, at most: more than bisecting a bracket down to its last digit takes."""
+NARROW = 1e-4
+"""Width, relative to the first, down to which a bracket is refined at least: its parabola then places the peak to 1e-5
+degree."""
+RISE = 1e-11
+"""Rise that may remain possible when a bracket closes, relative to the peak: a tenth of the promised 1e-10."""
+NOISE = 1e-15
+"""Rounding noise of a signal, relative to its largest magnitude."""
+BLOCK = 8
+"""Brackets per block: unused columns of the last block hold arbitrary numbers."""
+
+# rows of `brackets`: the three points; half turn, number of the signal, column of `best`; width, at the last round and
+# at first; noise of the signal. These last from round to round
+XA, FA, XB, FB, XC, FC, FAR, SIGNAL, TAG, WIDTH, FIRST_WIDTH, FLOOR = range(12)
+LASTING_ROWS = 12
+# trials and their values; the rise that remains possible, whether the bracket is done, and its result if it is
+X1, X2, X3, F1, F2, F3, REMAINING, DONE, TOP_X, TOP_BEYOND = range(LASTING_ROWS, LASTING_ROWS + 10)
+BRACKET_ROWS = LASTING_ROWS + 10
+POINTS, TRIALS, VALUES = (XA, FA, XB, FB, XC, FC), (X1, X2, X3), (F1, F2, F3)
+# rows of `best`, for each signal: the peak, its place and half turn, and how much higher it might be
+PEAK, PEAK_X, PEAK_FAR, BEYOND = range(4)
+BEST_ROWS = 4
+
+
+def in_blocks(count):
+    """Return the number of columns of whole blocks that hold `count` brackets."""
+    return (count + BLOCK - 1) // BLOCK * BLOCK
+
+
+@lanewise((*POINTS, WIDTH, FIRST_WIDTH), (*TRIALS, WIDTH))
+def place_trials(a, f_a, b, f_b, c, f_c, last_width, first_width):
+    """Place trials about the vertex of the parabola, or, where the last round shrank the bracket little, bisect."""
+    before, after, width = b - a, c - b, c - a
+    vertex = b + vertex_step(a, f_a, b, f_b, c, f_c)
+    spread = 0.3 * width * width / first_width  # a parabola's vertex errs by the square of the bracket's width
+    reach = larger((spread < 0.2 * width).where(spread, 0.2 * width), 1e-6 * first_width)
+    longer = (after < before).where(-0.25 * before, 0.25 * after)
+    trials, bisecting = (vertex, vertex - reach, vertex + reach), (b + longer, b - 0.5 * before, b + 0.5 * after)
+    for sound in (width < 0.6 * last_width, a < vertex - reach, vertex + reach < c):
+        trials = tuple(sound.where(x, y) for x, y in zip(trials, bisecting, strict=True))
+    return *trials, width
+
+
+@lanewise((*POINTS, *TRIALS, *VALUES, FIRST_WIDTH, FLOOR), (*POINTS, REMAINING, DONE, TOP_X, TOP_BEYOND))
+def insert_trials(a, f_a, b, f_b, c, f_c, x1, x2, x3, f1, f2, f3, first_width, floor):
+    """Insert the trials of each bracket, and note the rise that remains possible, and whether it has converged."""
+    bracket = a, f_a, b, f_b, c, f_c
+    for x, f in ((x1, f1), (x2, f2), (x3, f3)):
+        bracket = insert_point(bracket, x, f)
+    a, f_a, b, f_b, c, f_c = bracket
+    top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
+    rise = larger((top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b)))
+    tolerance = larger(RISE * abs(f_b), floor)
+    converged = (tolerance < rise).where(0.0, (NARROW * first_width < c - a).where(0.0, 1.0))
+    empty = c - a < 1e-15 * (1e-9 + abs(b))  # at a jump or a kink: no number lies between its points
+    step = vertex_step(*bracket)
+    place = (a - b < step).where((step < c - b).where(b + step, b), b)
+    beyond = larger(empty.where(f_b - larger(f_a, f_c), rise), 0.0) + RISE * abs(f_b)
+    return *bracket, rise, empty.where(1.0, converged), empty.where(b, place), beyond
+
+
+def insert_point(bracket, x, f):
+    """Return a bracket with another point: as its middle, if it is higher, else as its nearer end."""
+    a, f_a, b, f_b, c, f_c = bracket
+    f = (f > -math.inf).where(f, -math.inf)  # where there is no value
+    higher, new = f > f_b, (x, f)
+    before = zip((a, f_a, *new, b, f_b), (*new, b, f_b, c, f_c), strict=True)
+    after = zip((b, f_b, *new, c, f_c), (a, f_a, b, f_b, *new), strict=True)
+    return tuple(
+        (a < x).where((x < b).where(higher.where(*p), (b < x).where((x < c).where(higher.where(*q), old), old)), old)
+        for p, q, old in zip(before, after, bracket, strict=True)
+    )
+
+
+def vertex_step(a, f_a, b, f_b, c, f_c):
+    """Return the step from the middle of a bracket to the vertex of its parabola."""
+    rise, fall = (f_b - f_a) / (b - a), (f_b - f_c) / (c - b)
+    return 0.5 * (rise * (c - b) - fall * (b - a)) / (rise + fall)
+
+
+def larger(x, y):
+    """Return the larger of two values; the second where the first is NaN."""
+    return (x > y).where(x, y)
+
+
+def advance(brackets, count, best):
+    """Note the highest points, and the results of brackets that are done; return how many remain."""
+    for k in range(count):
+        tag = int(brackets[TAG, k])
+        if brackets[FB, k] > best[PEAK, tag]:
+            best[PEAK, tag], best[PEAK_X, tag], best[PEAK_FAR, tag] = brackets[FB, k], brackets[XB, k], brackets[FAR, k]
+    still_open = 0
+    for k in range(count):
+        tag, height = int(brackets[TAG, k]), brackets[FB, k]
+        if brackets[DONE, k] > 0.0 or height + 2.0 * brackets[REMAINING, k] < best[PEAK, tag]:
+            if height >= best[PEAK, tag]:
+                best[PEAK_X, tag], best[PEAK_FAR, tag] = brackets[TOP_X, k], brackets[FAR, k]
+                best[BEYOND, tag] = brackets[TOP_BEYOND, k]
+        else:
+            if still_open < k:
+                for row in range(LASTING_ROWS):
+                    brackets[row, still_open] = brackets[row, k]
+            still_open += 1
+    return still_open

@@ -1,0 +1,54 @@
+"""A bracket keeps its highest point in the middle, and closes on the peak, wherever trials fall."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from linksweep.engine.peaks import brackets as b
+
+TRIALS = list(itertools.product((-2.0, -0.5, 0.0, 0.3, 2.0), (0.5, 1.0, 1.5, np.nan, np.inf)))
+
+
+def one(points: tuple[float, ...]) -> np.ndarray:
+    table = np.zeros((b.BRACKET_ROWS, b.BLOCK))
+    table[list(b.POINTS), 0], table[b.WIDTH, 0], table[b.FIRST_WIDTH, 0] = points, 4.0 * (points[4] - points[0]), 2.0
+    return table
+
+
+@pytest.mark.parametrize(("place", "value"), TRIALS)
+def test_one_more_point(place, value):
+    """Against the definition: of the old and the new points, the highest and those beside it."""
+    table = one((-1.0, 0.0, 0.0, 1.0, 1.0, -np.inf))
+    table[list(b.TRIALS), 0], table[list(b.VALUES), 0] = place, value
+    with np.errstate(all="ignore"):
+        b.insert_trials(table, 1)
+    points = [(-1.0, 0.0), (0.0, 1.0), (1.0, -np.inf)]
+    if -1.0 < place < 1.0 and place != 0.0:
+        points = sorted([*points, (place, -np.inf if np.isnan(value) else value)])
+    middle = max(range(1, len(points) - 1), key=lambda k: (points[k][1], points[k] == (0.0, 1.0)))
+    expected = [number for point in points[middle - 1 : middle + 2] for number in point]
+    np.testing.assert_array_equal(table[list(b.POINTS), 0], expected)
+
+
+@pytest.mark.parametrize("peak", [-0.7, 0.0, 0.123456, 0.999])
+@pytest.mark.parametrize("shape", [np.cos, lambda x: -np.abs(x), lambda x: -np.abs(x) - 1e3 * (x > 0.0)])
+def test_brackets_close_on_smooth_peaks_kinks_and_jumps(peak, shape):
+    def height(x):
+        return 5.0 + shape(x - peak)
+
+    start = 0.5 * (peak - 1.0)
+    table, best = one((-1.0, height(-1.0), start, height(start), 1.0, height(1.0))), np.zeros((b.BEST_ROWS, 1))
+    if height(start) < max(height(-1.0), height(1.0)):
+        table[[b.XB, b.FB], 0] = peak - 1e-3, height(peak - 1e-3)
+    for _ in range(b.ROUNDS):
+        b.place_trials(table, 1)
+        table[list(b.VALUES), 0] = height(table[list(b.TRIALS), 0])
+        with np.errstate(all="ignore"):
+            b.insert_trials(table, 1)
+        if not b.advance(table, 1, best):
+            break
+    value, place, _, beyond = best[:, 0]
+    assert value <= 5.0 + shape(0.0) + 1e-15
+    assert 5.0 + shape(0.0) - value <= max(beyond, 1e-12)
+    assert abs(place - peak) < 1e-6
