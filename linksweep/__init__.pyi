@@ -11,6 +11,7 @@ from linksweep.analysis.design.geometry import coupler_curve, geometry
 from linksweep.analysis.design.objective import objective
 from linksweep.analysis.design.pareto import pareto
 from linksweep.analysis.design.sensitivities import sensitivities
+from linksweep.analysis.design.tolerance import tolerance
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.drive.motor import Motor, motor_load
@@ -122,6 +123,7 @@ __all__ = [
     "study",
     "sweep",
     "system",
+    "tolerance",
     "units",
     "with_counterweights",
 ]

@@ -26,6 +26,7 @@ from linksweep.cli.commands import (
     without_a_screen,
     write_figure,
 )
+from linksweep.cli.sensitivity import add_sensitivity_commands
 from linksweep.files.atomic import target_of
 from linksweep.files.netcdf import RESULTS, SCENES, TABLES
 from linksweep.scene.examples import names, title
@@ -123,6 +124,7 @@ def _parser() -> argparse.ArgumentParser:
     page.add_argument("--title", help="heading of the page (name of the scene file)")
     add_part(page, "crank angles [degree] of a machine that moves over part of a turn")
     add_commands(commands)
+    add_sensitivity_commands(commands)
     return parser
 
 

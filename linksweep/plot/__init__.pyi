@@ -16,6 +16,7 @@ from linksweep.plot.shaking_force import hodograph as hodograph
 from linksweep.plot.shaking_force import orders as orders
 from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
 from linksweep.plot.study_plots import scatter as scatter
+from linksweep.plot.tolerances import tornado as tornado
 from linksweep.plot.track import loop as loop
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "over_speed",
     "parallel_coordinates",
     "scatter",
+    "tornado",
     "torque",
     "torque_with_flywheel",
 ]

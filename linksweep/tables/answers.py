@@ -17,6 +17,7 @@ from linksweep.tables.of_check import check_table
 from linksweep.tables.of_drive import drive_table, wheel_table
 from linksweep.tables.of_peaks import study_parts
 from linksweep.tables.of_pins import bearing_parts, share_parts
+from linksweep.tables.of_sensitivity import sensitivity_parts, tolerance_parts
 from linksweep.tables.of_system import system_parts
 from linksweep.tables.table import Answer, Part, answer
 
@@ -43,6 +44,8 @@ KINDS: Mapping[str, Kind] = {
     "compare": _kind(lambda ds: iter([balance_table(ds)]), "", "balance"),
     "duty": _kind(lambda ds: iter([drive_table(ds)]), "effort_peak power_max work_fed", ""),
     "flywheel": _kind(lambda ds: iter([wheel_table(ds)]), "speed flywheel_inertia fluctuation drive_torque", "theta2"),
+    "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
+    "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
     "system": _kind(system_parts, "matrix rhs", "theta2 equation unknown"),
     "orders": _kind(lambda ds: iter([order_table(ds)]), "", "order"),
 }
@@ -75,6 +78,6 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
     if name in ("peaks", "study") and "status" in ds and any(f"{each}_at" in ds for each in ds.data_vars):
         return _peaks(ds)
     kind = KINDS.get(name)
-    if kind and kind.variables <= ds.keys() and {*ds.dims} <= kind.dims:
+    if kind and kind.variables <= {*ds.variables} and {*ds.dims} <= kind.dims:
         return kind.parts(ds)
     return parts_of_any(ds)

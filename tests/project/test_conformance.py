@@ -132,6 +132,7 @@ CALLS = {
     "study": lambda s, path: stored(s, path),
     "sweep": lambda s, path: ls.sweep(s.machine, SAMPLES, of=[s.force, s.drive]),
     "system": lambda s, path: ls.system(s.machine, 45.0),
+    "tolerance": lambda s, path: ls.tolerance(s.machine, {s.word: ls.Tolerance(0.0, 0.1)}, of=s.force, n=4),
     "with_counterweights": lambda s, path: ls.with_counterweights(s.machine, [ls.Counterweight(s.crank, **WEIGHT)]),
     "plot.animate": lambda s, path: ls.plot.animate(s.machine, frames=3),
     "plot.balance": lambda s, path: ls.plot.balance(s.machine, s.machine, theta2=SAMPLES),
@@ -150,6 +151,9 @@ CALLS = {
     "plot.over_speed": lambda s, path: ls.plot.over_speed(s.machine, s.force, speeds=[10.0, 20.0]),
     "plot.parallel_coordinates": lambda s, path: s.study.linksweep.parallel_coordinates(),
     "plot.scatter": lambda s, path: s.study.linksweep.scatter(x=f"{s.force}_peak", y=f"{s.drive}_peak"),
+    "plot.tornado": lambda s, path: ls.tolerance(
+        s.machine, {s.word: ls.Tolerance(0.0, 0.1)}, of=s.force, n=0
+    ).linksweep.tornado(),
     "plot.torque": lambda s, path: s.cycle.linksweep.torque(),
     "plot.torque_with_flywheel": lambda s, path: s.flywheel.linksweep.torque_with_flywheel(),
     "accessor.mechanism": lambda s, path: s.cycle.linksweep.mechanism(45.0),
@@ -179,6 +183,10 @@ COMMANDS = {
     "orders": lambda s, path: ["orders", written(s, path)],
     "explore": lambda s, path: ["explore", written(s, path)],
     "flywheel": lambda s, path: ["flywheel", written(s, path)],
+    "sensitivities": lambda s, path: ["sensitivities", written(s, path), "--of", s.force, "--to", s.word],
+    "tolerance": lambda s, path: [
+        *("tolerance", written(s, path), "--of", s.force, "--tol", s.word, "0", "0.1", "-n", 4)
+    ],
 }
 """Arguments of each command that takes a scene; `demo` takes none."""
 
@@ -216,8 +224,8 @@ LACKING: dict[str, str] = {
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
         draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
-        sensitivities speed_limit speed_separation study sweep system with_counterweights plot.balance
-        plot.bearing plot.bearings
+        sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights plot.balance
+        plot.bearing plot.bearings plot.tornado
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
         plot.torque_with_flywheel accessor.mechanism accessor.scene
     """,

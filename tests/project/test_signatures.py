@@ -31,7 +31,7 @@ SUBJECTS = {
 WORK = {
     "bearings", "best_counterweights", "breakdown", "compare", "coupler_curve", "duty", "flywheel", "geometry",
     "motor_load", "peaks", "pin_friction", "position_equation", "regressor", "report", "screen", "sensitivities",
-    "speed_limit", "speed_separation", "study", "sweep", "system", "MultiCylinder.sweep",
+    "speed_limit", "speed_separation", "study", "sweep", "system", "tolerance", "MultiCylinder.sweep",
 }  # fmt: skip
 """Functions that compute cycles or peaks, and therefore take `threads`."""
 

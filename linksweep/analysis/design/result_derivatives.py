@@ -20,7 +20,7 @@ import xarray as xr
 
 from linksweep.analysis.design.geometry import geometry
 from linksweep.analysis.design.travel import rate_of
-from linksweep.analysis.drive.flywheel import flywheel_slopes
+from linksweep.analysis.drive.flywheel import flywheel, flywheel_slopes
 from linksweep.base.validate import name_problems
 from linksweep.engine.run import Field
 from linksweep.results.compute import quantity_problems
@@ -66,6 +66,17 @@ def derived(
     if end in ("mean", "rms"):
         return _mean(scene, stem, end, to, threads)
     return _peak(scene, stem, end, to, threads)
+
+
+def result_value(scene: Scene, name: str, threads: int | None = None, fluctuation: float = 0.02) -> xr.DataArray:
+    """Return a result by its name."""
+    if name in OUTPUT or name.endswith(TRAVEL):
+        return _motion(scene, name, threads)[1][name]
+    if name == FLYWHEEL:
+        return flywheel(scene, fluctuation=fluctuation, threads=threads).flywheel_inertia
+    stem, end = split(scene, name)
+    of = f"{stem}_{end}" if end in ("mean", "rms") else stem
+    return peaks(scene, of=[of], threads=threads)[f"{stem}_{end}"]
 
 
 def result_names(scene: Scene) -> list[str]:
@@ -159,10 +170,8 @@ def _extreme(
 
 def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
     """Return a stroke or swing, or the travel of a position."""
-    alone = replace(scene, omega2=1.0, alpha2=0.0, loads=())
-    position = OUTPUT.get(name) or name.removesuffix(TRAVEL)
-    motion = geometry(alone, None if name in OUTPUT else [position], threads=threads)
-    value = motion[name]
+    alone, motion = _motion(scene, name, threads)
+    position, value = OUTPUT.get(name) or name.removesuffix(TRAVEL), motion[name]
     if name in OUTPUT:
         ends = motion["reversal_angle"]
         (dim,) = {*map(str, ends.dims)} & {"limit", "reversal"}
@@ -177,6 +186,13 @@ def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -
     sense = xr.DataArray(sense) if scene.table.quantity[position].units == "degree" else np.sign(way)
     slopes = {p: xr.DataArray(sense * (ahead[p] - behind[p])) if p in own else 0.0 * value for p in to}
     return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
+
+
+def _motion(scene: Scene, name: str, threads: int | None) -> tuple[Scene, xr.Dataset]:
+    """Return the mechanism alone, and the geometry of its motion with a stroke, a swing or a travel."""
+    alone = replace(scene, omega2=1.0, alpha2=0.0, loads=())
+    of = None if name in OUTPUT else [name.removesuffix(TRAVEL)]
+    return alone, geometry(alone, of, threads=threads)
 
 
 def _turning_point(

@@ -101,7 +101,7 @@ def sensitivities(
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
         variables |= _variables(scene, name, derived(scene, name, paths, threads, fluctuation=fluctuation))
     command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)})"
-    return _labelled(scene, variables, paths, command)
+    return labelled(scene, variables, paths, command)
 
 
 def parameters_of(scene: Scene, to: str | Iterable[str] | None = None) -> tuple[str, ...]:
@@ -146,7 +146,7 @@ def values_of(scene: Scene, path: str) -> xr.DataArray:
     return xr.DataArray(0.0 if value is None else value).reset_coords(drop=True)
 
 
-def _labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...], command: str) -> xr.Dataset:
+def labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...], command: str) -> xr.Dataset:
     own = free(scene)
     units = {"long_name": "unit of the parameter, per which the derivatives are"}
     coordinates = design_coordinates(scene)
@@ -183,4 +183,4 @@ def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...], thre
     variables["status"] = xr.Variable(status.dims, status.values, words)
     count = angles if isinstance(angles, int | np.integer) else f"<{np.size(angles)} angles>"
     command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)}, {grid.dim}={quote(count)})"
-    return _labelled(scene, variables, paths, command)
+    return labelled(scene, variables, paths, command)

@@ -1,0 +1,68 @@
+"""What tolerances do to a result, parameter by parameter: a tornado plot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.validate import name_problems, refuse
+from linksweep.plot.kit.colors import BLACK, BLUE, GREY, ORANGE
+from linksweep.plot.kit.style import axes_or_new, grid
+from linksweep.results.compute import require_dataset
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes | None = None) -> Axes:
+    """Plot how far each tolerance alone moves a result, the widest on top.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Result of `linksweep.tolerance`, of one design.
+    of : str, default None
+        Name of the result, such as "F32_peak"; None for the first in the Dataset.
+    most : int, default 12
+        Largest number of parameters.
+    ax : matplotlib Axes, default None
+        Axes to draw into; None for a new figure.
+
+    Returns
+    -------
+    matplotlib Axes
+        Axes with a bar for each parameter from its lower to its upper limit, and ±3 sigma of all together as a band.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without tolerances, for an unknown name, and for more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> made = {"crank.length": "js9", "ground": "js9"}
+    >>> ls.plot.tornado(ls.tolerance(ls.example("press"), made, of="F32_peak", n=0)).get_xlabel()
+    'F32_peak [N]'
+    """
+    require_dataset(ds, "ls.tolerance")
+    known = [str(key).removesuffix("_share") for key in ds.data_vars if str(key).endswith("_share")]
+    refuse([] if known else ["ds has no tolerances: take what ls.tolerance returns"])
+    name = known[0] if of is None else of
+    refuse(name_problems("of", name, known))
+    several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
+    refuse([f"ds has several designs, over {several[0]}: take one, as ds.isel({several[0]}=0)"] if several else [])
+    nominal, sigma = float(ds[name]), float(ds[f"{name}_sigma"])
+    lower, upper = (ds[f"{name}_{word}"].values for word in ("lower", "upper"))
+    order = np.argsort(np.maximum(abs(lower), abs(upper)))[-most:]
+    ax = grid(axes_or_new(ax, figsize=(6.4, 1.6 + 0.3 * len(order))))
+    ax.axvspan(nominal - 3.0 * sigma, nominal + 3.0 * sigma, color=GREY, alpha=0.2, label="±3 sigma of all")
+    for changes, color, text in ((lower, BLUE, "at its lower limit"), (upper, ORANGE, "at its upper limit")):
+        ax.barh(np.arange(len(order)), changes[order], left=nominal, color=color, height=0.6, label=text)
+    ax.axvline(nominal, color=BLACK, linewidth=1.0)
+    ax.set_yticks(np.arange(len(order)), [str(ds["parameter"].values[k]) for k in order])
+    ax.set_xlabel(f"{name} [{ds[name].attrs['units']}]")
+    ax.legend(fontsize="small", frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    return ax

@@ -1,0 +1,104 @@
+"""Tolerance: published limits of ISO 286, closed forms of linear results, drawn designs beside."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.analysis.design.fits import limit_deviations
+from linksweep.cli.main import main
+from linksweep.scene.parameters import replaced
+
+PRESS = ls.example("press")
+MADE = {"crank.length": "js9", "ground": ls.Tolerance("-50 um", "50 um")}
+
+
+@pytest.mark.parametrize(
+    ("name", "lower", "upper"),
+    [  # ISO 286-2, tables of limit deviations
+        ("40 H7", 0, 25),
+        ("40 g6", -25, -9),
+        ("10 h9", -36, 0),
+        ("25 f7", -41, -20),
+        ("60 k6", 2, 21),
+        ("100 p6", 37, 59),
+        ("20 n6", 15, 28),
+        ("8 m6", 6, 15),
+        ("20 JS9", -26, 26),
+        ("180 e8", -148, -85),
+        ("50 D10", 80, 180),
+        ("50 G7", 9, 34),
+        ("3 h6", -6, 0),
+    ],
+)
+def test_limits_are_those_of_the_standard(name, lower, upper):
+    assert limit_deviations(name, 1.0) == pytest.approx((1e-6 * lower, 1e-6 * upper), abs=1e-12)
+
+
+def test_a_class_without_a_size_is_that_of_the_length():
+    assert limit_deviations("H7", 0.04) == limit_deviations("40 H7", 9.0)
+
+
+@pytest.mark.parametrize("name", ["40 Z7", "40 H20", "600 H7", "40 k9", "40 K7"])
+def test_classes_beyond_the_tables_are_refused(name):
+    with pytest.raises(ValueError, match=name.split()[1]):
+        limit_deviations(name, 1.0)
+
+
+def test_a_result_that_is_linear_has_the_variance_of_its_terms():
+    """N = m v²/R − m g·cos θ: at the bottom linear in the mass, whose drawn designs have the same sigma."""
+    car = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=60.0, gravity=(0.0, -9.81), thrust=0.0)
+    made = {"mass": ls.Tolerance(-6.0, 12.0), "gravity[2]": ls.Normal(deviation=0.1, within=2)}
+    ds = ls.tolerance(car, made, of="normal_force_max", n=4096)
+    of_mass, of_gravity = 60.0**2 / 30.0 + 9.81, -700.0
+    part = math.sqrt(1 - 2 * 2 * math.exp(-2) / math.sqrt(2 * math.pi) / math.erf(math.sqrt(2)))
+    sigmas = [of_mass * 18 / math.sqrt(12), 700.0 * 0.1 * part]
+    assert float(ds.normal_force_max_sigma) == pytest.approx(math.hypot(*sigmas), rel=1e-12)
+    assert ds.normal_force_max_share.values == pytest.approx(np.square(sigmas) / math.hypot(*sigmas) ** 2)
+    assert float(ds.normal_force_max_shift) == pytest.approx(3.0 * of_mass)
+    worst = float(ds.normal_force_max_worst_largest - ds.normal_force_max)
+    assert worst == pytest.approx(12.0 * of_mass - 0.2 * of_gravity)
+    assert float(ds.normal_force_max_drawn_sigma) == pytest.approx(math.hypot(*sigmas), rel=1e-3)
+    assert float(ds.normal_force_max_drawn_largest) <= float(ds.normal_force_max_worst_largest) + 0.2
+
+
+def test_drawn_designs_and_linear_agree_for_small_tolerances_alone():
+    small = ls.tolerance(PRESS, MADE, of=["F32_peak", "swing"], n=256)
+    for name in ("F32_peak", "swing"):
+        assert float(small[f"{name}_sigma"]) == pytest.approx(float(small[f"{name}_drawn_sigma"]), rel=0.02)
+    wide = ls.tolerance(PRESS, {"ground": ls.Tolerance("-3 cm", "3 cm")}, of="F32_peak", n=256)
+    assert abs(float(wide.F32_peak_drawn_mean - wide.F32_peak)) > 5.0 * abs(float(wide.F32_peak_shift)) + 1.0
+
+
+def test_designs_have_each_their_own():
+    widths = xr.DataArray([0.01, 0.02], dims="w")
+    both = ls.tolerance(replaced(PRESS, {"coupler.width": widths}), MADE, of="F32_peak", n=0)
+    one = ls.tolerance(replaced(PRESS, {"coupler.width": 0.02}), MADE, of="F32_peak", n=0)
+    assert both.F32_peak_sigma.dims == ("w",)
+    assert float(both.F32_peak_sigma[1]) == pytest.approx(float(one.F32_peak_sigma), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        ({"crank.lenght": "js9"}, "did you mean"),
+        ({"omega2": "h7"}, "class of lengths"),
+        ({"ground": 0.1}, "must be ls.Tolerance"),
+        ({"ground": ls.Normal(0.2, 0.1)}, "mean of its own"),
+    ],
+)
+def test_refusals_name_the_parameter(made, words):
+    with pytest.raises(ValueError, match=words):
+        ls.tolerance(PRESS, made, of="F32_peak")
+
+
+def test_commands_print_the_tables(capsys):
+    main(["sensitivities", "press", "--of", "F32_peak", "--to", "ground", "crank.length"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("F32_peak = 354.5") and any(line.startswith("ground") for line in lines)
+    limits = ["--tol", "crank.length", "-20 um", "20 um"]
+    main(["tolerance", "press", "--of", "F32_peak", "--tol", "ground", "js9", *limits, "-n", "16"])
+    text = capsys.readouterr().out
+    assert "sigma" in text and "of the variance" in text and "drawn designs" in text
