@@ -11,7 +11,7 @@ import inspect
 import re
 import traceback
 from collections.abc import Callable, Iterable
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -19,6 +19,7 @@ import pint
 import pytest
 import scotch_yoke
 import xarray as xr
+from linkages_at_hand import EXAMPLES, LINKAGES
 
 import linksweep as ls
 from linksweep.cli.main import main
@@ -246,45 +247,6 @@ def stored(subject: Subject, path):
     """Return the file of a study of two designs."""
     ls.study(subject.of(subject.designs), path / "study.nc", of=[subject.force], **subject.samples).close()
     return path / "study.nc"
-
-
-def bar(length: float) -> ls.Bar:
-    return ls.Bar(length, 0.02, 0.02, 7750.0)
-
-
-def six_bar() -> ls.Scene:
-    """Return a Watt II six-bar."""
-    links = ls.Linkage(
-        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
-        ground={"A": (0.0, 0.0), "D": (0.20, 0.0), "G": (0.42, 0.05)},
-        points={"E": (0.12, -35.0)},
-        crank=bar(0.08),
-        coupler=bar(0.22),
-        rocker=bar(0.18),
-        rod=bar(0.20),
-        output=bar(0.15),
-    )
-    return ls.Scene(links, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("output", torque=-12.0)])
-
-
-def knuckle_press() -> ls.Scene:
-    """Return a knuckle-joint press, whose pin C joins three links, and whose ram slides with friction."""
-    links = ls.Linkage(
-        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
-        ground={"A": (0.0, 0.0), "D": (0.26, 0.16)},
-        guides={"slide": ls.Guide(through=(0.26, 0.0), angle=-90.0, friction=0.1)},
-        crank=bar(0.03),
-        rod=bar(0.25),
-        upper=bar(0.15),
-        lower=bar(0.15),
-        ram=ls.Slider(mass=3.0),
-    )
-    return ls.Scene(links, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("ram", force=-500.0)])
-
-
-EXAMPLES = {name: partial(ls.example, name) for name in ("excavator", "whitworth", "geared-five-bar")}
-EXAMPLES["yoke"] = partial(ls.example, "scotch-yoke")
-LINKAGES = {"six-bar": six_bar, "knuckle-press": knuckle_press, **EXAMPLES}
 
 
 @lru_cache
