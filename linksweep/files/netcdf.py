@@ -28,6 +28,8 @@ RESULTS, SCENES = (".nc", ".csv", ".xlsx"), (".toml", ".nc")
 """Endings of the files of Datasets, and of scenes."""
 TABLES = {".csv": to_csv, ".xlsx": to_excel}
 """Writers of tables, by the ending of their files."""
+NO_FILL = {"_FillValue": None}
+"""Encoding of a coordinate, which by the CF conventions has no missing values."""
 NETCDF = RLock()
 """Lock around the NetCDF library: used by two threads at once, it crashes the process."""
 
@@ -84,7 +86,7 @@ def save_dataset(ds: xr.Dataset, path: str | os.PathLike[str], manifest: dict[st
     """Write a Dataset to NetCDF whole or not at all, sealed with a manifest."""
     refuse(_unstorable(ds))
     with whole(path) as temporary, NETCDF:
-        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4")
+        ds.drop_encoding().to_netcdf(temporary, engine="netcdf4", encoding=dict.fromkeys(ds.coords, NO_FILL))
         seal(temporary, manifest or {}, SAVED)
 
 

@@ -109,8 +109,13 @@ def origin_attributes(scene: Scene, command: str) -> dict[str, str]:
         "Conventions": "CF-1.11",
         "title": f"linksweep: {type(scene.mechanism).__name__}",
         "linksweep_version": installed_version(),
-        "command": command,
+        **by_command(command),
     } | ({OWN_UNITS: scene.units} if scene.units else {})
+
+
+def by_command(command: str) -> dict[str, str]:
+    """Return the attributes that state the command by which a Dataset was made; CF calls one of them its history."""
+    return {"command": command, "history": f"linksweep {installed_version()}: {command}"}
 
 
 def provenance(scene: Scene, command: str, coordinates: Mapping[str, xr.Variable]) -> dict[str, str]:

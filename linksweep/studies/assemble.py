@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_cf_variable
 
-from linksweep.files.netcdf import NETCDF
+from linksweep.files.netcdf import NETCDF, NO_FILL
 from linksweep.results.dataset import design_coordinates, provenance
 from linksweep.scene.designs.selection import Block
 from linksweep.scene.scene import Scene
@@ -113,8 +113,9 @@ def _define_all(file: Any, layout: Layout, coordinates: Mapping[str, xr.Variable
         named = " ".join(path for path, over in beside.items() if over <= {*dims})
         _define(file, name, layout.like[name], layout.sizes_of(name), {"coordinates": named} if named else {})
     for name, values in coordinates.items():
-        encoded = encode_cf_variable(values, name=name)
-        _define(file, name, values, values.sizes, {})[...] = encoded.values
+        plain = xr.Variable(values.dims, values.data, values.attrs, NO_FILL)
+        encoded = encode_cf_variable(plain, name=name)
+        _define(file, name, plain, values.sizes, {})[...] = encoded.values
     alone = [path for path, over in beside.items() if not any(over <= {*dims} for dims in layout.dims.values())]
     file.setncatts(layout.attributes | ({"coordinates": " ".join(alone)} if alone else {}))
 

@@ -17,7 +17,7 @@ from linksweep.base.degrees import cos_sin
 from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested, require_dataset
-from linksweep.results.dataset import with_units
+from linksweep.results.dataset import by_command, with_units
 from linksweep.scene.grid import whole_turns
 
 TURN = 360.0
@@ -80,7 +80,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
         signal = ds[name].broadcast_like(ds[index])  # a constant has a mean alone
         variables |= _named(name, ds[name], *(weight * xr.dot(signal, wave, dim=index) for wave in waves))
     attributes = {"units": "1", "long_name": f"cycles in one turn of {index}"}
-    origin = ds.attrs | {"command": f"linksweep.orders(ds, {names}, n={n})"}
+    origin = ds.attrs | by_command(f"linksweep.orders(ds, {names}, n={n})")
     return xr.Dataset(variables, attrs=origin).assign_coords(order=("order", order, attributes))
 
 

@@ -16,7 +16,7 @@ from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.results.compute import angles_missing, require_dataset
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.dataset import joined, with_units
+from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
@@ -114,7 +114,7 @@ def bearings(
     ]
     results = side_by_side(parts, "pin", links, TEXTS)
     angles = theta2 if part is None else f"<{len(grid.angles)} angles>"
-    attributes = cycle.attrs | {"command": f"linksweep.bearings(scene, ..., theta2={angles})"}
+    attributes = cycle.attrs | by_command(f"linksweep.bearings(scene, ..., theta2={angles})")
     return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
 
 

@@ -17,7 +17,7 @@ from linksweep.base.validate import count_problems, refuse
 from linksweep.results.cylinders import cylinders_between  # noqa: F401  (registers the sums that integrals are of)
 from linksweep.results.cylinders.cylinder_sums import main
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
-from linksweep.results.dataset import joined
+from linksweep.results.dataset import by_command, joined
 from linksweep.results.peaks import peaks
 
 FRAMES = ("ground", "journal")
@@ -54,7 +54,7 @@ def main_bearings(
     ]
     results = side_by_side(parts, "main", mains, MAIN_TEXTS)
     place = xr.DataArray(list(machine.mains), dims="main", attrs={"units": "m", "long_name": "place along the shaft"})
-    attributes = cycle.attrs | {"command": f"linksweep.bearings(engine, ..., theta2={theta2})"}
+    attributes = cycle.attrs | by_command(f"linksweep.bearings(engine, ..., theta2={theta2})")
     coordinates = {**cycle.coords, "main_position": place}
     return xr.Dataset({**results, "status": cycle["status"]}, coordinates, attributes)
 

@@ -18,6 +18,9 @@ METHODS = ("sobol", "halton", "latin_hypercube", "random")
 FINEST = 2.0**-31
 """Half of the finest step of scipy's Sobol points: 0 and 1, where a normal is infinite, are kept off by it."""
 
+NUMBERED = {"long_name": "number of the design"}
+"""Attributes of the labels of designs."""
+
 
 def sample(
     scene: Scene,
@@ -97,7 +100,7 @@ def _drawn(choice: Any, levels: np.ndarray, dim: str, labels: np.ndarray, own: A
     around = around_own(choice)
     if around and (own is None or (callable(own) and not hasattr(own, "dims"))):
         raise ValueError(f"{quote(choice)} is around the scene's own value, {quote(own)}: give it a number")
-    drawn = xr.DataArray(quantiles(choice, levels, kind), {dim: labels}, dim)
+    drawn = xr.DataArray(quantiles(choice, levels, kind), {dim: (dim, labels, NUMBERED)}, dim)
     return own + drawn if around else drawn
 
 
