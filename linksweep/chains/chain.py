@@ -93,7 +93,7 @@ class Chain:
         """Return the rows of the forces with a drive; with that of the crank where none is named."""
         return Forces(self.motion, self.drive(name) if name and not self.motion.plain else None, rubbing)
 
-    @property
+    @cached_property
     def unknowns(self) -> tuple[str, ...]:
         """Forces at pins, then normal force and moment of each slide, forces of struts, torques of gears."""
         of_pins = [part for i, j in self.topology.pins.values() for part in xy(force_name(i, j))]
@@ -101,13 +101,13 @@ class Chain:
         struts = (f"force_{role}" for role in self.topology.cylinders if role in self.topology.struts)
         return (*of_pins, *of_slides, *struts, *(torque_name(self.topology, role) for role in self.topology.gears))
 
-    @property
+    @cached_property
     def slide_forces(self) -> tuple[str, ...]:
         """Friction in each slide, and the components of its whole force."""
         names = [force_name(*pair) for pair in self.topology.slides.values()]
         return tuple(f"{name}{part}" for name in names for part in ("xy" if self.motion.plain else "txy"))
 
-    @property
+    @cached_property
     def kinematics(self) -> tuple[str, ...]:
         """Angle, rates and accelerations of all links but the crank, then of all that slides."""
         turning = [self.topology.number(role) for role in self.topology.links if role != self.topology.crank]

@@ -216,7 +216,7 @@ def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
 def _field(plan: Plan, node: Node, value: Numbers, grid: Grid, sizes: Sizes) -> Field:
     dims = plan.dims(node)
     shape = tuple(len(grid.angles) if dim == grid.dim else sizes[dim] for dim in dims)
-    return Field(dims, np.reshape(value, shape))
+    return Field(dims, value.reshape(shape))  # a method: np.reshape takes as long as a row of samples
 
 
 def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[Field, Field]:

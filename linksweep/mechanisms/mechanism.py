@@ -236,7 +236,7 @@ class Mechanism(ByContent, ABC):
     @property
     def rubs(self) -> bool:
         """True where some part slides with friction."""
-        return any(np.any(coefficient) for coefficient in self.frictions.values())
+        return any(mu != 0.0 if type(mu) is float else np.any(mu) for mu in self.frictions.values())
 
     @property
     def engine_cylinder(self) -> PistonCylinder:

@@ -31,6 +31,10 @@ class Axis:
         """Return a coordinate whose attributes are its own."""
         return self._first.copy(deep=False)
 
+    def direct_variable(self) -> xr.Variable:
+        """Return the same by the private fields of variables."""
+        return _direct_variable((self.dim,), self._first._data, dict(self.attributes), xr.IndexVariable)
+
     @cached_property
     def index(self) -> PandasIndex:
         return PandasIndex.from_variables({self.dim: self._passed}, options={})
@@ -86,9 +90,11 @@ def _public_variable(dims: tuple[str, ...], values: np.ndarray, attributes: dict
     return xr.Variable(dims, values, attributes, fastpath=True)  # else xarray would import dask
 
 
-def _direct_variable(dims: tuple[str, ...], values: np.ndarray, attributes: dict[str, Any]) -> xr.Variable:
+def _direct_variable(
+    dims: tuple[str, ...], values: Any, attributes: dict[str, Any], kind: type[xr.Variable] = xr.Variable
+) -> xr.Variable:
     """Return what ``xr.Variable`` makes of these, by its private fields."""
-    made: Any = xr.Variable.__new__(xr.Variable)
+    made: Any = kind.__new__(kind)
     made._dims, made._data, made._attrs, made._encoding = dims, values, attributes or None, None
     return made
 
@@ -123,6 +129,7 @@ def direct(
             every[name] = variable.to_base_variable()
     if axis is not None:
         names.add(axis.dim)
-        every[axis.dim], indexes[axis.dim] = axis.variable(), axis.index
-    sizes = {dim: size for variable in every.values() for dim, size in zip(variable.dims, variable.shape, strict=True)}
+        every[axis.dim], indexes[axis.dim] = axis.direct_variable(), axis.index
+    shapes = ((variable.dims, variable._data.shape) for variable in every.values())
+    sizes = {dim: size for dims, shape in shapes for dim, size in zip(dims, shape, strict=True)}
     return xr.Dataset._construct_direct(every, names, sizes, dict(attributes) or None, indexes)

@@ -34,7 +34,6 @@ def crank_grid(angles: Any, period: float, dim: str = "theta2", geared: Geared =
     if isinstance(angles, int | np.integer) and not isinstance(angles, bool | np.timedelta64):
         if angles < 1:
             raise ValueError(f"{dim} = {quote(angles)}: a count of angles must be at least 1")
-        require_memory(f"{dim} = {quote(angles)}", 8.0 * angles * (1 + len(rows(geared))))
         return _uniform(int(angles), period, dim, geared)
     return _grid(_angles(angles, dim), 0.0, dim, geared)
 
@@ -49,6 +48,7 @@ def whole_turns(angles: np.ndarray, turn: float) -> float | None:
 
 @lru_cache(maxsize=8)
 def _uniform(count: int, period: float, dim: str, geared: Geared) -> Grid:
+    require_memory(f"{dim} = {count}", 8.0 * count * (1 + len(rows(geared))))
     return _grid(np.arange(count) * (period / count), period, dim, geared)
 
 

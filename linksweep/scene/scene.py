@@ -270,7 +270,7 @@ class Scene(ByContent):
     def steady(self) -> bool:
         """True where no parameter changes over the revolution."""
         over_angle = any(self.mechanism.index in array.dims for array in self.arrays.values())
-        return self.at_one_angle is self and not over_angle
+        return not (over_angle or self.functions) and self._evaluated(self.grid(1)) is self
 
     @property
     def changes_speed(self) -> bool:
@@ -331,6 +331,9 @@ class Scene(ByContent):
         Scene
             Scene with DataArrays over these angles; the scene itself where nothing changes with them.
         """
+        return self if self.steady else self._evaluated(grid)
+
+    def _evaluated(self, grid: Grid) -> Scene:
         revolution = Revolution(self, grid)
         loads = tuple(load.sampled(path, revolution) for path, load in self._loads())
         mechanism = self.mechanism.at_angles(revolution.sample_length)
