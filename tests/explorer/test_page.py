@@ -43,7 +43,7 @@ def address():
 
 
 class Screen:
-    """A page with the machine standing still, and its console's complaints."""
+    """A page with the machine standing still at 45 degrees, and its console's complaints."""
 
     def __init__(self, browser, address: str, width: int = 1280, height: int = 800) -> None:
         self.page = browser.new_page(viewport={"width": width, "height": height}, accept_downloads=True)
@@ -53,6 +53,7 @@ class Screen:
         self.page.goto(address, timeout=WAIT)
         self.settle()
         self.press("Pause")
+        self.page.locator(".transport input").fill("45")
         self.page.locator(".sheet").focus()
 
     def settle(self) -> None:
@@ -133,12 +134,12 @@ def test_a_pin_follows_the_mouse_while_frames_stay_quick(screen):
 
 
 def test_the_crank_turns_with_its_pin_and_keeps_its_length(screen):
-    (bx, by), (cx, cy) = screen.pin("B"), screen.pin("C")
-    before = screen.page.locator(".transport output").text_content()
-    screen.drag((bx, by), (3, 3), steps=4)  # less than the circle's hold
-    assert screen.number("crank.length") == 0.08
-    assert screen.page.locator(".transport output").text_content() != before
-    assert screen.number("coupler.length") == 0.22 and (cx, cy) != screen.pin("C")
+    (bx, by), c = screen.pin("B"), screen.pin("C")
+    screen.drag((bx, by), (20, 24), steps=10)  # clockwise, and never further from the circle than it holds
+    assert screen.number("crank.length") == 0.08 and screen.number("coupler.length") == 0.22
+    angle = screen.page.locator(".transport output").text_content()
+    assert float(re.search(r"[\d.]+(?=°)", angle)[0]) < 40.0
+    assert screen.pin("C") != c
 
 
 def test_numbers_are_typed_with_units_and_refused_in_words(screen):

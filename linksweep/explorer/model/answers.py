@@ -98,7 +98,7 @@ def _rail(scene: Scene, guide: Any, metre: float) -> list[list[float]] | None:
 
 
 def _force(cycle: xr.Dataset, force: str, count: int) -> np.ndarray:
-    return np.array([signals.spread(part, count) for part in signals.components(cycle, force)])
+    return np.array([signals.spread(cycle[f"{force}{axis}"], count) for axis in "xy"])
 
 
 def _named(drawing: Drawing, force: str) -> dict[str, Any]:

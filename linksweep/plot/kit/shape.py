@@ -57,7 +57,7 @@ def positions(scene: Scene, drawing: Drawing, angles: Sequence[float]) -> xr.Dat
     outputs = [f"{pin}{axis}" for pin in drawing.moving for axis in "xy"]
     outputs += [name for name in drawing.angles if name in geometry.table.quantity]
     count = CURVE * round(geometry.period / geometry.mechanism.period)
-    cycle = sweep(geometry, theta2=[*np.arange(count) * (geometry.period / count), *angles], of=outputs)
+    cycle = sweep(geometry, theta2=np.append(np.arange(count) * (geometry.period / count), angles), of=outputs)
     signals.require_one_design(cycle.values())
     return cycle
 
