@@ -12,7 +12,7 @@ from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.find_peaks import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
-from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.plan import plan
 
 LANEWISE = {name: value for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
@@ -91,7 +91,8 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted():
     request = plan(scene.table.between_samples, (*signals, "near_toggle_near", "near_toggle_far"), forms)
     evaluators = Evaluators(request, signals)
     compiled, interpreted = evaluators.compiled, evaluators.interpreted
-    lanes, of_turn = compiled.lanes, np.repeat(grades()[[3, 0], :].ravel(), compiled.lanes)
+    lanes, of_turn = compiled.lanes, np.empty(2 * PLACED * compiled.lanes)
+    abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn)
     inputs = np.array([np.broadcast_to(scene.inputs.fields[node.value].values, lanes) for node in evaluators.inputs])
     constants, rows = np.empty(len(evaluators.constants) * lanes), np.empty((SAMPLES + 1) * len(signals) * lanes)
     compiled.prepare(inputs.ravel(), constants)
@@ -109,14 +110,15 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted():
         assert values[lane] == value[0]
 
 
-def test_a_place_is_that_of_its_sample():
-    x = np.repeat(np.concatenate([grades()[0], grades()[0]]), 2)
-    angles = [2.0 * np.degrees(np.arctan(abreast.place_of(x, 2, 1, j))) for j in range(SAMPLES)]
-    assert angles[0] == -90.0 and angles[HALF] == 0.0 and angles[2 * HALF] == -90.0
-    assert (np.diff(angles[: 2 * HALF]) > 0.0).all()
-    for j in (0, 1, 2 * HALF - 1, 2 * HALF, SAMPLES - 1):
-        before, after = (2.0 * np.degrees(np.arctan(place(x, 2, 1, j))) for place in (abreast.before, abreast.after))
-        assert before < angles[j] < after <= 90.0
+def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
+    x, widths = np.empty(2 * PLACED), np.array([0.01, 1.0])
+    abreast.place_samples(widths, 1, grades(), x)
+    near, far = 2.0 * np.degrees(np.arctan(x.reshape(2, PLACED)))
+    for angles, other in ((near, far), (far, near)):
+        assert angles[1] == -90.0 and angles[1 + HALF] == 0.0 and angles[-1] == 90.0
+        np.testing.assert_array_equal(angles[1:], -angles[:0:-1])
+        np.testing.assert_allclose(angles[0], other[-2] - 180.0, rtol=1e-14)
+    assert near[2 + HALF] < 0.3 * far[2 + HALF]
 
 
 def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
@@ -131,8 +133,8 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
         constants[:] = 1.0, 1.0, inputs[0]
 
     def sample(constants, x, rows):
-        angles = [2.0 * np.arctan(abreast.place_of(x, 1, 0, j)) + np.pi * (j >= 2 * HALF) for j in range(SAMPLES)]
-        rows[:SAMPLES] = height(np.array(angles), constants[2])
+        angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
+        rows[:SAMPLES] = height(angles.ravel(), constants[2])
 
     def evaluate(constants, x, far, signal, values, first, last):
         at = slice(first, last)
@@ -144,7 +146,7 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
         abreast.search(
             0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, one[:, None] + 1, grades(),
             prepare, sample, evaluate, one[:, None].copy(), np.zeros(1), np.zeros((abreast.BLOCKS, 3)),
-            np.zeros(2 * (HALF + 1)), np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)),
+            np.zeros(2 * PLACED), np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)),
             np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip
     places = 2.0 * np.arctan(best[PEAK_X]) + np.pi * best[PEAK_FAR]

@@ -20,7 +20,7 @@ from typing import Any
 from linksweep.base.cache import forget, keep, recall
 from linksweep.engine.kernel import instructions, vectors
 
-SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False}
+SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
 arrays, so numba's reference counting (`_nrt`) is off: in a search its cost shows."""
 
@@ -48,7 +48,7 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
 def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature: str, enters: str) -> Callable:
     """Return one function of a module of plain functions, compiled for these types of its arguments; `enters` is the
     source of all that enters its machine code by the helpers."""
-    entry = _jitted("import math\n\n\n" + source, helpers, f"{signature} {enters}")[name]
+    entry = _jitted("import math\n\n\n" + source, helpers, f"{signature} {enters}", name)[name]
     entry.compile(signature)
     entry.disable_compile()
     return entry
@@ -105,9 +105,9 @@ def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
     return _jitted(source, {}, emitted) if source else {}
 
 
-def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
+def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "", entry: str = "") -> dict[str, Any]:
     """Run a module's text and hand its functions to numba, `@vectorised` ones as instructions; its name covers all that
-    enters their machine code."""
+    enters their machine code. If there is an entry, Python calls no other function."""
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
@@ -115,21 +115,21 @@ def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> di
     vars(module).update({"vectorised": vectors.intrinsic, **helpers})
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
-    jitted = {key: _dispatcher(function) for key, function in functions.items()}
+    jitted = {key: _dispatcher(function, internal=entry not in ("", key)) for key, function in functions.items()}
     for key, function in jitted.items():
         function._cache = KernelCache(f"{name}.{key}")
     vars(module).update(jitted)  # so that they call each other compiled
     return jitted
 
 
-def _dispatcher(function: FunctionType) -> Any:
+def _dispatcher(function: FunctionType, internal: bool) -> Any:
     """Return a function as numba compiles it: with NUMBA_DISABLE_JIT=1 set, too, for its code is no Python to debug."""
     import numba
 
     config: Any = numba.config
     disabled, config.DISABLE_JIT = config.DISABLE_JIT, 0
     try:
-        return numba.njit(**SETTINGS)(function)
+        return numba.njit(**SETTINGS | {"no_cpython_wrapper": internal})(function)
     finally:
         config.DISABLE_JIT = disabled
 

@@ -37,7 +37,6 @@ from linksweep.engine.peaks.brackets import (
     X2,
     X3,
     XA,
-    XB,
     XC,
     advance,
     insert_trials,
@@ -45,7 +44,7 @@ from linksweep.engine.peaks.brackets import (
     place_trials,
 )
 from linksweep.engine.peaks.lanewise import around, lanewise
-from linksweep.engine.peaks.search import GRADES, HALF, SAMPLES, might_reach
+from linksweep.engine.peaks.search import GRADES, HALF, PLACED, SAMPLES, might_reach
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
@@ -143,44 +142,20 @@ def gather(front, designs, lanes, sizes, parameters, parameter_at, strides, digi
 
 
 def place_samples(constants, lanes, grades, x):
-    """Place the samples from the middle of each half turn on, by the widths of the near-toggles there."""
+    """Place the samples of each half turn by the width of its near-toggle, with one more on either side."""
     for half in range(2):
         for lane in range(lanes):
-            grade = grade_of(constants[half * lanes + lane])
+            grade, scale = 0, 1.0  # the first scale that does not exceed the width
+            while constants[half * lanes + lane] < scale and grade < GRADES - 1:
+                grade += 1
+                scale *= 0.5
+            middle = half * PLACED + 1 + HALF
             for k in range(HALF + 1):
-                x[(half * (HALF + 1) + k) * lanes + lane] = grades[grade, k]
-
-
-def grade_of(width):
-    """Return the index of the first scale that does not exceed `width`."""
-    grade, scale = 0, 1.0
-    while width < scale and grade < GRADES - 1:
-        grade += 1
-        scale *= 0.5
-    return grade
-
-
-def tangent(x, lanes, lane, half, step):
-    """Return the tangent at a sample, some steps from the middle of its half turn."""
-    size = x[(half * (HALF + 1) + abs(step)) * lanes + lane]
-    return size if step > 0 else -size
-
-
-def place_of(x, lanes, lane, j):
-    """Return the tangent at the j-th sample from the middle of its half turn."""
-    return tangent(x, lanes, lane, j // (2 * HALF), j % (2 * HALF) - HALF)
-
-
-def before(x, lanes, lane, j):
-    """Return the tangent of the sample before one, from the middle of that one's half turn: measured from the other
-    middle, 180 degrees away, a tangent is minus its inverse."""
-    inside = j % (2 * HALF) > 0
-    return place_of(x, lanes, lane, j - 1) if inside else -1.0 / place_of(x, lanes, lane, (j - 1) % SAMPLES)
-
-
-def after(x, lanes, lane, j):
-    """Return the tangent of the sample after one, from the middle of that one's half turn."""
-    return place_of(x, lanes, lane, j + 1) if (j + 1) % (2 * HALF) > 0 else 1.0
+                x[(middle - k) * lanes + lane] = -grades[grade, k]
+                x[(middle + k) * lanes + lane] = grades[grade, k]
+    for half in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
+        for lane in range(lanes):
+            x[half * PLACED * lanes + lane] = -1.0 / x[((1 - half) * PLACED + 2 * HALF) * lanes + lane]
 
 
 @around({SIZE: 0.0, SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf})
@@ -204,15 +179,14 @@ def pick_samples(rows, x, lanes, state):
         for lane in range(lanes):
             k = first + lane
             j = int(state[SUMMIT, k])
-            half = 1 if j >= 2 * HALF else 0
-            step = j - half * 2 * HALF - HALF
-            inside = -HALF + 2 <= step < HALF - 2
-            j, step = (j, step) if inside else (HALF, 0)
+            inside = 2 <= j % (2 * HALF) < 2 * HALF - 2
+            j = j if inside else HALF
+            half = j // (2 * HALF)
             state[HALF_TURN, k], state[SOUND, k] = float(half), 1.0 if inside else 0.0
             for near in range(5):
                 state[SAMPLED + near, k] = rows[(j + near - 2) * columns + k]
             for near in range(3):
-                state[PLACES + near, k] = tangent(x, lanes, lane, half, step + near - 1)
+                state[PLACES + near, k] = x[(j + near + 2 * half) * lanes + lane]
 
 
 @lanewise(FIVE, (VERTEX, CURVATURE, THIRD, Z_LEFT, Z_RIGHT))
@@ -302,31 +276,30 @@ def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
             if rows[j * columns + k] > top:
                 top, at = rows[j * columns + k], j
         best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * state[NOISE_FLOOR, k]
-        best[PEAK_X, tag], best[PEAK_FAR, tag] = place_of(x, lanes, lane, at), 1.0 if at >= 2 * HALF else 0.0
+        half = at // (2 * HALF)
+        best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * half) * lanes + lane], float(half)
     top = best[PEAK, tag]
     if not abs(top) < math.inf:
         return count
     known = int(state[SUMMIT, k]) if confirmed else -1
     least = top + (RISE * abs(top) if confirmed else 10.0 * state[NOISE_FLOOR, k])
-    left, value = lower(rows[(SAMPLES - 1) * columns + k]), lower(rows[k])
+    left, value = rows[(SAMPLES - 1) * columns + k], rows[k]
+    left, value = left if left == left else -math.inf, value if value == value else -math.inf
     for j in range(SAMPLES):
-        right = lower(rows[(j + 1) % SAMPLES * columns + k])
+        right = rows[(j + 1) % SAMPLES * columns + k]
+        right = right if right == right else -math.inf
         if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
-            brackets[XA, count], brackets[FA, count] = before(x, lanes, lane, j), left
-            brackets[XB, count], brackets[FB, count] = place_of(x, lanes, lane, j), value
-            brackets[XC, count], brackets[FC, count] = after(x, lanes, lane, j), right
-            brackets[FAR, count], brackets[SIGNAL, count] = 1.0 if j >= 2 * HALF else 0.0, state[NUMBER, k]
+            half = j // (2 * HALF)
+            for near in range(3):
+                brackets[XA + 2 * near, count] = x[(j + near + 2 * half) * lanes + lane]
+            brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
+            brackets[FAR, count], brackets[SIGNAL, count] = float(half), state[NUMBER, k]
             brackets[TAG, count], brackets[FLOOR, count] = tag, state[NOISE_FLOOR, k]
             width = brackets[XC, count] - brackets[XA, count]
             brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
             count += 1
         left, value = value, right
     return count
-
-
-def lower(value):
-    """Return a neighbour's value; −inf where there is none."""
-    return value if value == value else -math.inf
 
 
 def refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best):

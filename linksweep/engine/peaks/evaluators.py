@@ -6,8 +6,8 @@
                                                             one signal at one place in each lane `first` … `last`
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
-`x` of `sample` has the tangents of samples from the middle of each half turn on: those before it mirror them, and share
-all operations whose results are the same there, or opposite.
+`x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
+mirror those after it, and share all operations whose results are the same there, or opposite.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
-from linksweep.engine.peaks.search import HALF, SAMPLES
+from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
@@ -88,9 +88,7 @@ class Evaluators:
         constants[:] = [float(values[node]) for node in self.constants]
 
     def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        halves = x.reshape(2, HALF + 1)
-        tangents = np.concatenate([-halves[:, :0:-1], halves[:, :-1]], axis=1)
-        values = self._at(constants, tangents, np.array([[0.0], [1.0]]))
+        values = self._at(constants, x.reshape(2, PLACED)[:, 1:-1], np.array([[0.0], [1.0]]))
         for k, signal in enumerate(self.signals):
             rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
 
@@ -134,7 +132,7 @@ class Evaluators:
             cgutils.for_range(builder, integer(2)) as (turn, _),
             cgutils.for_range(builder, integer(HALF + 1)) as (k, _),
         ):
-            at = builder.add(of(turn, integer(HALF + 1)), k)
+            at = builder.add(of(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
             place = {
                 self.tangent: vectors.load(x.data, of(at, integer(LANES))),
                 self.far: builder.uitofp(turn, vectors.double),

@@ -146,7 +146,7 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
             first, last, designs, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
             strides, grades(), prepare, sample, evaluate,
             np.zeros((max(len(shape), 1), lanes), dtype=np.int64), np.zeros(len(nodes) * lanes),
-            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * (search.HALF + 1) * lanes),
+            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * search.PLACED * lanes),
             np.zeros((search.SAMPLES + 1) * columns), np.zeros((abreast.STATE_ROWS, columns)),
             np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(constants), best,
         )  # fmt: skip

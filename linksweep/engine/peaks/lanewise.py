@@ -121,7 +121,8 @@ class Around(Lanewise):
             values: Values = {node: value[j] for node, value in samplewise.items()} | dict(
                 zip(self.inputs[4:], now, strict=True)
             )
-            now = tuple(interpret(running, values)[node] for node in self.results)
+            interpret(running, values)
+            now = tuple(values[node] for node in self.results)
         for k, value in zip(self.outputs, now, strict=True):
             table[k, :columns] = value
 

@@ -34,6 +34,8 @@ HALF = 24
 """Samples on either side of the middle of each half turn. With 96 a turn, `benchmarks.accuracy.missed` finds no design
 of a million whose peak the search misses."""
 SAMPLES = 4 * HALF
+PLACED = 2 * HALF + 2
+"""Places of each half turn: its samples, and one before and after."""
 GRADES = 27
 """Scales of the sinh grade: 1, 1/2, 1/4, … The finest, 2⁻²⁶, is narrower than any near-toggle that is not yet a toggle
 by its status (8e-8 rad)."""
