@@ -9,6 +9,7 @@ from scipy.optimize import differential_evolution
 from scipy.stats import qmc
 
 import linksweep as ls
+from linksweep.scene.parameters import replaced
 
 PRESS = ls.example("press")
 MAY_BE = {"coupler.length": (0.2, 0.24), "rocker.length": ("15 cm", "20 cm")}
@@ -186,3 +187,73 @@ def test_x_of_another_shape_is_refused(x):
     best = ls.objective(PRESS, MAY_BE, minimize="F32_peak", theta2=8)
     with pytest.raises(ValueError, match=r"x has the shape .*: must be \(2,\) or \(2, designs\), one row for each of"):
         best(x)
+
+
+# -------------------------------------------------------------------------------- gradients and constraints
+
+LIMITS = {"transmission_angle_min": (40.0, None), "swing": (50.0, None)}
+SIZES = {
+    "crank.length": (0.05, 0.1),
+    "coupler.length": (0.18, 0.28),
+    "rocker.length": (0.12, 0.24),
+    "ground": (0.16, 0.28),
+}
+
+
+def test_a_gradient_is_the_slope_of_the_objective():
+    best = ls.objective(PRESS, SIZES, maximize="T12_rms", subject_to=LIMITS)
+    x, h = best.x0, 1e-6
+    steps = [(best(x + h * unit) - best(x - h * unit)) / (2 * h) for unit in np.eye(len(x))]
+    assert best.gradient(x) == pytest.approx(steps, rel=1e-6)
+    swing = best.constraints[1]
+    steps = [(swing.fun(x + h * unit) - swing.fun(x - h * unit)) / (2 * h) for unit in np.eye(len(x))]
+    assert swing.jac(x) == pytest.approx(steps, rel=1e-6) and (swing.lb, swing.ub) == (50.0, np.inf)
+
+
+def test_an_optimum_under_a_constraint_lies_on_it():
+    """The stroke of a centric slider-crank is twice the crank; without gravity T12 grows with ω² and the masses."""
+    machine = ls.SliderCrank(*links(0.05, 0.2), slider_mass=2.0)
+    scene = ls.Scene(machine, omega2=10.0)
+    best = ls.objective(scene, {"crank.length": (0.02, 0.09)}, minimize="T12_rms", subject_to={"stroke": (0.07, None)})
+    result = best.optimum()
+    assert result.allowed and result.x == pytest.approx([0.035], rel=1e-6)
+    assert result.fun == pytest.approx(float(ls.peaks(best.scene(result.x), of=["T12_rms"]).T12_rms), rel=1e-12)
+
+
+@pytest.mark.long
+def test_differential_evolution_confirms_the_lightest_press():
+    best = ls.objective(PRESS, SIZES, minimize="F32_peak", subject_to=LIMITS)
+    result = best.optimum(multistart=2)
+    other = search(best, constraints=best.constraints, maxiter=50, polish=False)
+    assert result.allowed and result.fun <= other.fun * (1.0 + 1e-6)
+    assert other.fun == pytest.approx(result.fun, rel=0.01)
+    assert best.optimum(minimax=72).fun <= result.fun * 1.001
+
+
+def test_the_worst_of_load_cases_has_its_own_gradient():
+    torque = xr.DataArray([-12.0, -30.0], dims="case")
+    cases = replaced(PRESS, {"loads[2].torque": torque})
+    best = ls.objective(cases, {"ground": (0.18, 0.22)}, minimize="F32_peak", subject_to={"T12_max": (None, 60.0)})
+    heavier = ls.objective(replaced(PRESS, {"loads[2].torque": -30.0}), {"ground": (0.18, 0.22)}, minimize="F32_peak")
+    lighter = ls.objective(PRESS, {"ground": (0.18, 0.22)}, minimize="F32_peak")
+    worst = max(heavier, lighter, key=lambda one: one([0.2]))
+    assert best.gradient([0.2]) == pytest.approx(worst.gradient([0.2]), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "words"),
+    [
+        ({"swign": (50, None)}, "did you mean"),
+        ({"swing": 50}, "must be"),
+        ({"swing": (None, None)}, "must be"),
+    ],
+)
+def test_constraints_that_are_none_are_refused(bounds, words):
+    with pytest.raises(ValueError, match=words):
+        ls.objective(PRESS, SIZES, minimize="F32_peak", subject_to=bounds)
+
+
+def test_a_function_has_no_gradient():
+    best = ls.objective(PRESS, SIZES, minimize=lambda peaks: peaks.F32_peak, of=["F32"])
+    with pytest.raises(ValueError, match="name of a result"):
+        best.gradient(best.x0)

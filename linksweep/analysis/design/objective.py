@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.constraints import (
+    CANDIDATES,
+    Bounds,
+    ResultFunction,
+    checked_bounds,
+    nonlinear_constraints,
+)
+from linksweep.analysis.design.result_derivatives import result_names
+from linksweep.analysis.design.searches import local_optimum, starts_of
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import require_scene
 from linksweep.results.peaks import peaks, quantity_of
-from linksweep.scene.parameters import free, replaced
+from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
-
-CANDIDATES = "candidate"
-"""Dimension of the designs of one call; always of the same name, so that one kernel serves all calls."""
 
 Measure = Callable[[xr.Dataset], Any]
 
@@ -41,6 +47,12 @@ class Objective:
         Names of the quantities whose peaks are computed.
     options : mapping
         Further arguments of `peaks`.
+    target : str, default ""
+        Name of the result that is minimized or maximized; "" for a function.
+    sign : float, default 1.0
+        1 where it is minimized, -1 where it is maximized.
+    subject_to : mapping of str to pair
+        Bounds of results by name.
 
     Examples
     --------
@@ -56,6 +68,27 @@ class Objective:
     constraint: Measure | None
     of: list[str] | None
     options: Mapping[str, Any]
+    target: str = ""
+    sign: float = 1.0
+    subject_to: Mapping[str, Bounds] = field(default_factory=dict)
+
+    @property
+    def x0(self) -> np.ndarray:
+        """The scene's own values, within the bounds: the start of a search."""
+        own, (low, high) = free(self.base), np.transpose(self.bounds)
+        middle = 0.5 * (low + high)
+        numbers = [own[path][0] if isinstance(own[path][0], float) else middle[k] for k, path in enumerate(self.ranges)]
+        return np.clip(numbers, low, high)
+
+    @cached_property
+    def function(self) -> ResultFunction:
+        """Results of the scene as functions of the parameters."""
+        return ResultFunction(self.base, tuple(self.ranges))
+
+    @property
+    def constraints(self) -> list[Any]:
+        """The bounds in `subject_to` as scipy.optimize takes them, with exact gradients."""
+        return nonlinear_constraints(self.function, self.subject_to)
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -80,9 +113,7 @@ class Objective:
         Scene
             Scene of one design, or of designs over the dim `candidate`.
         """
-        x = self._numbers(x)
-        rows = map(float, x) if x.ndim == 1 else (xr.DataArray(row, dims=CANDIDATES) for row in x)
-        return replaced(self.base, dict(zip(self.ranges, rows, strict=True)))
+        return self.function.scene(self._numbers(x))
 
     def peaks(self, x: Any) -> xr.Dataset:
         """Compute the peaks on which the objective depends.
@@ -112,6 +143,84 @@ class Objective:
         worst = value.max([dim for dim in value.dims if dim != CANDIDATES]).values
         return float(worst.reshape(-1)[0]) if x.ndim == 1 else np.array(np.broadcast_to(worst, columns.shape[1:]))
 
+    def plain_value(self, x: Any) -> float:
+        """Return the named result at x, of shape (parameters,), whatever its status: the objective of local searches.
+
+        Parameters
+        ----------
+        x : array_like
+            Values of the parameters [SI].
+
+        Returns
+        -------
+        float
+            The worst over the scene's own dims; with `maximize` the negative.
+        """
+        self._require_name()
+        return self.sign * self.function.value(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
+
+    def gradient(self, x: Any) -> np.ndarray:
+        """Return the exact derivatives of the objective to the parameters.
+
+        Parameters
+        ----------
+        x : array_like
+            Values of the parameters [SI], of shape (parameters,).
+
+        Returns
+        -------
+        array
+            One for each parameter, at the peak's own angle; of two equal rises those of one.
+
+        Raises
+        ------
+        ValueError
+            If the objective is a function and not a name.
+        """
+        self._require_name()
+        return self.sign * self.function.gradient(self.target, self._numbers(x), "max" if self.sign > 0.0 else "min")
+
+    def optimum(self, *, method: str = "SLSQP", multistart: Any = None, minimax: int = 0) -> Any:
+        """Search a local optimum under the constraints, with exact gradients, from one start or several.
+
+        Parameters
+        ----------
+        method : str, default "SLSQP"
+            Method of ``scipy.optimize.minimize`` that takes constraints: "SLSQP" or "trust-constr".
+        multistart : int or Dataset, default None
+            Further starts besides the scene's own values: a number of points within the ranges, or the designs of a
+            Dataset, such as the front of a study of these parameters.
+        minimax : int, default 0
+            Angles at which the quantity is held below the bound that is minimized, so that two equal peaks do not stop
+            the search; 0 for the peak alone.
+
+        Returns
+        -------
+        OptimizeResult
+            That of scipy, in the parameters' units: `x`, `fun`; `allowed` states whether all constraints hold, `calls`
+            how many values and gradients the search took.
+
+        Raises
+        ------
+        ValueError
+            If the objective is a function and not a name, or a Dataset lacks a parameter.
+
+        Examples
+        --------
+        >>> import linksweep as ls
+        >>> may_be = {"coupler.length": (0.2, 0.24), "rocker.length": (0.15, 0.2)}
+        >>> lightest = ls.objective(ls.example("press"), may_be, minimize="F32_peak", subject_to={"swing": (60, None)})
+        >>> best = lightest.optimum()
+        >>> bool(best.allowed and best.fun < lightest(lightest.x0))
+        True
+        """
+        self._require_name()
+        return local_optimum(self, starts_of(self, multistart), method, minimax)
+
+    def _require_name(self) -> None:
+        advice = 'a search by gradients needs the name of a result, as minimize="F32_peak"'
+        refuse([] if self.target else [f"minimize is a function: {advice}"])
+
     def _numbers(self, x: Any) -> np.ndarray:
         x = np.asarray(x, dtype=float)
         if x.ndim not in (1, 2) or len(x) != len(self.ranges):
@@ -133,6 +242,7 @@ def objective(
     maximize: str | Measure | None = None,
     constraint: Measure | None = None,
     of: Iterable[str] | None = None,
+    subject_to: Mapping[str, tuple[float | None, float | None]] | None = None,
     **options: Any,
 ) -> Objective:
     """Make a function of a scene's parameters for ``scipy.optimize.differential_evolution(vectorized=True)``.
@@ -155,6 +265,9 @@ def objective(
     of : iterable of str, default None
         Quantities on which these functions depend, as in `peaks`. None for the one that `minimize` names; where there
         are functions, all pins and the torque besides.
+    subject_to : mapping of str to pair, default None
+        Least and largest value of results by name, None for no bound: {"transmission_angle_min": (40, None), "swing":
+        (50, None)}, names as in `linksweep.sensitivities`. They are in `.constraints`, and in `.optimum()`.
     **options
         Further arguments of `peaks`, such as theta2.
 
@@ -163,7 +276,9 @@ def objective(
     Objective
         Function with `bounds`. With x of shape (parameters,) it returns a number, with (parameters, designs) one for
         each design; with `maximize` the negative. Designs whose status is not ok, or that are not allowed, have +inf.
-        `.scene(x)` is the scene with these parameters, `.peaks(x)` its peaks.
+        `.scene(x)` is the scene with these parameters, `.peaks(x)` its peaks. With a name, `.gradient`, `.constraints`
+        are for ``scipy.optimize.minimize(f, f.x0, jac=f.gradient, bounds=f.bounds, constraints=f.constraints)``, and
+        `.optimum()` is such a search.
 
     Raises
     ------
@@ -191,7 +306,10 @@ def objective(
         refuse([f"{path} = {quote(target)}: must be a name, or a function of the Dataset of peaks"])
     names = _names(scene, target, constraint, None if of is None else list(of))
     measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
-    ready = Objective(scene, ranges, measure, constraint, names, options)
+    bounds = checked_bounds(scene, subject_to)
+    result = target if isinstance(target, str) and target in result_names(scene) else ""
+    sign = 1.0 if path == "minimize" else -1.0
+    ready = Objective(scene, ranges, measure, constraint, names, options, result, sign, bounds)
     _try(ready, target, path)
     return ready
 

@@ -47,11 +47,18 @@ EQUAL = 1e-12
 
 
 class Derived(NamedTuple):
-    """A result with its derivatives by parameter, and the status of these, each over the design dims."""
+    """A result with its derivatives by parameter, and the status of these, each over the design dims.
+
+    Derivatives of a peak whose status is not ok are those of one rise, or of one side of a jump: enough for a search.
+    """
 
     value: xr.DataArray
     slopes: Mapping[str, xr.DataArray]
     status: xr.DataArray
+
+    def only_ok(self) -> Derived:
+        """Return the result, its derivatives NaN where their status is not ok."""
+        return self._replace(slopes={path: slope.where(self.status == OK) for path, slope in self.slopes.items()})
 
 
 def derived(
@@ -153,7 +160,7 @@ def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     )
     status = xr.where(upper, above_status, below_status)
     status = xr.where(tie & unlike, TIE, status)
-    return Derived(value, {path: slope.where(status == OK) for path, slope in slopes.items()}, status)
+    return Derived(value, slopes, status)
 
 
 def _extreme(
@@ -218,8 +225,7 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     slopes = {path: xr.DataArray(field.values, dims=field.dims) for path, field in fields.items()}
     if end == "rms":
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
-    status = xr.where(np.isfinite(value), JUMP if moving_unknown(scene, to) else OK, NONE)
-    return Derived(value, {path: slope.where(status == OK) for path, slope in slopes.items()}, status)
+    return Derived(value, slopes, xr.where(np.isfinite(value), JUMP if moving_unknown(scene, to) else OK, NONE))
 
 
 def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuation: float) -> Derived:

@@ -99,7 +99,7 @@ def sensitivities(
     refuse([problem for name in names for problem in result_problems(scene, "of", name)])
     variables: dict[str, Any] = {}
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        variables |= _variables(scene, name, derived(scene, name, paths, threads, fluctuation=fluctuation))
+        variables |= _variables(scene, name, derived(scene, name, paths, threads, fluctuation).only_ok())
     command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)})"
     return labelled(scene, variables, paths, command)
 

@@ -122,7 +122,7 @@ def tolerance(
     variables: dict[str, Any] = {}
     drawn = sample(scene, choices, n=n, seed=seed, dim=DRAWN) if n else None
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        result = derived(scene, name, paths, threads, fluctuation)
+        result = derived(scene, name, paths, threads, fluctuation).only_ok()
         units, text = (str(result.value.attrs.get(word, "")) for word in ("units", "long_name"))
         linear = _linear(name, result.slopes, spreads, result.value, text)
         exact = {} if drawn is None else _drawn(name, result_value(drawn, name, threads, fluctuation), text)

@@ -51,7 +51,8 @@ ALIKE = 1e-8
 
 
 class PeakDerivatives(NamedTuple):
-    """Derivatives of a signal's peaks: (parameter, design) over the designs' dims, and the status of each design."""
+    """Derivatives of a signal's peaks: (parameter, design) over the designs' dims, and the status of each design; where
+    that is not ok they are those of one rise, or of one side."""
 
     pairs: Pairs
     angle: Array
@@ -88,7 +89,7 @@ def peak_derivatives(
     status = np.where(tied, TIE, status)
     status = np.where(np.isinf(peak), UNBOUNDED, status)
     status = np.where(np.isnan(peak) | np.isnan(at), NONE, status)
-    return PeakDerivatives(pairs, place, np.where(status == OK, slopes, np.nan), status)
+    return PeakDerivatives(pairs, place, slopes, status)
 
 
 def turning_point_derivatives(scene: Scene, name: str, angle: Field, to: tuple[str, ...]) -> tuple[Pairs, Array, Array]:
