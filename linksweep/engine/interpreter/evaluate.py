@@ -24,30 +24,43 @@ def evaluate(plan: Plan, values: Values, sizes: Mapping[str, int]) -> Values:
     values |= {node: np.float64(node.value) for node in plan.constants}
     for program in programs(plan):
         shape = tuple(sizes[dim] if dim in program.dims else 1 for dim in (*plan.loops, plan.index))
-        samples = math.prod(shape)
-        rows = [_row(values[node], shape) for node in program.rows]
-        results = block(len(program.results), max(samples, REGISTER))
-        starts = np.array([*map(address, rows), *_starts(results)], dtype=np.int64)
-        interpret(program.code, _registers(program, values), starts, results.shape[1])
+        of_designs = shape[:-1] if plan.index in program.dims else ()
+        designs, samples = math.prod(of_designs), math.prod(shape[len(of_designs) :])
+        rows = [_rows(values[node], shape, designs) for node in program.rows]
+        results = block(len(program.results) * designs, max(samples, REGISTER))
+        results = results.reshape(len(program.results), designs, -1)
+        start, (apart, design, _) = address(results), results.strides
+        places = [_place(row) for row in rows] + [(start + k * apart, design) for k in range(len(results))]
+        numbers = _numbers(program, values, of_designs)
+        registers = np.empty((program.registers, TILE))
+        interpret(program.code, registers, numbers, np.array(places, dtype=np.int64), results.shape[2])
         for node, result in zip(program.results, results, strict=True):
-            values[node] = result[:samples].reshape(shape) if program.dims else result[0]
+            values[node] = result[:, :samples].reshape(shape) if program.dims else result[0, 0]
     return values
 
 
-def _row(value: np.ndarray | np.float64, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the samples of a value, repeated along the dims that it has not; at least `REGISTER` of them."""
-    row = np.ascontiguousarray(np.broadcast_to(value, shape), dtype=np.float64).reshape(-1)
-    return row if len(row) >= REGISTER else np.pad(row, (0, REGISTER - len(row)), mode="edge")
+def _numbers(program: Program, values: Values, of_designs: tuple[int, ...]) -> np.ndarray:
+    """Return the numbers that depend on no sample (design, number)."""
+    each = [values[node] for node in program.numbers]
+    if not of_designs:
+        return np.array([each], dtype=np.float64)
+    numbers = np.empty((math.prod(of_designs), len(each)))
+    for column, value in zip(numbers.T, each, strict=True):
+        column[:] = np.broadcast_to(value, (*of_designs, 1)).reshape(-1)
+    return numbers
 
 
-def _starts(rows: np.ndarray) -> range:
-    """Return the addresses of the rows of an array."""
-    start = address(rows)
-    return range(start, start + rows.nbytes, rows.strides[0])
+def _rows(value: np.ndarray | np.float64, shape: tuple[int, ...], designs: int) -> np.ndarray:
+    """Return the samples of a value (design, sample), at least `REGISTER` of them, repeated along the dims that it has
+    not; one design stands for all where they share them."""
+    value = np.asarray(value)
+    if designs > 1 and value.size == shape[-1]:
+        designs, shape = 1, value.shape
+    rows = np.ascontiguousarray(np.broadcast_to(value, shape), dtype=np.float64).reshape(designs, -1)
+    missing = REGISTER - rows.shape[1]
+    return rows if missing <= 0 else np.pad(rows, ((0, 0), (0, missing)), mode="edge")
 
 
-def _registers(program: Program, values: Values) -> np.ndarray:
-    """Return registers, with single numbers in the first of them."""
-    registers = np.empty((program.registers, TILE))
-    registers[: len(program.numbers)] = np.array([values[node] for node in program.numbers]).reshape(-1, 1)
-    return registers
+def _place(rows: np.ndarray) -> tuple[int, int]:
+    """Return the address of the first design's row, and by how many bytes the next lies behind it."""
+    return address(rows), rows.strides[0] if len(rows) > 1 else 0

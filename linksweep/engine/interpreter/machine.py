@@ -2,8 +2,9 @@
 
 A program is a table of integers, one row for each operation: its code, the register of its result, and those of its
 operands. A register holds `TILE` samples; the whole program runs on one tile after the other, so that registers stay in
-the cache. Operations are written by `engine.kernel.instructions`, so results have the bits of any compiled kernel.
-LLVM's own compiler is called directly: it wakes in a tenth of the time that numba takes.
+the cache, and then on the next design, whose own numbers fill the first registers. Operations are written by
+`engine.kernel.instructions`, so results have the bits of any compiled kernel. LLVM's own compiler is called directly:
+it wakes in a tenth of the time that numba takes.
 """
 
 from __future__ import annotations
@@ -35,10 +36,14 @@ of a row in place of their operand and their result."""
 SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
 
 
-def interpret(program: np.ndarray, registers: np.ndarray, rows: np.ndarray, samples: int) -> None:
-    """Run a program (operation, column) on registers (register, sample of a tile) and on rows of at least `REGISTER`
-    samples, given by their addresses."""
-    _function()(address(program), address(registers), address(rows), len(program), samples)
+def interpret(program: np.ndarray, registers: np.ndarray, numbers: np.ndarray, rows: np.ndarray, samples: int) -> None:
+    """Run a program (operation, column) on registers (register, sample of a tile), for each of some designs.
+
+    `numbers` (design, number) fill the first registers; `rows` has, for each row of at least `REGISTER` samples, its
+    address and by how many bytes that of the next design lies behind it.
+    """
+    arrays = map(address, (program, registers, numbers, rows))
+    _function()(*arrays, len(program), *numbers.shape, samples)
 
 
 def address(array: np.ndarray) -> int:
@@ -63,7 +68,7 @@ def _function() -> Callable[..., None]:
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
     engine.finalize_object()
-    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 5)
+    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 8)
     function = kind(engine.get_function_address("interpret"))
     function.engine = engine  # type: ignore[attr-defined]  # the code lives as long as that
     return function
@@ -74,9 +79,9 @@ def _module() -> Any:
     from llvmlite import ir
 
     module, integer, double = ir.Module(), ir.IntType(64), ir.DoubleType()
-    arrays = [integer.as_pointer(), double.as_pointer(), integer.as_pointer()]
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [*arrays, integer, integer]), "interpret")
-    program, registers, rows, length, samples = function.args
+    arrays = [integer.as_pointer(), double.as_pointer(), double.as_pointer(), integer.as_pointer()]
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [*arrays, *[integer] * 4]), "interpret")
+    program, registers, numbers, rows, length, designs, kept, samples = function.args
     builder = ir.IRBuilder(function.append_basic_block())
     write = Instructions(builder)
     last = builder.sub(samples, integer(REGISTER))
@@ -84,7 +89,10 @@ def _module() -> Any:
     def smaller(x: Any, y: Any) -> Any:
         return builder.select(builder.icmp_signed("<", x, y), x, y)
 
-    def operation(tile: Any, count: Any, row: Any) -> None:
+    def at(register: Any, k: Any) -> Any:
+        return builder.add(builder.mul(register, integer(TILE)), k)
+
+    def operation(design: Any, tile: Any, row: Any) -> None:
         """Write the choice of an operation, and each operation on a tile."""
         start = builder.mul(row, integer(COLUMNS))
         code, *place = (builder.load(builder.gep(program, [builder.add(start, integer(k))])) for k in range(COLUMNS))
@@ -94,14 +102,14 @@ def _module() -> Any:
         def vectors(name: str, body: Callable[[Any], None]) -> None:
             choice.add_case(CODES[name], builder.append_basic_block(name))
             builder.position_at_end(choice.cases[-1][1])
-            _loop(builder, integer(0), count, REGISTER, body)
+            for k in range(0, TILE, REGISTER):  # all of the tile: beyond the row, numbers that nobody reads
+                body(integer(k))
             builder.branch(done)
 
-        def at(register: Any, k: Any) -> Any:
-            return builder.add(builder.mul(register, integer(TILE)), k)
-
         def row_start(number: Any) -> Any:
-            return builder.inttoptr(builder.load(builder.gep(rows, [number])), double.as_pointer())
+            place = builder.mul(number, integer(2))
+            start, apart = (builder.load(builder.gep(rows, [builder.add(place, integer(k))])) for k in range(2))
+            return builder.inttoptr(builder.add(start, builder.mul(design, apart)), double.as_pointer())
 
         for name in OPERATORS:
             operands = place[1 : 1 + OPERANDS.get(name, 2)]
@@ -116,19 +124,27 @@ def _module() -> Any:
         vectors("store", lambda k: write.store(write.load(registers, at(place[1], k)), row_start(place[0]), here(k)))
         builder.position_at_end(done)
 
-    def run(tile: Any) -> None:
-        count = smaller(builder.sub(samples, tile), integer(TILE))
-        _loop(builder, integer(0), length, 1, lambda row: operation(tile, count, row))
+    def fill(design: Any, number: Any) -> None:
+        """Write one register full of a design's own number."""
+        value = builder.load(builder.gep(numbers, [builder.add(builder.mul(design, kept), number)]))
+        _loop(builder, integer(0), integer(TILE), REGISTER, lambda k: write.store(value, registers, at(number, k)))
 
-    _loop(builder, integer(0), samples, TILE, run)
+    def run(design: Any) -> None:
+        _loop(builder, integer(0), kept, 1, lambda number: fill(design, number))
+        _loop(builder, integer(0), samples, TILE, lambda tile: run_tile(design, tile))
+
+    def run_tile(design: Any, tile: Any) -> None:
+        _loop(builder, integer(0), length, 1, lambda row: operation(design, tile, row))
+
+    _loop(builder, integer(0), designs, 1, run)
     builder.ret_void()
     return module
 
 
 def _loop(builder: Any, first: Any, last: Any, step: int, body: Callable[[Any], None]) -> None:
-    """Write a loop of at least one pass; `body(k)` writes what is done in each."""
+    """Write a loop; `body(k)` writes what is done in each pass."""
     before, inside, after = builder.block, builder.append_basic_block(), builder.append_basic_block()
-    builder.branch(inside)
+    builder.cbranch(builder.icmp_signed("<", first, last), inside, after)
     builder.position_at_end(inside)
     k = builder.phi(first.type)
     k.add_incoming(first, before)

@@ -15,7 +15,10 @@ from linksweep.engine.trace.plan import Plan
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Operations of the same dims: `numbers` fill registers from the first on, `rows` are read, `results` written."""
+    """Operations of the same dims: `numbers` of a design fill the first registers, `rows` are read, `results` made.
+
+    Where the dims include the index, rows are along that, else along all dims together, as for one design.
+    """
 
     dims: tuple[str, ...]
     numbers: tuple[Node, ...]
@@ -38,8 +41,9 @@ def programs(plan: Plan) -> tuple[Program, ...]:
 def _program(plan: Plan, work: list[Node], output: set[Node]) -> Program:
     own = set(work)
     read = dict.fromkeys(x for node in work for x in node.operands if x not in own)
-    numbers = tuple(node for node in read if not node.dims)
-    rows = tuple(node for node in read if node.dims)
+    along = {plan.index} if plan.index in work[0].dims else work[0].dims
+    numbers = tuple(node for node in read if not along & node.dims)
+    rows = tuple(node for node in read if along & node.dims)
     results = tuple(node for node in work if node in output)
     registers = _Registers(work, numbers)
     place = {node: k for k, node in enumerate((*rows, *results))}
