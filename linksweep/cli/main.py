@@ -59,7 +59,8 @@ def _run(options: argparse.Namespace) -> int:
     try:
         for path in filter(None, (getattr(options, "output", None), getattr(options, "plot", None))):
             target_of(path)  # before anything is computed
-        options.run(options)
+        with ls.units(getattr(options, "units", None)):
+            options.run(options)
     except BrokenPipeError:
         raise
     except (ValueError, OSError, ImportError) as error:
@@ -125,6 +126,8 @@ def _parser() -> argparse.ArgumentParser:
     add_part(page, "crank angles [degree] of a machine that moves over part of a turn")
     add_commands(commands)
     add_sensitivity_commands(commands)
+    for command in commands.choices.values():
+        command.add_argument("--units", metavar="UNITS", help='units to show: SI, US, mm, or as in "in, lbf, rpm"')
     return parser
 
 

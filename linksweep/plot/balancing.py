@@ -13,8 +13,10 @@ from linksweep.plot.kit.drawings import joints_of
 from linksweep.plot.kit.locus import draw_cross
 from linksweep.plot.kit.style import crank_angles, grid, panels
 from linksweep.results.compute import require_scene
+from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,16 +67,22 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     drive = before.mechanism.drives[before.drive]
     pins = drawing.pin_forces
     scenes = {"before": before, "after": after}
-    cycles = {name: sweep(scene, theta2, of=[*SHAKING, drive, *pins]) for name, scene in scenes.items()}
+    cycles = {name: _cycle(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in scenes.items()}
+    unit = {name: str(item.attrs.get("units", "")) for name, item in cycles["before"].items()}
     worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
     with panels(2, 2, figsize=(7.1, 6.0)) as (figure, ((above, beside), (below, last))):
         _hodograph(above, cycles)
-        _over_angle(beside, cycles, "Ms", "Shaking moment about A", "$M_s$ [N m]")
+        _over_angle(beside, cycles, "Ms", "Shaking moment about A", f"$M_s$ [{unit['Ms']}]")
         kind = signals.drive_kind(drive).capitalize()
-        units = cycles["before"][drive].attrs["units"]
-        _over_angle(below, cycles, drive, kind, f"{signals.symbol(drive)} [{units}]".strip())
-        _over_angle(last, cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [N]")
+        _over_angle(below, cycles, drive, kind, f"{signals.symbol(drive)} [{unit[drive]}]".strip())
+        _over_angle(
+            last, cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [{unit[worst]}]"
+        )
     return figure
+
+
+def _cycle(scene: Scene, theta2: int, names: list[str]) -> xr.Dataset:
+    return in_shown_units(sweep(scene, theta2, of=names), shown_units(scene.units))
 
 
 def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
@@ -83,7 +91,8 @@ def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
     for name, cycle in cycles.items():
         _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
         ax.plot(x, y, label=_legend_text(name, np.hypot(x, y)), **STYLES[name])
-    ax.set(xlabel="$F_{sx}$ [N]", ylabel="$F_{sy}$ [N]")
+    unit = signals.unit(cycle["Fsx"], "N")
+    ax.set(xlabel=f"$F_{{sx}}$ [{unit}]", ylabel=f"$F_{{sy}}$ [{unit}]")
     ax.set_title("Shaking force", loc="left")
     _legend(ax)
 

@@ -15,6 +15,7 @@ from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLUE, GREY, ORANGE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_above, panels
 from linksweep.results.compute import require_dataset
+from linksweep.results.origin.in_shown_units import results_in_shown_units, units_of
 from linksweep.results.sweep import sweep
 
 if TYPE_CHECKING:
@@ -54,18 +55,20 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     require_dataset(ds, "ls.flywheel")
     refuse([] if "speed" in ds else ["ds has no speed: take what ls.flywheel returns"])
     signals.require_angles(ds)
+    ds = results_in_shown_units(ds)
     angles, speed = signals.revolution(ds, ds["speed"])
     refuse([] if np.isfinite(speed).all() else ["ds has no speed at some angle: it stalls, or does not turn fully"])
     ax = grid(axes_or_new(ax))
     middle = 0.5 * (np.max(speed) + np.min(speed))
     ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
     ax.plot(angles, speed, color=BLUE, label="_speed")
-    _extremes(ax, angles, speed)
+    unit, of_size = signals.unit(ds["speed"], ""), signals.unit(ds["flywheel_inertia"], "").replace("^2", "²")
+    _extremes(ax, angles, speed, unit)
     size, fluctuation = float(ds["flywheel_inertia"]), float(ds["fluctuation"])
-    ax.set_title(f"flywheel {signals.number(size)} kg m², fluctuation {100.0 * fluctuation:.3g} %", loc="left")
+    ax.set_title(f"flywheel {signals.number(size)} {of_size}, fluctuation {100.0 * fluctuation:.3g} %", loc="left")
     crank_angles(ax, angles)
     ax.margins(y=0.18)
-    ax.set_ylabel("crank speed $\\omega_2$ [rad/s]")
+    ax.set_ylabel(f"crank speed $\\omega_2$ [{unit}]")
     return ax
 
 
@@ -104,7 +107,8 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
 def _torques(ax: Axes, wheel: xr.Dataset) -> None:
     """Draw the torque at constant speed around the constant torque, excess and lack shaded."""
     steady = replace(scene_of(wheel, whole=False), alpha2=0.0)
-    cycle = sweep(steady, wheel[signals.INDEX].values, of=["reduced_torque"])
+    cycle = results_in_shown_units(sweep(steady, wheel[signals.INDEX].values, of=["reduced_torque"]))
+    wheel, unit = results_in_shown_units(wheel), signals.unit(cycle["reduced_torque"], "")
     angles, without = signals.revolution(cycle, cycle["reduced_torque"])
     constant = float(wheel["drive_torque"])
     grid(ax)
@@ -114,20 +118,20 @@ def _torques(ax: Axes, wheel: xr.Dataset) -> None:
         ax.fill_between(angles, without, constant, where=where, color=color, alpha=0.4, linewidth=0.0, label=text)
     ax.plot(angles, without, color=BLUE, label="without flywheel")
     size = constant if abs(constant) > ROUNDING * np.max(np.abs(without)) else 0.0
-    text = f"with it, constant: {signals.number(size)} N m"
+    text = f"with it, constant: {signals.number(size)} {unit}"
     ax.axhline(constant, color=VERMILION, linestyle="--", label=text)
     crank_angles(ax, angles)
     ax.margins(y=0.12)
-    ax.set_ylabel("torque on the crank [N m]")
+    ax.set_ylabel(f"torque on the crank [{unit}]")
     legend_above(ax, ncols=4)
 
 
-def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray) -> None:
+def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray, unit: str) -> None:
     from linksweep.plot.kit.labels import label
 
     for end, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
         ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{end}")
-        label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} rad/s", BLUE))
+        label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} {unit}", BLUE))
 
 
 def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
@@ -163,27 +167,29 @@ def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
     require_dataset(ds, "ls.motor_load")
     refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])
     signals.require_angles(ds)
+    system, ds = units_of(ds), results_in_shown_units(ds)
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])
     ax = grid(axes_or_new(ax))
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
-    curve = side * np.asarray(motor.speeds, dtype=float), np.asarray(motor.torques, dtype=float)
+    speeds, torques = (np.asarray(points, dtype=float) for points in (motor.speeds, motor.torques))
+    curve = side * system.value(speeds, "rad/s"), system.value(torques, "N m")
     ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can give")
     ax.plot(np.r_[curve[0], curve[0][::-1]], np.r_[curve[1], -curve[1][::-1]], color=GREY, linewidth=1.0)
     ax.plot(speed, torque, color=BLUE, linewidth=1.6, label="what the machine takes")
     if (margin < 0.0).any():
         ax.plot(speed, np.where(margin < 0.0, torque, np.nan), color=VERMILION, linewidth=2.4, label="too much")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
-    _worst(ax, speed, torque, margin)
-    ax.set(xlabel="motor speed [rad/s]", ylabel="motor torque [N m]")
+    _worst(ax, speed, torque, margin, system.unit("N m"))
+    ax.set(xlabel=f"motor speed [{system.unit('rad/s')}]", ylabel=f"motor torque [{system.unit('N m')}]")
     ax.margins(y=0.12)
     ax.legend(fontsize="small", frameon=False)
     return ax
 
 
-def _worst(ax: Axes, speed: np.ndarray, torque: np.ndarray, margin: np.ndarray) -> None:
+def _worst(ax: Axes, speed: np.ndarray, torque: np.ndarray, margin: np.ndarray, unit: str) -> None:
     from linksweep.plot.kit.labels import label
 
     k = int(np.nanargmin(margin))
     color = VERMILION if margin[k] < 0.0 else BLUE
     ax.plot([speed[k]], [torque[k]], "o", color=color, markersize=4.5, label="_worst")
-    label(ax, speed[k], torque[k], (f"least margin {signals.number(margin[k])} N m", color))
+    label(ax, speed[k], torque[k], (f"least margin {signals.number(margin[k])} {unit}", color))

@@ -15,6 +15,7 @@ from linksweep.plot.kit.designs import column, heading, in_words, none_ok
 from linksweep.plot.kit.style import axes_or_new, legend_above
 from linksweep.results.compute import require_dataset
 from linksweep.results.front import has_peaks
+from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,6 +93,8 @@ def heat_map(
     >>> ax.get_xlabel(), ax.get_ylabel()
     ('coupler length [m]', 'crank length [m]')
     """
+    require_dataset(ds, "ls.peaks of several designs")
+    ds = in_shown_units(ds)
     across, up = _sides(ds, of, x, y)
     _require_on_map(ds, contours, across, up)
     values = _field(ds[of], across, up)
@@ -115,7 +118,6 @@ def heat_map(
 
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
     """Return the axes x and y."""
-    require_dataset(ds, "ls.peaks of several designs")
     refuse(variable_problems(ds, "of", name, numbers="fiub"))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.pins.speed_limit import speed_limit
+from linksweep.analysis.pins.speed_limit import LIMITS, speed_limit
+from linksweep.base.checked_number import checked_number
 from linksweep.base.conversion import all_to_float64
 from linksweep.base.validate import name_problems, refuse
 from linksweep.plot.curves import shade_gaps
@@ -16,8 +17,10 @@ from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.results.compute import require, require_dataset
+from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem, shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,6 +64,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
     of = known[0] if of is None else of
     refuse(name_problems("of", of, known))
+    ds = results_in_shown_units(ds)
     signals.require_one_design([ds[of].isel(source=0)])
     signals.require_angles(ds)
     ax = grid(axes_or_new(ax))
@@ -135,27 +139,38 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     name = f"{of}_peak"
     worst = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]
     refuse([] if np.isfinite(worst).any() else [f"{of} grows without bound at every speed: see the status of ls.peaks"])
-    rest = float(peaks(at_rest, of=[of])[name])
+    system, force = shown_units(scene.units), worst.attrs["units"]
+    rest = system.value(float(peaks(at_rest, of=[of])[name]), force)
     limit = None if below is None else float(speed_limit(scene, of, below=below).omega2_limit)
     ax = grid(axes_or_new(ax))
-    symbol, units = signals.symbol(of) or of, signals.unit(worst, "N")
-    ax.plot(omega2.values, worst.values, color=BLUE, label=f"peak of {symbol}")
+    symbol, units = signals.symbol(of) or of, system.unit(force)
+    speeds, sizes = system.value(values, "rad/s"), system.value(worst.values, force)
+    most = None if below is None else system.value(float(checked_number("below", below, LIMITS[force])), force)
+    ax.plot(speeds, sizes, color=BLUE, label=f"peak of {symbol}")
     ax.axhline(rest, color=GREY, linestyle="--", linewidth=1.0, label="at rest: weight and loads")
-    ax.set_xlim(float(omega2.min()), float(omega2.max()))
-    ax.set_ylim(0.0, ROOM * max(float(worst.max()), below or 0.0) or 1.0)
+    ax.set_xlim(float(speeds.min()), float(speeds.max()))
+    ax.set_ylim(0.0, ROOM * max(float(sizes.max()), most or 0.0) or 1.0)
     if limit is not None:
-        _mark_limit(ax, limit, float(below or 0.0), units)
-    ax.set(xlabel="crank speed $\\omega_2$ [rad/s]", ylabel=f"largest {symbol} in the cycle [{units}]")
+        _mark_limit(ax, system.value(limit, "rad/s"), float(most or 0.0), units, system)
+    ax.set(
+        xlabel=f"crank speed $\\omega_2$ [{system.unit('rad/s')}]", ylabel=f"largest {symbol} in the cycle [{units}]"
+    )
     ax.legend(fontsize="small", frameon=False, loc="upper left")
     return ax
 
 
-def _mark_limit(ax: Axes, limit: float, below: float, units: str) -> None:
+def _mark_limit(ax: Axes, limit: float, below: float, units: str, system: UnitSystem) -> None:
     from linksweep.plot.kit.labels import label
 
-    range_text = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {limit:.5g} rad/s")
+    speed = f"{limit:.5g} {system.unit('rad/s')}"
+    range_text = {np.inf: "at any speed"}.get(limit, "at none" if np.isnan(limit) else f"up to {speed}")
     text = f"limit, {signals.number(below)} {units}: kept {range_text}"
     ax.axhline(below, color=VERMILION, linewidth=1.0, label=text)
     if ax.get_xlim()[0] <= limit <= ax.get_xlim()[1]:
         ax.plot([limit], [below], "o", color=VERMILION, markersize=5.0, label="_limit")
-        label(ax, limit, below, (f"{limit:.5g} rad/s = {limit * 30.0 / np.pi:.5g} rpm", VERMILION))
+        label(
+            ax,
+            limit,
+            below,
+            (f"{speed} = {limit * 30.0 / np.pi:.5g} rpm" if speed.endswith("rad/s") else speed, VERMILION),
+        )

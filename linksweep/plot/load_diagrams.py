@@ -113,6 +113,7 @@ def bearings(ds: xr.Dataset, *, frame: str = "ground") -> Figure:
 def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ...]]) -> None:
     """Draw the loci of all pins to one scale."""
     sizes = {force: np.hypot(x, y) for force, (_, x, y) in loci.items()}
+    units = signals.unit(signals.components(ds, next(iter(loci)))[0], "N")
     usual = signals.scale(list(sizes.values()), [signals.peak(loci[force][0], size) for force, size in sizes.items()])
     draw_cross(ax)
     for force, (_, x, y) in loci.items():
@@ -120,7 +121,7 @@ def _to_one_scale(ax: Axes, ds: xr.Dataset, loci: dict[str, tuple[np.ndarray, ..
         ax.plot(x, y, color=force_color(force), label=text)
     points = np.concatenate([[x, y] for _, x, y in loci.values()], axis=1)
     set_limits(ax, *points[:, np.hypot(*points) <= BEYOND * usual])
-    ax.set_title("All to one scale [N]", loc="left")
+    ax.set_title(f"All to one scale [{units}]", loc="left")
     ax.legend(fontsize="small", frameon=False)
 
 

@@ -15,10 +15,12 @@ from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
+from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.kit.shape import Shape, Slide, half_side, positions, shape_of
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem, shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,15 +80,16 @@ def mechanism(
     acting = _joint_forces(scene, drawing, angle) if forces else {}
     ax = axes_or_new(ax)
     draw_ground(ax, scene, drawing, shape)
-    _offsets(ax, scene, drawing)
+    system = shown_units(scene.units)
+    _offsets(ax, scene, drawing, system)
     draw_links(ax, drawing, shape)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.2)
-    _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting})
+    _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting}, system)
     _names(ax, shape)
     if point or not drawing.carrier.end:
         _name(ax, shape.point, "P" if point else f"$G_{drawing.carrier.number}$")
-    ax.set(xlabel="x [m]", ylabel="y [m]")
+    show_lengths(ax, system)
     ax.set_title(f"$\\theta_2$ = {signals.angle_text(angle)}", loc="left")
     return ax
 
@@ -171,7 +174,7 @@ def _guide(ax: Axes, guide: Rail, slide: Slide, half: float) -> None:
     machine_parts.rails(ax, guide.point + low * guide.along, guide.point + high * guide.along, guide.along, half)
 
 
-def _offsets(ax: Axes, scene: Scene, drawing: Drawing) -> None:
+def _offsets(ax: Axes, scene: Scene, drawing: Drawing, system: UnitSystem) -> None:
     """Draw the distances of guides from the crank's bearing."""
     from linksweep.plot.kit.labels import label
 
@@ -179,7 +182,7 @@ def _offsets(ax: Axes, scene: Scene, drawing: Drawing) -> None:
         distance = float(np.hypot(*guide.point))
         if guide.offset and distance > 0.0:
             ax.plot(*np.array([np.zeros(2), guide.point]).T, color=GREY, linewidth=0.8, zorder=2.0, label="_offset")
-            label(ax, *(0.5 * guide.point), (f"offset {distance:.4g} m", GREY))
+            label(ax, *(0.5 * guide.point), (f"offset {system.value(distance, 'm'):.4g} {system.unit('m')}", GREY))
 
 
 def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
@@ -242,8 +245,8 @@ def _name(ax: Axes, position: np.ndarray, name: str, **style: Any) -> None:
     label(ax, *position, (name, BLACK), **style)
 
 
-def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray]) -> None:
-    """Draw an arrow from each joint, to one scale, with its value [N]."""
+def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray], system: UnitSystem) -> None:
+    """Draw an arrow from each joint, to one scale, with its value."""
     from linksweep.plot.kit.labels import arrow, label
 
     extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))
@@ -254,4 +257,5 @@ def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarra
             start = starts[name]
             tip = start + vector * (ARROW * extent / largest)
             arrow(ax, start, tip, force_color(name))
-            label(ax, *tip, (f"{signals.symbol(name)} {signals.number(size)} N", force_color(name)))
+            text = f"{signals.number(system.value(size, 'N'))} {system.unit('N')}"
+            label(ax, *tip, (f"{signals.symbol(name)} {text}", force_color(name)))

@@ -15,6 +15,7 @@ from linksweep.plot.kit.locus import SIZE, draw_locus
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.compute import require_dataset
+from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,6 +97,7 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     names = known if of is None else [of] if isinstance(of, str) else list(of)
     refuse([] if known else ["ds has no amplitudes: take what ls.orders returns"])
     refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*names} - {*known}])
+    ds = in_shown_units(ds)
     chosen = [ds[name + ENDING] for name in names]
     units = {amplitude.attrs["units"] for amplitude in chosen}
     several = "must share one unit: plot each alone"

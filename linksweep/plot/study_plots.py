@@ -20,6 +20,7 @@ from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, w
 from linksweep.plot.kit.style import axes_or_new, grid, legend_above
 from linksweep.results.compute import requested, require_dataset
 from linksweep.results.front import front as front_of
+from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +85,7 @@ def scatter(
     names = {"x": x, "y": y} | ({} if color is None else {"color": color})
     problems = [problem for path, name in names.items() for problem in variable_problems(ds, path, name)]
     refuse(problems + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
-    designs = designs_of(ds, names.values())
+    designs = designs_of(in_shown_units(ds), names.values())
     best = _front(designs, (x, y), better) if front else np.array([], dtype=int)
     drawn = by_chance(designs.number, DOTS, best)
     across, up = designs.columns[x], designs.columns[y]
@@ -188,7 +189,7 @@ def parallel_coordinates(
     require_dataset(ds, "ls.peaks of several designs")
     of_axes = _axis_names(ds) if of is None else requested("of", of)
     refuse(_problems(ds, of_axes, color, best))
-    designs = designs_of(ds, of_axes if color is None else [*of_axes, color])
+    designs = designs_of(in_shown_units(ds), of_axes if color is None else [*of_axes, color])
     objective = designs.columns[of_axes[-1] if color is None else color]
     order = np.argsort(-objective.values if maximize else objective.values, kind="stable")
     drawn = by_chance(designs.number, LINES, order[:best])

@@ -17,7 +17,9 @@ from linksweep.plot.kit import signals
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.machine import ARROW, draw_ground
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
+from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -33,7 +35,8 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     """Return a film over the engine's cycle: every cylinder with the forces in its pins, and the torque of them all."""
     from linksweep.plot.kit.film import Film
 
-    cycle = machine.sweep(film_frames.SAMPLES, of=["T12"])
+    system = shown_units(machine.engine.units)
+    cycle = in_shown_units(machine.sweep(film_frames.SAMPLES, of=["T12"]), system)
     signals.require_one_design([cycle["T12"]])
     angles = np.arange(frames) * (machine.period / frames)
     cylinders = [_turned(machine, k) for k in range(len(machine.crank_angles))]
@@ -52,12 +55,13 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     for ax in dict.fromkeys(panels):
         there = [k for k, other in enumerate(panels) if other is ax]
         every: list[film_frames.Frame] = [shot for k in there for shot in shots[k]]
-        film_frames.fit(ax, drawing, every, [ends for k in there for ends in arrows[k]])
+        film_frames.fit(ax, drawing, every, [ends for k in there for ends in arrows[k]], system)
         ax.set_title(", ".join(str(k + 1) for k in there), loc="right", fontsize="small")
         ax.label_outer()
-    film_frames.scale(panels[0], top, longest)
+    film_frames.scale(panels[0], system.value(top, "N"), longest, system.unit("N"))
     curve.plot(cycle["theta2"], cycle["T12"])
-    curve.set(xlabel="crank angle $\\theta_2$ [°]", ylabel="torque $T_{12}$ [N m]", xlim=(0.0, machine.period))
+    unit = system.unit("N m")
+    curve.set(xlabel="crank angle $\\theta_2$ [°]", ylabel=f"torque $T_{{12}}$ [{unit}]", xlim=(0.0, machine.period))
     torque = np.interp(angles, cycle["theta2"], cycle["T12"], period=machine.period)
     write = film_frames.readings(curve, "$\\theta_2$ =", {"T12": signals.symbol("T12")})
     follow = film_frames.follower(curve, ["T12"])
@@ -67,7 +71,7 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
         for ax, own, ends, there in zip(panels, shots, arrows, moving, strict=True):
             film_frames.renewed(ax, there, partial(film_frames.draw_frame, ax, drawing, own[k].shape, ends[k], longest))
         now = float(torque[k])
-        texts = write(float(angles[k]), {"T12": f"{signals.number(now)} N m"})
+        texts = write(float(angles[k]), {"T12": f"{signals.number(now)} {unit}"})
         return [*(artist for there in moving for artist in there), *texts, *follow(float(angles[k]), {"T12": now})]
 
     return Film(figure, draw, frames, title)

@@ -17,10 +17,12 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, force_color
+from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.kit.shape import Shape, positions, shape_of
 from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -163,7 +165,9 @@ def _beside(color: str) -> dict[str, Any]:
     return {"textcoords": "offset points", "color": color, "path_effects": halo, "zorder": 3.0, "fontsize": "small"}
 
 
-def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]]) -> None:
+def fit(
+    ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]], system: UnitSystem
+) -> None:
     """Set axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
     moving: list[Artist] = []
     for shot in shots[:: max(1, len(shots) // KNOWN)]:
@@ -175,17 +179,17 @@ def fit(ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, n
     ax.update_datalim([(x0 - room, y0 - 2.5 * room), (x1 + room, y1 + room)])
     ax.margins(0.0)
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set(xlabel="x [m]", ylabel="y [m]")
+    show_lengths(ax, system)
 
 
-def scale(ax: Axes, top: float, longest: float) -> None:
+def scale(ax: Axes, top: float, longest: float, unit: str) -> None:
     """Draw the length of a round force in the lower left corner."""
     from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
     decade = 10.0 ** np.floor(np.log10(0.7 * top))
     force = next(digit * decade for digit in ROUND if digit * decade <= 0.7 * top)
     style: dict[str, Any] = {"frameon": False, "color": GREY, "borderpad": 0.8}
-    ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} N", "lower left", **style))
+    ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} {unit}", "lower left", **style))
 
 
 def panels(*curves: float) -> tuple[Figure, Axes, list[Axes]]:

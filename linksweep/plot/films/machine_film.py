@@ -25,8 +25,10 @@ from linksweep.plot.films.frames import (
 )
 from linksweep.plot.kit import signals
 from linksweep.plot.machine import ARROW, draw_ground
+from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -47,17 +49,18 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     cycle = sweep(scene, angles, of=[*outputs, "omega2"])
     signals.require_one_design(cycle[name] for name in outputs)
     shots = frames_of(scene, drawing, way(cycle, cycle["omega2"], frames), point)
-    efforts = signals.spread(sweep(scene, [shot.angle for shot in shots], of=[drive])[drive], len(shots))
+    system, at = shown_units(scene.units), [shot.angle for shot in shots]
+    efforts = signals.spread(results_in_shown_units(sweep(scene, at, of=[drive]))[drive], len(shots))
     figure, machine, (curves, effort) = panels(1.0, EFFORT)
     forces(cycle, ax=curves)
     torque(cycle, ax=effort)
     curves.set_xlabel("")
-    top = curves.get_ylim()[1] / headroom(len(drawing.forces))
+    top = curves.get_ylim()[1] / headroom(len(drawing.forces)) * system.size("N")
     draw_ground(machine, scene, drawing, shots[0].shape)
     longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
     arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
-    fit(machine, drawing, shots, arrows)
-    scale(machine, top, longest)
+    fit(machine, drawing, shots, arrows, system)
+    scale(machine, system.value(top, "N"), longest, system.unit("N"))
     say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
     follow, follow_drive = follower(curves, list(drawing.forces)), follower(effort, [drive])
     moving: list[Artist] = []
@@ -65,7 +68,8 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     def draw(k: int) -> list[Artist]:
         shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
         renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
-        texts = {name: f"{signals.number(size if size > TINY * top else 0.0)} N" for name, size in sizes.items()}
+        sizes = {name: system.value(size if size > TINY * top else 0.0, "N") for name, size in sizes.items()}
+        texts = {name: f"{signals.number(size)} {system.unit('N')}" for name, size in sizes.items()}
         marks = [*follow(shot.angle, sizes), *follow_drive(shot.angle, {drive: efforts[k]})]
         return [*moving, *say(shot.angle, texts), *marks]
 

@@ -15,6 +15,7 @@ import xarray as xr
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn, require_angles
 from linksweep.results.compute import angles_missing
+from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peak_search.paths import Part
 from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.results.sweep import sweep
@@ -29,13 +30,18 @@ EQUAL = 1e-9
 
 
 def with_peaks(ds: xr.Dataset) -> xr.Dataset:
-    """Return a cycle, or a part of it, with samples at its exact peaks.
+    """Return a cycle, or a part of it, with samples at its exact peaks, in the units in which it is shown.
 
-    A Dataset that was altered, or has several designs, is returned as it is.
+    To a Dataset that was altered, or has several designs, no samples are added.
 
     Raises ValueError for a Dataset that is not over the crank angle.
     """
     require_angles(ds)
+    return results_in_shown_units(_with_samples(ds))
+
+
+def _with_samples(ds: xr.Dataset) -> xr.Dataset:
+    """Return a cycle with samples at its exact peaks, where its scene has them."""
     if {*ds.dims} != {INDEX} or WHOLE_TURN in ds.attrs:
         return ds
     try:

@@ -7,6 +7,9 @@ import xarray as xr
 from linksweep.results.dataset import OWN_UNITS
 from linksweep.scene.shown_units import UnitSystem, shown_units
 
+PARAMETERS = ("omega2", "alpha2")
+"""Results that are also parameters of a scene, which may be a function that only they represent."""
+
 
 def in_shown_units(ds: xr.Dataset, system: UnitSystem | None = None) -> xr.Dataset:
     """Return a Dataset with its variables and coordinates in the units in which they are shown.
@@ -33,6 +36,14 @@ def in_shown_units(ds: xr.Dataset, system: UnitSystem | None = None) -> xr.Datas
     coordinates = {name: values for name, values in changed.items() if name in ds.coords}
     results = {name: values for name, values in changed.items() if name not in coordinates}
     return ds.assign_coords(coordinates).assign(results) if changed else ds
+
+
+def results_in_shown_units(ds: xr.Dataset) -> xr.Dataset:
+    """Return a cycle whose results are in the units in which they are shown; parameters of its scene stay as they are,
+    so that it still holds the scene."""
+    results = ds[[name for name in ds.data_vars if name not in PARAMETERS]].reset_coords(drop=True)
+    shown = in_shown_units(results)
+    return ds if shown is results else ds.assign({name: shown[name].variable for name in shown.data_vars})
 
 
 def units_of(ds: xr.Dataset) -> UnitSystem:

@@ -1,0 +1,90 @@
+"""Plots and films are in the units that were chosen: labels, marked values, ticks, arrows."""
+
+import re
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import linksweep as ls
+from linksweep.cli.main import main
+
+SHOP = replace(ls.example("press"), units="in, lbf, rpm")
+SI = ("[N]", " N ", " N m", "[N m]", "rad/s", "[m]", "kg", "[W]")
+
+
+def study():
+    made = ls.sample(SHOP, {"coupler.length": ("20 cm", "24 cm"), "crank.length": ("7 cm", "8 cm")}, n=16)
+    return ls.peaks(made, of=["F32", "T12"], theta2=24)
+
+
+DRAWN = {
+    "cycle": lambda: ls.sweep(SHOP).linksweep.cycle(),
+    "bearings": lambda: ls.sweep(SHOP).linksweep.bearings(),
+    "torque_with_flywheel": lambda: ls.plot.torque_with_flywheel(ls.flywheel(SHOP, fluctuation=0.02, theta2=72)),
+    "over_speed": lambda: ls.plot.over_speed(SHOP, "F32", speeds=["100 rpm", "900 rpm"], below="150 lbf").figure,
+    "balance": lambda: ls.plot.balance(SHOP, SHOP, theta2=72),
+    "breakdown": lambda: ls.plot.breakdown(ls.breakdown(SHOP, "F32", theta2=72)).figure,
+    "scatter": lambda: ls.plot.scatter(study(), x="F32_peak", y="T12_peak").figure,
+    "parallel": lambda: ls.plot.parallel_coordinates(study()).figure,
+    "hodograph": lambda: ls.plot.hodograph(ls.sweep(SHOP, 72, of=["Fsx", "Fsy"])).figure,
+    "orders": lambda: ls.plot.orders(ls.orders(ls.sweep(SHOP, 72, of=["Fsx", "Fsy"]), "Fsx", n=4)).figure,
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    plt.close("all")
+
+
+def texts(figure) -> list[str]:
+    """Return all texts of a figure, those of packed labels among them."""
+    figure.canvas.draw()
+    return [text.get_text() for text in figure.findobj(plt.matplotlib.text.Text) if text.get_text()]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_no_text_of_a_plot_is_in_si_units(name):
+    words = texts(DRAWN[name]())
+    assert not [word for word in words if any(unit in f"{word} " for unit in SI)]
+    assert [word for word in words if re.search(r"lbf|\[in\]|rpm", word)]
+
+
+def test_marked_values_are_the_exact_peaks():
+    words = " ".join(texts(ls.sweep(SHOP, 24).linksweep.forces(["F32"]).figure))
+    peak = ls.peaks(SHOP, of=["F32"])
+    assert f"{float(peak.F32_peak) / 4.4482216152605:.2f} lbf at {float(peak.F32_peak_at):.2f}°" in words
+
+
+def test_a_machine_is_drawn_in_metres_with_ticks_round_in_inches():
+    ax = ls.plot.mechanism(SHOP, 30.0, forces=True)
+    ax.figure.canvas.draw()
+    ticks = [(tick.get_position()[0], tick.get_text()) for tick in ax.get_xticklabels() if tick.get_text()]
+    assert len(ticks) > 2
+    for place, text in ticks:
+        assert place == pytest.approx(0.0254 * float(text.replace("−", "-")), abs=1e-12)
+        assert float(text.replace("−", "-")) % 0.5 == 0.0
+    plain = ls.plot.mechanism(ls.example("press"), 30.0, forces=True)
+    np.testing.assert_array_equal(ax.dataLim.get_points(), plain.dataLim.get_points())
+
+
+def test_a_film_is_in_shown_units():
+    assert not [word for word in texts(ls.plot.animate(SHOP, frames=2).figure) if word.endswith((" N", "[N]", "[m]"))]
+
+
+def test_a_dataset_that_was_plotted_is_still_in_si():
+    cycle = ls.sweep(SHOP, 72)
+    before = cycle.copy(deep=True)
+    cycle.linksweep.forces()
+    assert cycle.identical(before)
+
+
+def test_the_command_line_takes_units(capsys):
+    assert main(["peaks", "press", "--of", "F32", "--units", "US"]) == 0
+    assert "lbf" in capsys.readouterr().out
+    assert main(["peaks", "press", "--of", "F32"]) == 0
+    assert "lbf" not in capsys.readouterr().out
+    assert main(["peaks", "press", "--units", "in, feet"]) == 2
+    assert 'units: "feet" is no unit' in capsys.readouterr().err
