@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scotch_yoke
 
 import linksweep as ls
 from linksweep.explorer.model.controls import controls, values
@@ -122,6 +123,37 @@ def test_a_cycle_is_that_of_a_sweep(name):
     assert {pin for link in picture["links"] for pin in link["pins"]} <= {*view["pins"]}
     assert all(places.dtype == np.float32 for places in view["pins"].values())
     assert view["problem"] == ""
+
+
+def test_loads_act_at_their_points_with_their_forces():
+    """The point is that of `coupler_curve`; a force in the axes of a link turns with it."""
+    loads = [
+        ls.Load("coupler", force=(3.0, -80.0), at=(0.1, 15.0)),
+        ls.Load("rocker", torque=2.0),
+        ls.Load("rocker", force=(lambda theta2: np.cos(np.radians(theta2)), 0.0), at=(0.05, 0.0), frame="link"),
+        ls.Load("coupler", force=(1.0, 0.0), origin="cg"),
+    ]
+    scene = replace(ls.example("press"), loads=loads)
+    first, third, fourth = ask(Session(scene, ""), "start")["cycle"]["loads"]
+    curve = ls.coupler_curve(scene, (0.1, 15.0), theta2=720)
+    assert first["name"] == "load 1" and third["name"] == "load 3"
+    assert first["place"] == pytest.approx(np.array([curve.Px, curve.Py]), abs=1e-7)
+    assert np.all(first["force"] == np.float32([[3.0], [-80.0]]))
+    along = np.radians(ls.sweep(scene, 720, of=["theta4"]).theta4.values)
+    size = np.cos(np.radians(np.arange(720) * 0.5))
+    assert third["force"] == pytest.approx(size * np.array([np.cos(along), np.sin(along)]), abs=1e-6)
+    middle = ls.coupler_curve(scene, (0.11, 0.0), theta2=720)  # of a bar of 0.22 m
+    assert fourth["place"] == pytest.approx(np.array([middle.Px, middle.Py]), abs=1e-7)
+
+
+def test_a_machine_with_a_table_of_its_own_is_shown_without_handles():
+    with scotch_yoke.registered():
+        yoke = scotch_yoke.ScotchYoke(ls.Bar(0.10, 0.03, 0.02, 7800.0), yoke_mass=5.0)
+        push = ls.Load("yoke", force=(-100.0, 0.0), at=(0.3, 0.0))
+        session = Session(ls.Scene(yoke, omega2=20.0, gravity=(0.0, -9.81), loads=[push]), "")
+        start = ask(session, "start")
+        assert start["handles"] == [] and len(start["controls"]) > 5 and start["cycle"]["forces"]
+        assert ask(session, "exact")["peaks"]
 
 
 def test_lost_angles_are_stated():

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.explorer.model.controls import written
+from linksweep.explorer.model.load_arrows import load_arrows
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import force_color
@@ -55,6 +56,10 @@ def cycle(scene: Scene, system: UnitSystem = SI) -> dict[str, Any]:
         "rails": [_rail(scene, block.guide, metre) for block in drawing.blocks],
         "wheels": [[pin, float(radius) / metre] for pin, radius in drawing.wheels(scene.mechanism)],
         "forces": {force: _packed(_force(effort, force, count) / newton) for force in drawing.forces},
+        "loads": [
+            {"name": name, "place": _packed(place / metre), "force": _packed(force / newton)}
+            for name, place, force in load_arrows(scene, drawing, motion, places, count)
+        ],
         "drive": _packed(signals.spread(effort[drive], count) / of_drive),
         "rate": float(np.nanmean(scene.omega2)) if not callable(scene.omega2) else 1.0,
         "problem": _gaps(effort),

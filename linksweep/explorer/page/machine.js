@@ -5,6 +5,8 @@ const LONGEST = 0.24;   // of the smaller side of the drawing: the longest arrow
 const OFF_SCALE = 1.3;  // of the longest arrow: those of forces beyond the scale
 const STICKY = 9;       // pixels about the crank's circle on which its pin stays
 
+const LOAD = {name: "load", color: "#5a5148"};
+
 class Machine {
   constructor(picture, handles, dragging) {
     this.picture = picture;
@@ -14,7 +16,7 @@ class Machine {
     this.layers = {};
     this.root = svg("svg", {class: "machine", role: "img", "aria-label": "The mechanism with its joint forces"});
     const defs = svg("defs");
-    for (const force of picture.forces) defs.append(this.head(force));
+    for (const force of [...picture.forces, LOAD]) defs.append(this.head(force));
     this.root.append(defs);
     for (const name of ["grid", "ghost", "ground", "links", "pins", "arrows", "names", "handles"])
       this.root.append(this.layers[name] = svg("g", {class: name}));
@@ -50,6 +52,15 @@ class Machine {
       this.letters[pin] = names.appendChild(svg("text", {class: "letter"}, pin));
     }
     for (const pin of handles) this.handles[pin] = this.layers.handles.appendChild(this.handle(pin));
+  }
+
+  // The arrow of a load points at the place where it acts.
+  makeLoads(loads) {
+    this.pushes?.forEach(parts => parts.forEach(part => part.remove()));
+    this.pushes = loads.map(load => [
+      this.layers.arrows.appendChild(svg("line", {class: "arrow load", "marker-end": "url(#head-load)"})),
+      this.layers.names.appendChild(svg("text", {class: "force", fill: LOAD.color}, load.name)),
+      this.layers.arrows.appendChild(svg("circle", {class: "acts", r: 2.4}))]);
   }
 
   pinNames() {
@@ -110,6 +121,7 @@ class Machine {
   show(cycle, pinned) {
     this.cycle = cycle;
     this.pinned = pinned;
+    if (this.pushes?.length !== cycle.loads.length) this.makeLoads(cycle.loads);
     const [a, b] = this.picture.links[0].pins.map(pin => at(cycle.pins[pin], 0));
     if (this.held !== this.picture.links[0].pins[1]) this.crank = Math.hypot(...less(b, a));
     this.frame();
@@ -224,6 +236,7 @@ class Machine {
       if (this.handles[pin]) set(this.handles[pin], shown ? {cx: x, cy: y, display} : {display});
     }
     picture.forces.forEach((force, j) => this.drawForce(j, places[force.pin], at(cycle.forces[force.name], k)));
+    cycle.loads.forEach((load, j) => this.drawLoad(this.pushes[j], this.screen(at(load.place, k)), at(load.force, k)));
     if (this.pinned) {
       const k = this.index(this.pinned);
       const lines = picture.links.map(link => path(link.pins.length, j => this.screen(at(this.pinned.pins[link.pins[j]], k))));
@@ -266,15 +279,29 @@ class Machine {
     for (const part of barrel) set(part, known(end) ? {x1: a[0], y1: a[1], x2: end[0], y2: end[1], display} : {display});
   }
 
-  drawForce(j, start, force) {
+  // Arrow of a force, (dx, dy) in pixels.
+  arrow(force) {
     const size = Math.hypot(...force), long = LONGEST * Math.min(this.width, this.height);
     const length = Math.min(size / this.top, OFF_SCALE) * long;
-    const shown = known(force) && known(start) && length > 2;
-    set(this.arrows[j], {display: shown ? "" : "none"});
-    set(this.labels[j], {display: shown && length > 14 ? "" : "none"});
-    if (!shown) return;
-    const u = [force[0] / size, -force[1] / size], tip = add(start, u, length), name = add(tip, u, 13);
-    set(this.arrows[j], {x1: start[0], y1: start[1], x2: tip[0], y2: tip[1]});
-    set(this.labels[j], {x: name[0], y: name[1] + 4});
+    return known(force) && length > 2 ? [force[0] / size * length, -force[1] / size * length] : null;
+  }
+
+  drawForce(j, start, force) {
+    const arrow = known(start) && this.arrow(force);
+    this.drawArrow(this.arrows[j], this.labels[j], start, arrow && add(start, arrow), 1);
+  }
+
+  drawLoad([line, label, dot], place, force) {
+    const arrow = known(place) && this.arrow(force);
+    this.drawArrow(line, label, arrow && less(place, arrow), place, 0);
+    set(dot, arrow ? {cx: place[0], cy: place[1], display: ""} : {display: "none"});
+  }
+
+  // The name stands beyond the tip, or behind the start.
+  drawArrow(line, label, start, tip, end) {
+    const length = start && tip ? Math.hypot(...less(tip, start)) : 0;
+    set(line, length ? {x1: start[0], y1: start[1], x2: tip[0], y2: tip[1], display: ""} : {display: "none"});
+    const u = length > 14 && less(tip, start).map(x => x / length), name = u && (end ? add(tip, u, 13) : add(start, u, -14));
+    set(label, name ? {x: name[0], y: name[1] + 4, display: ""} : {display: "none"});
   }
 }
