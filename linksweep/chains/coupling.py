@@ -6,7 +6,7 @@ affine numbers they give the coefficients by which `linksweep.physics.coupled_co
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from linksweep.chains.drives import Drive
@@ -20,6 +20,8 @@ from linksweep.physics.algebra.arithmetic import Number
 
 JAM = "drive_jam"
 """Name of the status of friction that depends on the drive."""
+NOISE = ("noise_of_balancing", "noise_of_slowness")
+"""Names of the noise of work over rate of the drive, and of one over that rate."""
 
 
 class Rub(NamedTuple):
@@ -50,6 +52,7 @@ class Coupling:
             Total("fixed_work", tuple(fixed_work)),
             response(of_forces, self._causes, effects),
             *(self._rates_with_struts() if self.struts else []),
+            Row(coupled_contacts.noise_of_drive, NOISE, (*self._balanced, self.drive.size, *fixed_work)),
             *(row for rub in self.rubs for row in self._rows_of_slide(rub)),
             *self._solving(),
             Total("work", ("fixed_work", *of_friction, *(f"work_of_{role}" for role in self.struts))),
@@ -64,7 +67,8 @@ class Coupling:
 
     def contacts(self) -> tuple[Limit, ...]:
         """Return the limit at which one of several slides bears nothing, beyond which they may jam."""
-        unloaded = Limit(self.drive.name, self._edges, ("drive_edge_noise",) * len(self._edges), "contact")
+        noise = tuple(name for name in self._edge_noise for _ in range(2 ** len(self.rubs) // 2))
+        unloaded = Limit(self.drive.name, self._edges, noise, "contact")
         return (unloaded,) if len(self.rubs) > 1 else ()
 
     # ---- names
@@ -77,6 +81,11 @@ class Coupling:
     @property
     def _work(self) -> str:
         return "work_with_struts" if self.struts else "fixed_work"
+
+    @property
+    def _balanced(self) -> tuple[str, Source]:
+        """The work that the drive balances, and the rate of the drive."""
+        return self._work, self._driven.ratio
 
     @property
     def _driven(self) -> Drive:
@@ -95,6 +104,10 @@ class Coupling:
     @property
     def _edges(self) -> tuple[str, ...]:
         return tuple(f"drive_edge_{k}" for k in range(len(self.rubs) * 2 ** len(self.rubs) // 2))
+
+    @property
+    def _edge_noise(self) -> tuple[str, ...]:
+        return tuple(f"drive_edge_noise_{k}" for k in range(len(self.rubs)))
 
     # ---- rows
 
@@ -116,20 +129,19 @@ class Coupling:
         pairs = _joined(zip(self._ratios, slopes, strict=True))
         own = dict(zip((rub.friction for rub in self.rubs), self._ratios, strict=True))
 
-        def without_drive(free: Number, per_drive: Number, work: Number, rate: Number, *pairs: Number):
-            return coupled_contacts.without_drive(free, per_drive, work, rate, _parts(pairs, len(self.rubs)))
+        def without_drive(free: Number, per_drive: Number, work: Number, rate: Number, *numbers: Number):
+            of_slides = _parts(numbers[2:], len(self.rubs))
+            return coupled_contacts.without_drive(free, per_drive, work, rate, numbers[:2], of_slides)
 
         return [
             Row(planar.product, (f"work_of_{rub.friction}",), (rub.ratio, rub.friction)),
             Row(planar.product, (f"balance_of_{rub.friction}",), (own[rub.friction], rub.friction)),
-            Row(without_drive, self._without_drive(rub), (free, per_drive, self._work, self._driven.ratio, *pairs)),
+            Row(without_drive, self._without_drive(rub), (free, per_drive, *self._balanced, *NOISE, *pairs)),
         ]
 
     def _without_drive(self, rub: Rub) -> tuple[str, ...]:
-        """Return the names of a normal force without drive and friction, of the size of its terms, and of its change
-        per friction of all slides."""
-        alone, *slopes = (f"{name}_driven" for name in coefficients(rub.normal, self._causes[1:]))
-        return (alone, f"{alone}_size", *slopes)
+        """Return the names of a normal force without drive and friction, and of its change per friction of each."""
+        return tuple(f"{name}_driven" for name in coefficients(rub.normal, self._causes[1:]))
 
     def _solving(self) -> Rows:
         """Return the rows of the friction of all slides, and of its status; then those of the signals of wedging."""
@@ -141,19 +153,19 @@ class Coupling:
 
         def coupled_contacts_of(*numbers: Number) -> tuple[Number, ...]:
             of_slides = _parts(numbers[:-s], s)
-            alone, sizes = ([part[k] for part in of_slides] for k in (0, 1))
-            return coupled_contacts.coupled_contacts(alone, sizes, [part[2:] for part in of_slides], numbers[-s:])
+            alone, slopes = [part[0] for part in of_slides], [part[1:] for part in of_slides]
+            return coupled_contacts.coupled_contacts(alone, slopes, numbers[-s:])
 
-        def systems(rate: Number, *numbers: Number) -> Iterator[coupled_contacts.Matrix]:
+        def statics(rate: Number, *numbers: Number) -> coupled_contacts.Statics:
             of_slides = _parts(numbers[2 * s :], s)
             per_drive, slopes = [part[0] for part in of_slides], [part[1:] for part in of_slides]
-            return coupled_contacts.systems(rate, numbers[:s], per_drive, slopes, numbers[s : 2 * s])
+            return coupled_contacts.Statics(rate, numbers[:s], per_drive, slopes, numbers[s : 2 * s])
 
         def wedging_signals(*numbers: Number) -> tuple[Number, ...]:
-            return coupled_contacts.wedging_signals(systems(*numbers))
+            return coupled_contacts.wedging_signals(statics(*numbers))
 
         def unloaded_signals(work: Number, *numbers: Number) -> tuple[Number, ...]:
-            return coupled_contacts.unloaded_signals(systems(*numbers[s:]), [-work, *numbers[:s]])
+            return coupled_contacts.unloaded_signals(statics(*numbers[s:]), [-work, *numbers[:s]])
 
         of_normals = [coefficients(rub.normal, self._causes) for rub in self.rubs]
         free, per_cause = [names[0] for names in of_normals], [names[1:] for names in of_normals]
@@ -162,7 +174,7 @@ class Coupling:
             Row(coupled_contacts_of, (*frictions, "drive_solutions"), (*known, *directions)),
             Row(coulomb.solutions_status, (JAM,), (0.0, "drive_solutions")),
             Row(wedging_signals, (*self._grips, "drive_grip_noise"), of_signals),
-            Row(unloaded_signals, (*self._edges, "drive_edge_noise"), (self._work, *free, *of_signals)),
+            Row(unloaded_signals, (*self._edges, *self._edge_noise), (self._work, *free, *of_signals)),
         ]
 
 

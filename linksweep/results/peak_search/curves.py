@@ -159,8 +159,12 @@ def _crossings(curves: Curves, values: Array, noise: Array, beyond: Extremes) ->
 
 
 def _changes_of_sign(curves: Curves, values: Array, noise: Array) -> tuple[Array, Array, Array]:
-    """Return curve, places and values (end, change) of neighbouring samples of which one is negative beyond noise."""
+    """Return curve, places and values (end, change) of neighbouring samples of which one is negative beyond noise.
+
+    The value of the other one is at least zero: one that is negative by noise alone is a zero.
+    """
     positive, known = values >= -noise, np.isfinite(values)
+    values = np.where(positive, np.maximum(values, 0.0), values)
     change = (positive[:, 1:] != positive[:, :-1]) & known[:, 1:] & known[:, :-1]
     if curves.turns:
         change[:, 1 - SEAM :] = False

@@ -1,6 +1,9 @@
 """Drives that load slides with friction, which decides the drive in turn: by hand, by named machines, by the dense
 system, and by samples of exact peaks. The multibody reference is in `mechanisms/oracle/test_linkages.py`."""
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -117,6 +120,22 @@ def test_nothing_presses_nothing_jams():
     assert np.all(cycle.status == OK)
     np.testing.assert_allclose(cycle.T13, -4.0, rtol=1e-13)
     np.testing.assert_allclose(cycle.F32n, 0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("friction", [0.3, 2.0])
+def test_a_crank_that_bears_nothing_jams_nothing(friction):
+    """A crank without mass or load turns evenly: it needs no torque, and the arm's block presses on nothing. Rounding
+    leaves a little that presses, and more the slower the jack, whose force is W/r."""
+    scene = shaper(friction)
+    block = replace(scene.mechanism.guides["arm"], friction=friction)
+    slide = replace(scene.mechanism.guides["slide"], friction=0.3)
+    machine = replace(scene.mechanism, crank=massless(CRANK), guides={"slide": slide, "arm": block})
+    scene = ls.Scene(machine, omega2=3.0, gravity=(0.0, -9.81), drive="jack")
+    limits = ls.check(scene)
+    assert limits.sizes["jam"] == 0
+    away = np.geomspace(1e-6, 3.0, 400)
+    angles = np.concatenate([centre + sign * away for centre in limits.dead_centre_angle.values for sign in (-1, 1)])
+    assert np.all(ls.sweep(scene, np.sort(angles), of=["status"]).status == OK)
 
 
 @pytest.mark.parametrize(("drive", "friction"), [("jack", 0.05), ("jack", 0.15), ("arm", 0.15), ("arm", 0.6)])
@@ -287,10 +306,27 @@ def test_four_slides():
     """The friction of four slides, solved by trial of their signs, fulfils statics and Coulomb's law."""
     free, directions = [7.0, -3.0, 5.0, -11.0], [0.3, -0.2, 0.1, -0.3]
     slopes = [[((3 * i + 5 * j) % 7 - 3) / 20.0 for j in range(4)] for i in range(4)]
-    *frictions, count = coupled_contacts.coupled_contacts(free, [1.0] * 4, slopes, directions)
+    *frictions, count = coupled_contacts.coupled_contacts(free, slopes, directions)
     assert count == 1.0
     normals = np.array(free) + np.array(slopes) @ frictions
     np.testing.assert_allclose(frictions, -np.array(directions) * abs(normals), rtol=1e-14)
+
+
+def test_one_sign_holds_where_friction_does_not_wedge():
+    """However small the normal forces: what counts as nothing does not depend on the signs that are assumed."""
+    for free in (2.0**-44 * np.linspace(-3.0, 3.0, 61)).tolist():
+        for slope, *directions in product((-0.6, 0.6), (0.7, -0.7), (0.7, -0.7)):
+            *_, count = coupled_contacts.coupled_contacts([free, 5.0 * free], [[slope, 0.3], [-0.3, slope]], directions)
+            assert count == 1.0
+
+
+def test_what_the_error_of_a_slow_drive_leaves_is_nothing():
+    """A contact bears nothing where a_i = b_i W/r: the error of r, relative to its size, is that of a slow drive."""
+    work, rate = 3e-6, 1e-6
+    noise = coupled_contacts.noise_of_drive(work, rate, 1.0, 5e-6, -2e-6)
+    for error, nothing in ((2.0**-45, True), (2.0**-30, False)):
+        with_error = (3.0, 1.0, work, rate + error, noise, [(rate, 1.0)])
+        assert [x == 0.0 for x in coupled_contacts.without_drive(*with_error)] == [nothing, nothing]
 
 
 def test_affine_numbers_are_exact_and_linear():
