@@ -281,9 +281,9 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 def left_out(value: Any) -> bool:
     """Return whether a value is that of a field left out: None, or an empty text, list or record."""
-    if isinstance(value, str | tuple | list):
+    if value is None or isinstance(value, str | tuple | list):
         return not value
-    return value is None or (has_fields(value) and isinstance(value, Mapping) and not value)
+    return has_fields(value) and isinstance(value, Mapping) and not value
 
 
 def has_fields(value: Any) -> bool:

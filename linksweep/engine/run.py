@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,9 @@ COMPILE_AFTER = 1_000_000
 
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
+
+LATE_SAMPLES = 2**13
+"""Samples (angles × designs) that numpy works on at a time: they stay in the cache."""
 
 OPERATORS = {
     "+": operator.add,
@@ -159,8 +162,8 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
     stored |= {node: Field((), np.asarray(node.value)) for node in plan.constants}
     if plan.late:
         operands = {x for node in plan.late for x in node.operands if x in stored}
-        values = interpret(plan.late, {x: _align(plan, x.dims, stored[x]) for x in operands})
-        stored |= {node: _field(plan, node, values[node], grid, sizes) for node in plan.late}
+        values = _late(plan, {x: _align(plan, x.dims, stored[x]) for x in operands}, grid, sizes, threads)
+        stored |= {node: _field(plan, node, value, grid, sizes) for node, value in values.items()}
     return {name: stored[node] for name, node in plan.outputs.items()}
 
 
@@ -270,6 +273,34 @@ def over_threads(work: Callable[[int, int], None], length: int, workers: int, th
     bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(work, bounds[:-1], bounds[1:]))
+
+
+def _late(
+    plan: Plan, operands: dict[Node, Numbers], grid: Grid, sizes: Sizes, threads: int | None
+) -> dict[Node, Numbers]:
+    """Evaluate the outputs left to numpy from rows that a kernel stored: some samples at a time, which then stay in the
+    cache, by a pool of threads."""
+    late = set(plan.late)
+    outputs = {node for node in plan.outputs.values() if node in late}
+    if not all(plan.index in node.dims for node in outputs):
+        values = interpret(plan.late, operands)
+        return {node: values[node] for node in outputs}
+    shapes = {node: tuple(sizes[dim] if dim in node.dims else 1 for dim in plan.loops) for node in outputs}
+    samples = len(grid.angles)
+    results = {node: new_block(math.prod(shape), samples).reshape(*shape, -1) for node, shape in shapes.items()}
+    step = max(512, LATE_SAMPLES // max(map(math.prod, shapes.values())))
+
+    def work(first: int, last: int) -> None:
+        for start in range(first, last, step):
+            part = slice(start, min(start + step, last))
+            some: dict[Node, Any] = dict(operands)
+            some |= {node: some[node][..., part] for node in operands if plan.index in node.dims}
+            values = interpret(plan.late, some)
+            for node, result in results.items():
+                result[..., part] = values[node]
+
+    over_threads(work, samples, 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD, threads)
+    return dict(results)
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:

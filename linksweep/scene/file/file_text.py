@@ -41,11 +41,13 @@ def _tables(raw: Words) -> Iterator[tuple[str, Words]]:
 def _value(value: Any) -> str:
     if type(value) in (float, int):
         return repr(value)
+    if type(value) is str:
+        return _word(value)
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_value, value)) + "]"
-    return _word(value) if type(value) is str else _other(value)
+    return _other(value)
 
 
 def _other(value: Any) -> str:

@@ -63,6 +63,8 @@ class _Writer(NamedTuple):
 
     def written(self, value: Any, kind: FieldKind, where: Where) -> Any:
         """Return a value of the scene as TOML has it."""
+        if type(value) in (float, str):
+            return value
         if has_fields(value):
             return self._table(value, kind, where)
         if isinstance(value, (tuple, list)):
@@ -81,7 +83,7 @@ class _Writer(NamedTuple):
         words: dict[str, Any] = {}
         for name, each, _ in declared(part):
             value = getattr(part, name)
-            if type(value) is float:
+            if type(value) is float or (type(value) is str and value):
                 words[name] = value
             elif isinstance(each, NamedField) and each.inline:
                 words |= self._table(value, each, where)
