@@ -15,7 +15,18 @@ from benchmarks import plots
 from benchmarks.accuracy import grids, missed, solves
 from benchmarks.cases import FULL, QUICK, Size
 from benchmarks.report import Groups, as_json, machine, markdown
-from benchmarks.speed import exact, growth, latency, linkages, mechanisms, peaks, skipping, threads, unknowns
+from benchmarks.speed import (
+    derivatives,
+    exact,
+    growth,
+    latency,
+    linkages,
+    mechanisms,
+    peaks,
+    skipping,
+    threads,
+    unknowns,
+)
 from benchmarks.timing import Row, can_pin, one_core
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
@@ -38,6 +49,7 @@ GROUPS = {
     "missed": Group("Peaks that the search misses, {machines:,} random designs of each kind", missed.rows),
     "skipping": Group("Quantities that are not requested cost nothing, {angles:,} angles, one core", skipping.rows),
     "mechanisms": Group("Other mechanisms against the four-bar, {angles:,} angles, one core", mechanisms.rows),
+    "derivatives": Group("Derivatives to ten parameters, a tenth of {angles:,} angles, one core", derivatives.rows),
     "linkages": Group("All unknowns of linkages, a tenth of {angles:,} angles, one core", linkages.rows),
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
     "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),

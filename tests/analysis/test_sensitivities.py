@@ -300,3 +300,13 @@ def test_refusals_name_the_parameter(to, words):
 def test_a_result_that_is_unknown_is_refused():
     with pytest.raises(ValueError, match="F32_paek"):
         ls.sensitivities(ls.example("press"), of=["F32_paek"])
+
+
+def test_compiled_and_interpreted_derivatives_are_equal(monkeypatch):
+    """Kernels and numpy give the same bits; names of parameters are none that a kernel could not have."""
+    scene = ls.example("engine")
+    names = {"of": ["F32", "T12"], "to": ["rod.length", "slide_angle", "loads[1].bore"], "theta2": 50}
+    interpreted = ls.sensitivities(scene, **names)
+    monkeypatch.setattr("linksweep.engine.run.COMPILE_AFTER", -1)
+    compiled = ls.sensitivities(scene, **names)
+    xr.testing.assert_identical(compiled, interpreted)

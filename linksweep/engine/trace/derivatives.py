@@ -22,8 +22,14 @@ Slopes = tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...]
 
 
 def derivative_of(name: str, parameter: str) -> str:
-    """Return the name of the derivative of a quantity, or of an input, to a parameter."""
-    return f"d({name})/d({parameter})"
+    """Return the name of the derivative of a quantity, or of an input, to a parameter: an identifier for kernels."""
+    return f"d_{_identifier(name)}_by_{_identifier(parameter)}"
+
+
+def _identifier(text: str) -> str:
+    """Return a text as part of an identifier; no two texts give the same."""
+    other = {"_": "__"}
+    return "".join(c if c.isalnum() else other.get(c, f"_{ord(c):x}_") for c in text)
 
 
 @lru_cache(maxsize=64)
