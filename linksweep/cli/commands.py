@@ -205,6 +205,9 @@ def _breakdown(options: argparse.Namespace) -> None:
 
 def _worst_angle(scene: ls.Scene, name: str) -> float:
     """Return the crank angle [degree] where a force or torque is largest."""
+    from linksweep.results.compute import requested
+
+    (name,) = requested("of", name, scene)
     ds = ls.peaks(scene, of=[name])
     ends = [end for end in ("peak", "max", "min") if f"{name}_{end}_at" in ds]
     worst = max(ends, key=lambda end: abs(float(ds[f"{name}_{end}"])))

@@ -164,7 +164,8 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
 
 def force_names(ds: xr.Dataset, names: Iterable[str] | None) -> list[str]:
     if names is not None:
-        chosen = [names] if isinstance(names, str) else list(dict.fromkeys(names))
+        listed = [names] if isinstance(names, str) else names
+        chosen = list(dict.fromkeys(signals.force_named(ds, name) for name in listed))
         if chosen:
             return chosen
     forces = drawing_of_results(ds).forces

@@ -16,7 +16,7 @@ from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
-from linksweep.results.compute import require, require_dataset
+from linksweep.results.compute import requested, require, require_dataset
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.scene import Scene
@@ -62,7 +62,7 @@ def breakdown(ds: xr.Dataset, of: str | None = None, *, ax: Axes | None = None) 
     require_dataset(ds, "ls.breakdown")
     known = [str(key) for key, item in ds.data_vars.items() if "source" in item.dims]
     refuse([] if known else ["ds has no sources: take what ls.breakdown returns"])
-    of = known[0] if of is None else of
+    of = known[0] if of is None else signals.force_named(ds, of)
     refuse(name_problems("of", of, known))
     ds = results_in_shown_units(ds)
     signals.require_one_design([ds[of].isel(source=0)])
@@ -135,6 +135,7 @@ def over_speed(scene: Scene, of: str, *, speeds: Any, below: float | None = None
     require(scene, "drives")
     values = np.asarray(all_to_float64(speeds, "angular_velocity"), dtype=float)
     omega2 = xr.DataArray(values, dims="omega2")
+    (of,) = requested("of", of, scene)
     at_rest = replace(scene, omega2=0.0)
     name = f"{of}_peak"
     worst = peaks(replace(scene, omega2=omega2.assign_coords(omega2=omega2)), of=[of])[name]

@@ -33,7 +33,7 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     ds : Dataset
         Cycle from `linksweep.sweep` with the components of the force (F32x, F32y), of one design.
     of : str, default "F32"
-        Force Fij, of link i on link j.
+        Force Fij, of link i on link j, or the pin in which it acts, "B".
     frame : {"ground", "journal", "bearing", "link"}, default "ground"
         Axes of the components: of the ground, or of the link that has the journal or the bearing, that turn with it (x
         along its line of pins, of a slider along its guide); "link" is link j. `linksweep.bearings` states which link
@@ -58,6 +58,7 @@ def bearing(ds: xr.Dataset, of: str = "F32", *, frame: str = "ground", ax: Axes 
     '$F_{32}$ along the crank, A→B [N]'
     """
     refuse(choice_problems("frame", frame, (*FRAMES, "link")))
+    of = signals.force_named(ds, of)
     ds = with_peaks(ds)
     angles, x, y = _locus(ds, of, frame)
     drawing = drawing_of_results(ds)

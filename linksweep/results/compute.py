@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import name_problems, quote, refuse
+from linksweep.chains.between_links import force_name
+from linksweep.chains.rows.pins import Pins
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.engine.trace.superpose import superposed
@@ -23,12 +25,31 @@ SEVERAL = (
 )
 
 
-def requested(path: str, names: Any) -> list[str]:
-    """Return the requested names as a list, each once; a single text is one name."""
+def requested(path: str, names: Any, scene: Any = None) -> list[str]:
+    """Return the requested names as a list, each once; a single text is one name.
+
+    Of a scene, the letter of a pin is the force in it: "B" is F32, "B_rms" is F32_rms. A letter that several joints
+    share is refused with their names.
+    """
     listed = [names] if isinstance(names, str) else list(names) if isinstance(names, Iterable) else [names]
     wrong = [name for name in listed if not isinstance(name, str)]
     refuse([f'{path} = {wrong[0]!r}: must be names of quantities, such as ["F32", "T12"]'] if wrong else [])
-    return list(dict.fromkeys(listed))
+    pins = scene.mechanism.pins if isinstance(scene, Scene) else {}
+    refuse([problem for name in listed for problem in _shared_pin(path, name, pins)])
+    return list(dict.fromkeys(force_in(name, pins) for name in listed))
+
+
+def force_in(name: str, pins: Pins) -> str:
+    """Return the name of the force in a pin, also with an ending such as _peak; any other name as it is."""
+    pin, line, ending = (name, "", "") if name in pins else name.rpartition("_")
+    return force_name(*pins[pin]) + line + ending if pin in pins else name
+
+
+def _shared_pin(path: str, name: str, pins: Pins) -> list[str]:
+    """Return a problem for the letter of a pin at which several joints have names of their own."""
+    joints = [pin for pin in pins if pin.partition(":")[0] == name.partition("_")[0] and ":" in pin]
+    several = joints and ":" not in name
+    return [f"{path}: several links share pin {name}; name one of {', '.join(joints)}"] if several else []
 
 
 def either(**values: Any) -> tuple[str, Any]:

@@ -88,7 +88,7 @@ def peaks(
     """
     word, angles = either(theta2=theta2, theta=theta)
     refuse([*count_problems("threads", threads), *_solver_problems(solver, angles)])
-    names = None if of is None else requested("of", of)
+    names = None if of is None else requested("of", of, scene)
     if isinstance(scene, MultiCylinder):
         exact = "must be left out: peaks of several cylinders are exact"
         refuse([] if angles is None else [f"{word} = {quote(angles)}: {exact}"])
@@ -100,7 +100,7 @@ def peaks(
 @by_blocks(of_samples=False)
 def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
     """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
-    return peaks_of_scene(scene, requested("of", of), threads, part=part)
+    return peaks_of_scene(scene, requested("of", of, scene), threads, part=part)
 
 
 def quantity_of(name: str) -> str:

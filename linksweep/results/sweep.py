@@ -104,7 +104,7 @@ def sweep(
     require_scene(scene)
     refuse([*choice_problems("solver", solver, SOLVERS), *count_problems("threads", threads)])
     word, quantities = either(of=of, outputs=outputs)
-    names = default_names(scene) if quantities is None else _names(scene, word, requested(word, quantities))
+    names = default_names(scene) if quantities is None else _names(scene, word, requested(word, quantities, scene))
     with_place, names = STATUS_AT in names, tuple(name for name in names if name != STATUS_AT)
     angles = angles_of(scene, angles=angles, theta2=theta2, theta=theta)
     angles = COUNT if angles is None else angles

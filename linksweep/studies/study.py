@@ -121,7 +121,7 @@ def study(
     client = client_of(client)
     scene = in_memory(scene)
     usual = CHUNK if scene.steady or scene.mechanism.index in options else SLOW_CHUNK
-    job = Job(scene, None if of is None else requested("of", of), options, int(chunk or usual))
+    job = Job(scene, None if of is None else requested("of", of, scene), options, int(chunk or usual))
     target = target_of(path)
     if not target.exists():
         job.try_out()

@@ -249,3 +249,25 @@ def test_accepted_input_gives_numbers_and_neither_errors_nor_warnings(size, mass
         ls.peaks(extreme, theta2=7)
         ls.system(extreme, 1.0)
         ls.check(extreme)
+
+
+def test_the_letter_of_a_pin_is_the_force_in_it():
+    press = ls.example("press")
+    assert ls.sweep(press, 8, of=["B", "T12"]).identical(ls.sweep(press, 8, of=["F32", "T12"]))
+    worst, expected = (ls.peaks(press, of=of) for of in (["B", "C_rms"], ["F32", "F43_rms"]))
+    assert worst.identical(expected)
+    assert ls.breakdown(press, "B", theta2=8).identical(ls.breakdown(press, "F32", theta2=8))
+    assert float(ls.speed_limit(press, "B", below=1e3).omega2_limit) == float(
+        ls.speed_limit(press, "F32", below=1e3).omega2_limit
+    )
+    assert ls.compare(press, press, of="B_peak", theta2=8).identical(ls.compare(press, press, of="F32_peak", theta2=8))
+    cycle = ls.sweep(press, 24)
+    assert cycle.linksweep.bearing("B").get_xlabel() == cycle.linksweep.bearing("F32").get_xlabel()
+    assert cycle.linksweep.forces("B").get_ylabel() == cycle.linksweep.forces(["F32"]).get_ylabel()
+
+
+def test_a_letter_that_several_joints_share_is_refused():
+    press = ls.example("knuckle-press")
+    assert "F53" in ls.sweep(press, 8, of=["C:lower"])
+    with pytest.raises(ValueError, match=r"^of: several links share pin C; name one of C:upper, C:lower$"):
+        ls.peaks(press, of=["C"])

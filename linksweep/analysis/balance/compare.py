@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.results.compute import quantity_problems, require_scene
+from linksweep.results.compute import quantity_problems, requested, require_scene
 from linksweep.results.dataset import joined, origin_attributes
 from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
@@ -61,7 +61,7 @@ def compare(before: Scene, after: Scene, *, of: Any, theta2: int = 720, threads:
     """
     require_scene(before)
     require_scene(after)
-    sizes = sizes_named("of", before, [of] if isinstance(of, str) else of)
+    sizes = sizes_named("of", before, requested("of", of, before))
     outputs = [*(name for name, _ in sizes), before.mechanism.pace]
     sides = [_sizes(scene, sweep(scene, theta2, of=outputs, threads=threads), sizes) for scene in (before, after)]
     table = {name: joined([side[name] for side in sides], "balance", ("before", "after")) for name in sides[0]}

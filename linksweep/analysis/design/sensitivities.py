@@ -95,7 +95,7 @@ def sensitivities(
     paths = parameters_of(scene, to)
     if angles is not None:
         return _of_samples(scene, angles, of, paths, threads)
-    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of)
+    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
     refuse([problem for name in names for problem in result_problems(scene, "of", name)])
     variables: dict[str, Any] = {}
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
@@ -159,7 +159,7 @@ def labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...],
 
 def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...], threads: int | None) -> xr.Dataset:
     """Return the derivatives of quantities at crank angles."""
-    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of)
+    names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
     known = [name for name in scene.table.quantity if name != "cond"]
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = scene.grid(angles)

@@ -114,7 +114,7 @@ def tolerance(
     require_scene(scene)
     scene = in_memory(scene)
     choices = _choices(scene, tolerances)
-    names = requested("of", of)
+    names = requested("of", of, scene)
     problems = [problem for name in names for problem in result_problems(scene, "of", name)]
     refuse([*problems, *([] if n == 0 else count_problems("n", n)), *count_problems("threads", threads)])
     paths = tuple(choices)

@@ -99,7 +99,7 @@ def breakdown(
 def _names(scene: Scene, of: Any) -> tuple[str, ...]:
     if of is None:
         return scene.mechanism.peak_quantities(scene.drive)
-    names = requested("of", of)
+    names = requested("of", of, scene)
     refuse([problem for name in names for problem in quantity_problems("of", name, forces_of(scene), scene)])
     return tuple(names)
 

@@ -80,7 +80,7 @@ def speed_separation(
     refuse(_problems(scene))
     known = [name for name in forces_of(scene) if not scene.table.quantity[name].squared]
     unknowns = scene.mechanism.unknowns(scene.drive)
-    names = tuple(name for name in known if name in unknowns) if of is None else tuple(requested("of", of))
+    names = tuple(name for name in known if name in unknowns) if of is None else tuple(requested("of", of, scene))
     refuse([problem for name in names for problem in quantity_problems("of", name, known, scene)])
     grid = scene.grid(theta2)
     sampled = scene.at(grid)
@@ -135,7 +135,7 @@ def speed_limit(scene: Scene, of: str, *, below: float, threads: int | None = No
     1000.0
     """
     require(scene, "drives")
-    (name,) = requested("of", of)[:1] or [""]
+    (name,) = requested("of", of, scene)[:1] or [""]
     refuse(_problems(scene))
     several = 'mechanism.branch = "both": must be one of open, crossed; ask for each'
     refuse([several] if scene.mechanism.both_branches else [])

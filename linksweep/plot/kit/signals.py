@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.validate import refuse
-from linksweep.chains.between_links import pair_of, reaction
+from linksweep.chains.between_links import force_name, pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
 from linksweep.tables.cells import number as number
@@ -62,6 +62,12 @@ def magnitude(ds: xr.Dataset, pin: str) -> xr.DataArray:
 
 def has_pin(ds: xr.Dataset, pin: str) -> bool:
     return any(name in ds or (f"{name}x" in ds and f"{name}y" in ds) for name in (pin, reaction(pin)))
+
+
+def force_named(ds: xr.Dataset, name: str) -> str:
+    """Return the name of a force, or of the one in a pin: "B" is F32."""
+    joints = drawing_of_results(ds).joints
+    return force_name(*joints[name]) if name in joints else name
 
 
 def _known_force(ds: xr.Dataset, pin: str) -> None:
