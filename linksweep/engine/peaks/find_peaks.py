@@ -169,8 +169,11 @@ def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
 
 def search_functions(samples: int) -> Mapping[str, Callable]:
     """Return the functions of a search along paths, compiled where there are many samples to search."""
-    if samples <= INTERPRETED_SAMPLES:
-        return {**vars(search), **vars(brackets)}
+    return _compiled_for_paths() if samples > INTERPRETED_SAMPLES else {**vars(search), **vars(brackets)}
+
+
+@cache
+def _compiled_for_paths() -> Mapping[str, Callable]:
     vectors = {name: value.compiled() for name, value in vars(brackets).items() if isinstance(value, Lanewise)}
     return {**compiled_functions(_plain(brackets, search)), **vectors}
 
