@@ -26,6 +26,7 @@ from linksweep.engine.kernel.compile import compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
+from linksweep.engine.patience import Patience
 from linksweep.engine.trace.graph import LOW_WORDS, Node
 from linksweep.engine.trace.plan import Plan
 
@@ -110,21 +111,16 @@ class Layout(NamedTuple):
 
 
 @dataclass(eq=False)
-class Runner:
-    """One plan ready to run, with the number of samples interpreted so far."""
+class Runner(Patience):
+    """One plan ready to run."""
 
     plan: Plan
     reductions: tuple[Reduction, ...]
-    interpreted: int = 0
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
 
     @cached_property
     def fused(self) -> Writer:
         return fuse(self.plan, self.reductions)
-
-    def should_interpret(self, samples: int) -> bool:
-        self.interpreted += samples
-        return self.interpreted <= COMPILE_AFTER
 
     def layout(self, sizes: Sizes) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
@@ -153,7 +149,7 @@ runner = lru_cache(maxsize=256)(Runner)
 def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None = None) -> dict[str, Field]:
     """Return every output of the plan over its own dims."""
     ready = runner(plan, ())
-    if ready.should_interpret(_samples(plan, grid, sizes)):
+    if ready.should_interpret(_samples(plan, grid, sizes), COMPILE_AFTER):
         return _interpreted(plan, inputs, grid, sizes)
     layout = ready.layout(sizes)
     block, single = _execute(ready, inputs, grid, sizes, threads)
@@ -173,7 +169,7 @@ def reduce_rows(
     """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
     index."""
     ready = runner(plan, reductions)
-    if plan.late or ready.should_interpret(_samples(plan, grid, sizes)):
+    if plan.late or ready.should_interpret(_samples(plan, grid, sizes), COMPILE_AFTER):
         fields = _interpreted(plan, inputs, grid, sizes)
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
     layout = ready.layout(sizes)

@@ -97,17 +97,17 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted():
     constants, rows = np.empty(len(evaluators.constants) * lanes), np.empty((SAMPLES + 1) * len(signals) * lanes)
     compiled.prepare(inputs.ravel(), constants)
     compiled.sample(constants, of_turn, rows)
-    x, far, tag = np.linspace(-0.9, 0.9, lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0
-    values = np.empty(lanes)
-    compiled.evaluate(constants, x, far, tag, values, 0, lanes)
+    places = np.array([np.linspace(-0.9, 0.9, lanes), np.zeros(lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0])
+    table = places.copy()
+    compiled.evaluate(constants, table, 0, 1, 2, 3, 0, lanes)
     for lane in range(lanes):
-        own, own_rows, value = np.empty(len(evaluators.constants)), np.empty(SAMPLES * len(signals)), np.empty(1)
+        own, own_rows = np.empty(len(evaluators.constants)), np.empty(SAMPLES * len(signals))
         interpreted.prepare(inputs[:, lane].copy(), own)
         interpreted.sample(own, of_turn[lane::lanes].copy(), own_rows)
-        interpreted.evaluate(own, x[lane:], far[lane:], tag[lane:], value, 0, 1)
+        interpreted.evaluate(own, places, 0, 1, 2, 3, lane, lane + 1)
         np.testing.assert_array_equal(constants.reshape(-1, lanes)[:, lane], own)
         np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
-        assert values[lane] == value[0]
+    np.testing.assert_array_equal(table, places)
 
 
 def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
@@ -136,9 +136,9 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
         angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
         rows[:SAMPLES] = height(angles.ravel(), constants[2])
 
-    def evaluate(constants, x, far, signal, values, first, last):
-        at = slice(first, last)
-        values[at] = height(2.0 * np.arctan(x[at]) + np.pi * far[at], constants[2])
+    def evaluate(constants, table, x, value, far, signal, first, last):
+        at = table[:, first:last]
+        at[value] = height(2.0 * np.arctan(at[x]) + np.pi * at[far], constants[2])
 
     best = np.empty((BEST_ROWS + 1, len(phase)))
     one = np.array([0], dtype=np.int64)

@@ -80,18 +80,17 @@ def compiled_call() -> Callable:
     from numba.extending import intrinsic
 
     def typed(_typing_context: Any, function: Any, arguments: Any) -> tuple[Any, Callable] | None:
-        if not {*arguments.types} <= {types.float64[::1], types.int64}:  # what the function was compiled for
+        kinds = types.Tuple([types.unliteral(kind) for kind in arguments.types])
+        if not {*kinds} <= {types.float64[::1], types.float64[:, ::1], types.int64}:  # what it was compiled for
             return None
 
         def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            kind = context.call_conv.get_function_type(types.void, arguments.types)
-            at = builder.inttoptr(values[0], kind.as_pointer())
-            context.call_conv.call_function(
-                builder, at, types.void, arguments.types, cgutils.unpack_tuple(builder, values[1])
-            )
+            kind = context.call_conv.get_function_type(types.void, kinds.types)
+            at, passed = builder.inttoptr(values[0], kind.as_pointer()), cgutils.unpack_tuple(builder, values[1])
+            context.call_conv.call_function(builder, at, types.void, kinds.types, passed)
             return context.get_dummy_value()
 
-        return types.void(function, arguments), write
+        return types.void(function, kinds), write
 
     return intrinsic(typed)
 

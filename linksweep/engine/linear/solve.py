@@ -15,6 +15,7 @@ from linksweep.engine import run
 from linksweep.engine.kernel import instructions
 from linksweep.engine.kernel.compile import compiled_functions
 from linksweep.engine.linear import elimination, lanes
+from linksweep.engine.patience import Patience
 
 AT_ONCE = 4096
 """Samples of one call: their numbers stay in cache."""
@@ -52,15 +53,10 @@ def condition(structure: Structure, values: Sequence[np.ndarray], threads: int |
 
 
 @dataclass(eq=False)
-class Solver:
-    """A function of `elimination`, with the number of samples that were interpreted so far."""
+class Solver(Patience):
+    """A function of `elimination`."""
 
     name: str
-    interpreted: int = 0
-
-    def should_interpret(self, samples: int) -> bool:
-        self.interpreted += samples
-        return 10 * self.interpreted <= run.COMPILE_AFTER  # numpy takes longer for a system than the interpreter
 
     @cached_property
     def compiled(self) -> Callable:
@@ -85,7 +81,7 @@ def _run(
     (rows, columns), samples = widths, len(values[0])
     require_memory(f"{rows * samples} numbers (results × designs × angles): ask for fewer", 8.0 * rows * samples)
     result = np.empty((rows, samples))
-    interpret = solver(name).should_interpret(samples)
+    interpret = solver(name).should_interpret(10 * samples, run.COMPILE_AFTER)  # numpy is slower than the interpreter
     function = getattr(elimination, name) if interpret else solver(name).compiled
     width = min(AT_ONCE, samples) if interpret else lanes.LANES
     room = min(AT_ONCE, -(-samples // width) * width)

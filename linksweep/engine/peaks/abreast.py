@@ -98,15 +98,15 @@ def search(
             pick_samples(rows, x, lanes, state)
             predict_vertices(state, columns)
             place_left(state, columns)
-            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_LEFT], none, columns))
+            call(evaluate, (own, state, PLACE, F_LEFT, HALF_TURN, NUMBER, none, columns))
             place_right(state, columns)
-            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_RIGHT], none, columns))
+            call(evaluate, (own, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, none, columns))
             step_to_vertices(state, columns)
             place_middle(state, columns)
-            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_MIDDLE], none, columns))
+            call(evaluate, (own, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, none, columns))
             correct_vertices(state, columns)
             place_last(state, columns)
-            call(evaluate, (own, state[PLACE], state[HALF_TURN], state[NUMBER], state[F_LAST], none, columns))
+            call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, none, columns))
             settle_peaks(state, columns)
             of_block = best[:, block * columns : (block + 1) * columns]
             for k in range(columns):
@@ -316,9 +316,9 @@ def refine(brackets, count, lanes, columns, start, constants, gathered, evaluate
                     gathered[row * lanes + lane] = own[row * lanes + its]
                 if front + lane < count:
                     best[EVALUATIONS, tag] += 3
-            far, signal, end = brackets[FAR], brackets[SIGNAL], front + lanes
-            call(evaluate, (gathered, brackets[X1], far, signal, brackets[F1], front, end))
-            call(evaluate, (gathered, brackets[X2], far, signal, brackets[F2], front, end))
-            call(evaluate, (gathered, brackets[X3], far, signal, brackets[F3], front, end))
+            end = front + lanes
+            call(evaluate, (gathered, brackets, X1, F1, FAR, SIGNAL, front, end))
+            call(evaluate, (gathered, brackets, X2, F2, FAR, SIGNAL, front, end))
+            call(evaluate, (gathered, brackets, X3, F3, FAR, SIGNAL, front, end))
         insert_trials(brackets, count)
         count = advance(brackets, count, best)

@@ -2,8 +2,10 @@
 
     prepare(inputs, constants)                              numbers of designs from their parameters
     sample(constants, x, rows)                              all signals at all samples of the turn
-    evaluate(constants, x, far, signal, values, first, last)
+    evaluate(constants, table, x, value, far, signal, first, last)
                                                             one signal at one place in each lane `first` … `last`
+
+The last takes the numbers of rows of a table: of the place, the value, the half turn and the signal's number.
 
 Arrays have a row of lanes for each number, one after the other. `constants` begins with the widths of the near-toggles;
 `x` of `sample` has the tangents of samples of each half turn, with one more on either side. Those before the middle
@@ -92,10 +94,11 @@ class Evaluators:
         for k, signal in enumerate(self.signals):
             rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
 
-    def _evaluate(self, constants, x, far, signal, values, first: int, last: int) -> None:
-        here = self._at(constants, x[first:last], far[first:last])
+    def _evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
+        lanes = table[:, first:last]
+        here = self._at(constants, lanes[x], lanes[far])
         every = [np.broadcast_to(here[node], last - first) for node in self.signals]
-        values[first:last] = np.choose(signal[first:last].astype(int), every)
+        lanes[value] = np.choose(lanes[signal].astype(int), every)
 
     def _at(self, constants: np.ndarray, tangent: Any, far: Any) -> Values:
         values: Values = dict(zip(self.constants, constants, strict=True)) | {self.tangent: tangent, self.far: far}
@@ -111,7 +114,7 @@ class Evaluators:
             LANES,
             compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
-            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8, i8)", text),
+            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[:, ::1], i8, i8, i8, i8, i8, i8)", text),
         )
 
     def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:
@@ -178,19 +181,20 @@ class Evaluators:
         return parity
 
     def _emit_evaluate(
-        self, builder: Any, constants: Any, x: Any, far: Any, signal: Any, values: Any, first: Any, last: Any
+        self, builder: Any, constants: Any, table: Any, x: Any, value: Any, far: Any, signal: Any, first: Any, last: Any
     ) -> None:
         from numba.core import cgutils
 
         vectors = Instructions(builder)
-        known = self._row(vectors, constants, self.constants)
-        with cgutils.for_range_slice(builder, first, last, vectors.integer(LANES)) as (at, _):
-            place = {self.tangent: vectors.load(x.data, at), self.far: vectors.load(far.data, at)}
-            here = self._emitted(vectors, known | place)
-            number, chosen = vectors.load(signal.data, at), here[self.signals[0]]
+        known, length = self._row(vectors, constants, self.constants), builder.extract_value(table.shape, 1)
+        with cgutils.for_range_slice(builder, first, last, vectors.integer(LANES)) as (lane, _):
+            at = [builder.add(builder.mul(length, row), lane) for row in (x, far, signal, value)]
+            tangent, half, number = (vectors.load(table.data, place) for place in at[:3])
+            here = self._emitted(vectors, known | {self.tangent: tangent, self.far: half})
+            chosen = here[self.signals[0]]
             for k, node in enumerate(self.signals[1:], 1):
                 chosen = vectors.operators["where"](vectors.operators["=="](number, k), here[node], chosen)
-            vectors.store(chosen, values.data, at)
+            vectors.store(chosen, table.data, at[3])
 
     def _emitted(self, vectors: Instructions, values: Values) -> Values:
         """Return all values at a place, from those of the designs and of the place."""

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, address, compiled_call, compiled_entry, compiled_functions
+from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import abreast, brackets, lanewise, search
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
@@ -56,17 +57,15 @@ class Peak(NamedTuple):
 
 
 @dataclass(eq=False)
-class Searcher:
+class Searcher(Patience):
     """The search for the peaks of some outputs of a plan, ready to run."""
 
     evaluators: Evaluators
-    interpreted: int = 0
 
     def functions(self, designs: int) -> Functions:
         """Return the evaluators interpreted for the first designs, then compiled."""
-        self.interpreted += designs
-        interpreted = self.interpreted <= INTERPRETED_DESIGNS
-        return self.evaluators.interpreted if interpreted else self.evaluators.compiled
+        interpret = self.should_interpret(designs, INTERPRETED_DESIGNS)
+        return self.evaluators.interpreted if interpret else self.evaluators.compiled
 
 
 @lru_cache(maxsize=256)
