@@ -18,8 +18,13 @@ from linksweep.analysis.drive.motor import Motor, motor_load
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.analysis.pins.contact_loss import contact_loss
 from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
+from linksweep.analysis.strength.links import size_links
+from linksweep.analysis.strength.material import Material, material
+from linksweep.analysis.strength.pins import size_pins
+from linksweep.analysis.strength.strength import strength
 from linksweep.explorer.explore import explore
 from linksweep.files.netcdf import load_scene, save
 from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
@@ -68,6 +73,7 @@ __all__ = [
     "Linkage",
     "Load",
     "LoopTrack",
+    "Material",
     "Motor",
     "MultiCylinder",
     "Normal",
@@ -89,6 +95,7 @@ __all__ = [
     "breakdown",
     "check",
     "compare",
+    "contact_loss",
     "counterweights",
     "coupler_curve",
     "draw",
@@ -100,6 +107,7 @@ __all__ = [
     "geometry",
     "load_scene",
     "load_spectrum",
+    "material",
     "motor_load",
     "objective",
     "open_study",
@@ -118,8 +126,11 @@ __all__ = [
     "screen",
     "sensitivities",
     "shaking_moment",
+    "size_links",
+    "size_pins",
     "speed_limit",
     "speed_separation",
+    "strength",
     "study",
     "sweep",
     "system",

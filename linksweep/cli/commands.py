@@ -1,4 +1,4 @@
-"""Commands for one design that print a table: bearings, breakdown, balance, orders, flywheel; animate, explore."""
+"""Commands for one design that print a table: bearings, strength, breakdown, balance, orders, flywheel; and others."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import numpy as np
 import linksweep as ls
 from linksweep.analysis.pins.bearing import EXPONENTS
 from linksweep.analysis.pins.bearings import FRAMES
+from linksweep.analysis.strength.material import STRENGTHS
 from linksweep.base.units import quantity
 from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name
@@ -54,6 +55,11 @@ def add_commands(commands: Any) -> None:
     add_part(pins, "crank angles [degree] of a machine that moves over part of a turn")
     pins.add_argument("--frame", choices=FRAMES, default="ground", help="axes of the load diagrams (ground)")
     add_plot(pins)
+
+    links = add("strength", _strength, "stress of each link, and its safety against yield, fatigue and buckling")
+    links.add_argument("--material", choices=STRENGTHS, required=True, help=f"{', '.join(STRENGTHS)}")
+    links.add_argument("--concentration", type=float, default=1.0, help="factor on the stress at eyes of pins (1)")
+    add_plot(links)
 
     why = add("breakdown", _breakdown, "sources of a pin's load: the part of each in its largest force")
     why.add_argument("of", metavar="FORCE", help="a pin force or the drive's torque, such as F32")
@@ -194,6 +200,12 @@ def _bearings(options: argparse.Namespace) -> None:
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
     print(answer_of(ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2)))
     show(options, lambda: ls.plot.bearings(ls.sweep(scene, theta2), frame=options.frame))
+
+
+def _strength(options: argparse.Namespace) -> None:
+    scene, steel = one_design(options.scene), ls.material(options.material)
+    print(answer_of(ls.strength(scene, steel, stress_concentration=options.concentration)))
+    show(options, lambda: ls.plot.moment_diagrams(scene))
 
 
 def _breakdown(options: argparse.Namespace) -> None:

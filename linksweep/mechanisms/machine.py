@@ -90,9 +90,11 @@ class Machine(Mechanism):
         numbers: dict[str, Number] = {}
         for role in self.beams:
             numbers |= beam_numbers(role, self.parts[role])
-            thirds = [distance * cos_sin(angle)[0] for distance, angle in self._third_pins(role).values()]
-            numbers |= ends_of_beam(role, self.parts[role].length, thirds)
+            numbers |= ends_of_beam(role, self.parts[role].length, self.third_pins_along(role))
         return numbers
+
+    def third_pins_along(self, role: str) -> list[Number]:
+        return [distance * cos_sin(angle)[0] for distance, angle in self._third_pins(role).values()]
 
     def _third_pins(self, role: str) -> dict[str, Any]:
         """Return the third pins of a link in its polar coordinates."""

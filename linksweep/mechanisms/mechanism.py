@@ -210,6 +210,10 @@ class Mechanism(ByContent, ABC):
         """Return sections, mass along the link, and ends of all beams under the names that the physics takes."""
         return {}
 
+    def third_pins_along(self, role: str) -> list[Number]:
+        """Return the distances of a link's third pins from its first, along its line of pins [m]."""
+        return []
+
     def balancing_moments(self, fraction: Number) -> dict[str, Any]:
         """Return the first moments mx + i·my [kg m] that links lack for balance, by role; {} where not known.
 

@@ -12,6 +12,8 @@ from linksweep.plot.load_analysis import over_speed as over_speed
 from linksweep.plot.load_diagrams import bearing as bearing
 from linksweep.plot.load_diagrams import bearings as bearings
 from linksweep.plot.machine import mechanism as mechanism
+from linksweep.plot.moment_diagrams import moment_diagram as moment_diagram
+from linksweep.plot.moment_diagrams import moment_diagrams as moment_diagrams
 from linksweep.plot.shaking_force import hodograph as hodograph
 from linksweep.plot.shaking_force import orders as orders
 from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
@@ -32,6 +34,8 @@ __all__ = [
     "hodograph",
     "loop",
     "mechanism",
+    "moment_diagram",
+    "moment_diagrams",
     "motor_load",
     "orders",
     "over_speed",

@@ -10,11 +10,15 @@ import numpy as np
 import xarray as xr
 
 from linksweep.base.frozen import with_sound
+from linksweep.base.validate import Number
 from linksweep.chains.rows.beams import FORCES, SECTION
+from linksweep.chains.rows.load_forms import named
 from linksweep.scene.scene import Scene
 
 COUNT = 41
 """Places along a link where none are stated: each 1/40 of the way between its ends."""
+BEYOND = 1e-9
+"""Share of the length by which a section lies beyond a force."""
 _NAME = re.compile(rf"(?:{'|'.join(FORCES)}|stress)(\d+)(?:_.*)?")
 
 
@@ -29,6 +33,19 @@ def with_sections(scene: Scene, names: Iterable[str] | str | None) -> Scene:
 def places(shares: Any) -> xr.DataArray:
     """Return shares of the way between a link's ends as places over the dim `section`."""
     return xr.DataArray(shares, {SECTION: shares}, SECTION)
+
+
+def marks(scene: Scene, role: str) -> list[Number]:
+    """Return where forces act on a beam, each twice: its section forces before and after, as shares of its length."""
+    numbers, fields = scene.mechanism.beam_numbers(), scene.at_one_angle.inputs.fields
+    start, end = (numbers[f"{role}_beam_{name}"] for name in ("start", "end"))
+    pins = [0.0 * start, scene.mechanism.parts[role].length, *scene.mechanism.third_pins_along(role)]
+    along = [] if len(pins) == 2 else pins
+    for name, form in named(tuple(load.form for load in scene.loads)):
+        places_of = [at[0] for _, _, at, joined_to in form.applied(name, role) if not joined_to]
+        along += [xr.DataArray(fields[s].values, dims=fields[s].dims) if isinstance(s, str) else s for s in places_of]
+    shares = [(s - start) / (end - start) for s in along]
+    return [np.clip(share + beyond, 0.0, 1.0) for share in shares for beyond in (0.0, BEYOND)]
 
 
 def link_of(name: Any) -> int:

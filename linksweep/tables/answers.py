@@ -18,6 +18,7 @@ from linksweep.tables.of_drive import drive_table, wheel_table
 from linksweep.tables.of_peaks import study_parts
 from linksweep.tables.of_pins import bearing_parts, share_parts
 from linksweep.tables.of_sensitivity import sensitivity_parts, tolerance_parts
+from linksweep.tables.of_strength import strength_parts
 from linksweep.tables.of_system import system_parts
 from linksweep.tables.table import Answer, Part, answer
 
@@ -46,6 +47,7 @@ KINDS: Mapping[str, Kind] = {
     "flywheel": _kind(lambda ds: iter([wheel_table(ds)]), "speed flywheel_inertia fluctuation drive_torque", "theta2"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
     "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
+    "strength": _kind(strength_parts, "stress goodman_safety buckling_safety", "link plane"),
     "system": _kind(system_parts, "matrix rhs", "theta2 equation unknown"),
     "orders": _kind(lambda ds: iter([order_table(ds)]), "", "order"),
 }

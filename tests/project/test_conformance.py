@@ -29,6 +29,7 @@ PACKAGE = Path(ls.__file__).parent
 SAMPLES = 24
 BEARING = ls.Bearing(diameter=0.02, length=0.03, friction=0.05, capacity=5e4)
 MOTOR = ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01)
+STEEL = ls.material("S355")
 WEIGHT = {"mass": 0.1, "at": (0.05, 180.0)}
 
 
@@ -102,6 +103,7 @@ CALLS = {
     "breakdown": lambda s, path: s.breakdown,
     "check": lambda s, path: ls.check(s.machine),
     "compare": lambda s, path: ls.compare(s.machine, s.machine, of=[f"{s.force}_peak"], theta2=SAMPLES),
+    "contact_loss": lambda s, path: ls.contact_loss(s.machine, 5e-5, theta2=SAMPLES),
     "counterweights": lambda s, path: ls.counterweights(s.machine, radius=0.06),
     "coupler_curve": lambda s, path: ls.coupler_curve(s.machine, (0.10, 15.0), theta2=SAMPLES),
     "draw": lambda s, path: ls.draw(s.machine, s.range, designs=[2, 3]),
@@ -128,8 +130,11 @@ CALLS = {
     "screen": lambda s, path: ls.screen(s.machine, s.range, n=3, minimize=f"{s.force}_peak", **s.samples),
     "sensitivities": lambda s, path: ls.sensitivities(s.machine, s.force, to=[s.word]),
     "shaking_moment": lambda s, path: ls.shaking_moment(s.shaking, about=(0.1, 0.0)),
+    "size_links": lambda s, path: ls.size_links(s.machine, STEEL, safety=2.0),
+    "size_pins": lambda s, path: ls.size_pins(s.machine, allowable={"shear": 6e7}, eye=0.02),
     "speed_limit": lambda s, path: ls.speed_limit(s.machine, s.force, below=1e5),
     "speed_separation": lambda s, path: ls.speed_separation(s.machine, theta2=SAMPLES),
+    "strength": lambda s, path: ls.strength(s.machine, STEEL),
     "study": lambda s, path: stored(s, path),
     "sweep": lambda s, path: ls.sweep(s.machine, SAMPLES, of=[s.force, s.drive]),
     "system": lambda s, path: ls.system(s.machine, 45.0),
@@ -147,6 +152,8 @@ CALLS = {
     "plot.hodograph": lambda s, path: s.shaking.linksweep.hodograph(),
     "plot.loop": lambda s, path: s.cycle.linksweep.loop(),
     "plot.mechanism": lambda s, path: ls.plot.mechanism(s.machine, 45.0),
+    "plot.moment_diagram": lambda s, path: ls.plot.moment_diagram(s.machine, (*s.scene.mechanism.beams, s.crank)[0]),
+    "plot.moment_diagrams": lambda s, path: ls.plot.moment_diagrams(s.machine),
     "plot.motor_load": lambda s, path: ls.motor_load(s.machine, MOTOR, theta2=SAMPLES).linksweep.motor_load(MOTOR),
     "plot.orders": lambda s, path: ls.orders(s.shaking, "Fsx", n=3).linksweep.orders(),
     "plot.over_speed": lambda s, path: ls.plot.over_speed(s.machine, s.force, speeds=[10.0, 20.0]),
@@ -168,7 +175,7 @@ CALLS = {
 Plots of a Dataset are called as its methods.
 """
 
-NO_MACHINE = {"example", "from_pmks", "units"}
+NO_MACHINE = {"example", "from_pmks", "material", "units"}
 
 COMMANDS = {
     "sweep": lambda s, path: ["sweep", written(s, path), "--theta2", SAMPLES, "-o", path / "cycle.nc"],
@@ -179,6 +186,7 @@ COMMANDS = {
     "report": lambda s, path: ["report", written(s, path), "-o", path / "page.html"],
     "animate": lambda s, path: ["animate", written(s, path), "-o", path / "film.gif", "--frames", 2],
     "bearings": lambda s, path: ["bearings", written(s, path), "--diameter", "2 cm", "--length", "3 cm"],
+    "strength": lambda s, path: ["strength", written(s, path), "--material", "S355"],
     "breakdown": lambda s, path: ["breakdown", written(s, path), s.force],
     "balance": lambda s, path: ["balance", written(s, path), "--radius", "6 cm"],
     "orders": lambda s, path: ["orders", written(s, path)],
@@ -193,25 +201,34 @@ COMMANDS = {
 
 LACKING: dict[str, str] = {
     "press": "plot.loop",
-    "engine": "best_counterweights position_equation regressor speed_limit speed_separation plot.loop",
-    "quick-return": "position_equation plot.loop",
+    "engine": """
+        best_counterweights position_equation regressor speed_limit speed_separation plot.loop
+        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+    """,
+    "quick-return": """
+        position_equation plot.loop size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+    """,
     "loop": """
         bearings best_counterweights breakdown counterweights coupler_curve duty explore flywheel geometry load_spectrum
         motor_load orders pin_friction position_equation regressor shaking_moment speed_limit speed_separation
         with_counterweights plot.balance plot.bearing plot.bearings plot.breakdown plot.flywheel plot.forces
         plot.hodograph plot.mechanism plot.motor_load plot.orders plot.over_speed plot.torque
         plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown command.balance
-        command.orders command.explore command.flywheel
+        command.orders command.explore command.flywheel contact_loss size_pins
+        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": """
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
         command.balance
     """,
-    "scotch-yoke": "counterweights position_equation plot.loop command.balance",
+    "scotch-yoke": """
+        counterweights position_equation plot.loop command.balance
+        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+    """,
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
-        command.breakdown
+        command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "whitworth": """
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
@@ -221,14 +238,18 @@ LACKING: dict[str, str] = {
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
         command.balance
     """,
-    "yoke": "counterweights position_equation plot.heat_map plot.loop command.balance",
+    "yoke": """
+        counterweights position_equation plot.heat_map plot.loop command.balance
+        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+    """,
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
         draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
         sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights plot.balance
         plot.bearing plot.bearings plot.tornado
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
-        plot.torque_with_flywheel accessor.mechanism accessor.scene
+        plot.torque_with_flywheel accessor.mechanism accessor.scene contact_loss size_links size_pins strength
+        plot.moment_diagram plot.moment_diagrams
     """,
 }
 """The pairs that give a sentence, by machine."""

@@ -37,6 +37,7 @@ OBJECTS = {
     "Linkage": lambda: ls.example("excavator").mechanism,
     "Load": lambda: ls.Load("rocker", torque=xr.DataArray([0.0, 1.0], dims="theta2", coords={"theta2": [0.0, 180.0]})),
     "LoopTrack": lambda: ls.example("loop").mechanism,
+    "Material": lambda: ls.material("S355"),
     "Motor": lambda: ls.Motor(speeds=(0.0, 400.0), torques=(2.0, 0.0), inertia=1e-4),
     "MultiCylinder": lambda: ls.MultiCylinder(ls.example("engine"), [0, 180], positions=[-0.1, 0.1]),
     "Normal": lambda: ls.Normal(deviation="0.02 mm"),

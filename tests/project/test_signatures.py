@@ -22,6 +22,7 @@ ALLOWED = {
     ("sweep", "outputs"),  # another name of `of`
     ("MultiCylinder.sweep", "outputs"),
     ("example", "name"),  # of a scene
+    ("material", "name"),
 }
 SUBJECTS = {
     r"Scene": {"scene", "before", "after"},  # of two scenes, the words that tell them apart

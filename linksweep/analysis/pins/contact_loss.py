@@ -1,0 +1,148 @@
+"""Contact loss in pins with clearance: where the force in a pin turns so fast that the journal cannot follow it.
+
+In a bush wider by the radial clearance c, the journal's centre lies a distance c from the bush's, in the direction of
+the force. Where that direction turns at γ', holding the journal on its circle takes m c γ'² of the force F, with m the
+mass that moves against the other link: contact is kept where
+
+    m c γ'²/F < 1          γ' = (F_x F_y' − F_y F_x')/F²
+
+and is surely lost where F vanishes. m is here m_i m_j/(m_i + m_j) of the two links, m_j where the other is the ground.
+
+S. W. E. Earles and C. L. S. Wu, A Determination of Contact-Loss at a Bearing of a Linkage Mechanism, Journal of
+Engineering for Industry 99 (1977) 375–380, replace the clearance by a massless link, which turns with the force; they
+and those after them compare γ'/F from design to design, which needs neither mass nor clearance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from linksweep.base.checked_number import checked_number
+from linksweep.base.validate import Number, Rule, name_problems, refuse
+from linksweep.chains.between_links import force_name, is_pin
+from linksweep.results.compute import require
+from linksweep.results.dataset import joined, with_units
+from linksweep.results.sweep import sweep
+from linksweep.scene.designs.lazy import in_memory
+from linksweep.scene.scene import Scene
+
+STEP = 0.02
+"""Distance of the angles between which forces are subtracted [degree]."""
+CLEARANCE = Rule("length", above=0.0)
+STENCIL = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
+"""Weights of the differences, of fourth order."""
+
+
+def contact_loss(
+    scene: Scene,
+    clearance: Number | Mapping[str, Number] | None = None,
+    *,
+    theta2: Any = 720,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Compute at which crank angles clearance in a pin would make it knock.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of a machine with pins.
+    clearance : float, DataArray or mapping of str to them, default None
+        Radial clearance [m] of all pins, or of each by its letter; None where only the turning of forces is asked for.
+    theta2 : int or array_like, default 720
+        Count of crank angles, or angles [degree], as in `linksweep.sweep`.
+    threads : int, default None
+        Largest number of threads; None for all cores.
+
+    Returns
+    -------
+    Dataset
+        Results over `pin` and the dims of a sweep:
+
+        - `F` [N] and `turning_rate` [rad/s], the rate at which the force's direction turns in ground axes
+        - `turning_per_force` [rad/(N s)], the measure of Earles and Wu: the larger, the likelier contact is lost
+        - `knock` [1] with a clearance: the part of the force that it takes to keep the journal on its circle; contact
+          is lost where it exceeds 1, inf where the force vanishes
+        - `status` as in `linksweep.sweep`.
+
+    Raises
+    ------
+    ValueError
+        If a pin is unknown, a clearance is out of bounds, or the machine has no pins.
+
+    Notes
+    -----
+    Forces are those without clearance. They are differentiated over 0.04 degrees on either side: a jump of a load
+    within counts as a turn. Equations and sources: `linksweep.analysis.pins.contact_loss`.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> loss = ls.contact_loss(ls.example("press"), clearance=50e-6)
+    >>> str(loss.knock.max("theta2").idxmax("pin").item()), bool((loss.knock > 1.0).any())
+    ('D', False)
+    """
+    require(scene, "pins")
+    scene = in_memory(scene)
+    pins = {pin: pair for pin, pair in scene.mechanism.pins.items() if is_pin(pin)}
+    gaps = _clearances(clearance, pins)
+    names = [f"{force_name(*pair)}{axis}" for pair in pins.values() for axis in "xy"]
+    cycle = sweep(scene, theta2, of=["omega2", *names], threads=threads)
+    slopes = _slopes(scene, cycle, names, threads)
+    parts = [_of_pin(cycle, slopes, force_name(*pair)) for pair in pins.values()]
+    if gaps:
+        for pin, part in zip(pins, parts, strict=True):
+            part["knock"] = _knock(scene, pins[pin], gaps.get(pin, np.nan), part)
+    results = with_units({name: (joined([p[name] for p in parts], "pin", pins), *TEXTS[name]) for name in parts[0]})
+    attributes = cycle.attrs | {"command": "linksweep.contact_loss(scene, ...)"}
+    return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
+
+
+TEXTS = {
+    "F": ("N", "magnitude of the pin force"),
+    "turning_rate": ("rad s-1", "rate at which the direction of the pin force turns, counter-clockwise"),
+    "turning_per_force": ("rad s-1 N-1", "magnitude of the turning rate over the pin force"),
+    "knock": ("1", "force that keeps the journal on its circle over the pin force; above 1 contact is lost"),
+}
+
+
+def _clearances(clearance: Any, pins: Mapping[str, Any]) -> dict[str, Number]:
+    """Return the clearances that are stated, by pin."""
+    of_all = {} if clearance is None else dict.fromkeys(pins, clearance)
+    stated = clearance if isinstance(clearance, Mapping) else of_all
+    refuse([problem for pin in stated for problem in name_problems("clearance", pin, pins)])
+    return {pin: checked_number(f"clearance.{pin}", gap, CLEARANCE) for pin, gap in stated.items()}
+
+
+def _slopes(scene: Scene, cycle: xr.Dataset, names: list[str], threads: int | None) -> xr.Dataset:
+    """Return the derivatives of forces to the crank's angle [N/rad]."""
+    index = scene.mechanism.index
+    angles = cycle[index].values
+    total: Any = 0.0
+    for steps, weight in STENCIL.items():
+        beside = sweep(scene, angles + steps * STEP, of=names, threads=threads)[names]
+        total = total + weight * beside.assign_coords({index: angles})
+    return total / np.radians(STEP)
+
+
+def _of_pin(cycle: xr.Dataset, slopes: xr.Dataset, force: str) -> dict[str, Any]:
+    """Return the force of a pin, and how fast it turns."""
+    x, y, omega = cycle[f"{force}x"], cycle[f"{force}y"], cycle["omega2"]
+    squared = x * x + y * y
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turning = (x * slopes[f"{force}y"] - y * slopes[f"{force}x"]) / squared * omega
+        per_force = abs(turning) / np.sqrt(squared)
+    return {"F": np.sqrt(squared), "turning_rate": turning, "turning_per_force": per_force}
+
+
+def _knock(scene: Scene, pair: tuple[int, int], gap: Number, part: Mapping[str, xr.DataArray]) -> xr.DataArray:
+    """Return the part of a pin's force that keeps its journal on its circle."""
+    of_links = scene.mechanism.masses()
+    masses = {body.number: of_links[body.role].mass for body in scene.mechanism.bodies}
+    first, second = (masses.get(k, np.inf) for k in pair)  # the ground, and a block without mass of its own
+    with np.errstate(divide="ignore", invalid="ignore"):
+        moved = 1.0 / (1.0 / xr.DataArray(first) + 1.0 / xr.DataArray(second))
+        return (moved * gap * part["turning_rate"] ** 2 / part["F"]).where(part["F"] != 0.0, np.inf)
