@@ -1,4 +1,6 @@
 from linksweep.plot.balancing import balance as balance
+from linksweep.plot.beams import moment_diagram as moment_diagram
+from linksweep.plot.beams import moment_diagrams as moment_diagrams
 from linksweep.plot.curves import forces as forces
 from linksweep.plot.curves import torque as torque
 from linksweep.plot.cycle_page import cycle as cycle
@@ -12,8 +14,6 @@ from linksweep.plot.load_analysis import over_speed as over_speed
 from linksweep.plot.load_diagrams import bearing as bearing
 from linksweep.plot.load_diagrams import bearings as bearings
 from linksweep.plot.machine import mechanism as mechanism
-from linksweep.plot.moment_diagrams import moment_diagram as moment_diagram
-from linksweep.plot.moment_diagrams import moment_diagrams as moment_diagrams
 from linksweep.plot.shaking_force import hodograph as hodograph
 from linksweep.plot.shaking_force import orders as orders
 from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates

@@ -21,7 +21,9 @@ def strength_parts(ds: xr.Dataset) -> Iterator[Part]:
     buckling = ds["buckling_safety"].min("plane").values
     rows: list[Row] = []
     for k, link in enumerate(ds["link"].values):
-        one = {name: float(ds[name].values[k]) for name in ("stress", "stress_section", "stress_at", *SAFETIES.values())}
+        one = {
+            name: float(ds[name].values[k]) for name in ("stress", "stress_section", "stress_at", *SAFETIES.values())
+        }
         place = (f"{100.0 * one['stress_section']:.1f}", f"{one['stress_at']:.1f}")
         safeties = (_digits(value) for value in (*(one[name] for name in SAFETIES.values()), float(buckling[k])))
         rows.append((str(link), _digits(one["stress"] / size), *place, *safeties))

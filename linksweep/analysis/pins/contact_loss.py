@@ -25,7 +25,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, name_problems, refuse
 from linksweep.chains.between_links import force_name, is_pin
 from linksweep.results.compute import require
-from linksweep.results.dataset import joined, with_units
+from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene
@@ -97,7 +97,7 @@ def contact_loss(
         for pin, part in zip(pins, parts, strict=True):
             part["knock"] = _knock(scene, pins[pin], gaps.get(pin, np.nan), part)
     results = with_units({name: (joined([p[name] for p in parts], "pin", pins), *TEXTS[name]) for name in parts[0]})
-    attributes = cycle.attrs | {"command": "linksweep.contact_loss(scene, ...)"}
+    attributes = cycle.attrs | by_command("linksweep.contact_loss(scene, ...)")
     return xr.Dataset({**results, "status": cycle["status"]}, cycle.coords, attributes)
 
 

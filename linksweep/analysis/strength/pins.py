@@ -22,7 +22,7 @@ from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, name_problems, quote, refuse
 from linksweep.chains.between_links import force_name, is_pin
 from linksweep.results.compute import require
-from linksweep.results.dataset import joined, with_units
+from linksweep.results.dataset import by_command, flags, joined, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene
@@ -96,7 +96,6 @@ def size_pins(
     ]
     diameter_for = joined(needed, "pin", pins)
     known = diameter_for.fillna(-np.inf)
-    status = {"long_name": "number of the criterion, from 0, that decides the diameter"}
     results = with_units(
         {
             "force": (joined(largest.values(), "pin", pins), "N", "largest force of the pin"),
@@ -105,8 +104,8 @@ def size_pins(
             "diameter": (diameter_for.max("criterion", skipna=False), "m", "least diameter for all allowable stresses"),
         }
     )
-    governing = known.argmax("criterion").astype(np.int8).assign_attrs(status)
-    attributes = worst.attrs | {"command": "linksweep.size_pins(scene, ...)"}
+    governing = known.argmax("criterion").astype(np.int8).assign_attrs(flags("what decides the diameter", limits))
+    attributes = worst.attrs | by_command("linksweep.size_pins(scene, ...)")
     return xr.Dataset({**results, "governing": governing, "status": worst["status"]}, attrs=attributes)
 
 
