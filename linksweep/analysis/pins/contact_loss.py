@@ -63,7 +63,7 @@ def contact_loss(
         Results over `pin` and the dims of a sweep:
 
         - `F` [N] and `turning_rate` [rad/s], the rate at which the force's direction turns in ground axes
-        - `turning_per_force` [rad/(N s)], the measure of Earles and Wu: the larger, the likelier contact is lost
+        - `turning_per_force` [rad/N/s], the measure of Earles and Wu: the larger, the likelier contact is lost
         - `knock` [1] with a clearance: the part of the force that it takes to keep the journal on its circle; contact
           is lost where it exceeds 1, inf where the force vanishes
         - `status` as in `linksweep.sweep`.
@@ -103,8 +103,8 @@ def contact_loss(
 
 TEXTS = {
     "F": ("N", "magnitude of the pin force"),
-    "turning_rate": ("rad s-1", "rate at which the direction of the pin force turns, counter-clockwise"),
-    "turning_per_force": ("rad s-1 N-1", "magnitude of the turning rate over the pin force"),
+    "turning_rate": ("rad/s", "rate at which the direction of the pin force turns, counter-clockwise"),
+    "turning_per_force": ("rad/N/s", "magnitude of the turning rate over the pin force"),
     "knock": ("1", "force that keeps the journal on its circle over the pin force; above 1 contact is lost"),
 }
 
