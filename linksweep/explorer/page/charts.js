@@ -70,7 +70,7 @@ class Curves {
       const anchor = angle === 0 ? "start" : angle === this.turn ? "end" : "middle";
       made.push(svg("text", {x, y: this.height - 4, "text-anchor": anchor}, `${angle}°`));
     }
-    for (const value of ticks(this.low, this.high, Math.max(2, this.height / 42))) {
+    for (const value of ticks(this.low, this.high, Math.max(3, this.height / 36))) {
       const y = this.y(value);
       made.push(svg("line", {x1: MARGIN.left, x2: this.width - MARGIN.right, y1: y, y2: y, class: value === 0 ? "zero" : ""}));
       made.push(svg("text", {x: MARGIN.left - 6, y: y + 3.5, "text-anchor": "end"}, number(value)));

@@ -10,8 +10,7 @@ class Controls {
     const find = html("input", {type: "search", placeholder: "Find a number", "aria-label": "Find a number",
       oninput: () => this.filter(find.value)});
     this.root = html("section", {class: "controls", "aria-label": "Numbers of the scene"}, find, this.body);
-    const groups = Map.groupBy ? Map.groupBy(controls, control => control.group) : grouped(controls);
-    [...groups].forEach(([name, members], k) => this.body.append(this.group(name, members, k < 3)));
+    [...grouped(controls)].forEach(([name, members], k) => this.body.append(this.group(name, members, k < 3)));
   }
 
   group(name, members, open) {
@@ -51,7 +50,6 @@ class Controls {
       if (!(active === range && range.matches(":active"))) range.value = value;
       if (active !== field) field.value = shown(value);
       row.classList.toggle("changed", value !== (pinned?.[path] ?? control.value));
-      range.style.setProperty("--share", (range.value - range.min) / (range.max - range.min));
     }
   }
 

@@ -1,7 +1,6 @@
 // Elements, numbers and scales that all parts of the page share.
 
-const INK = "#1f2933", EDGE = "#3f4b55", FAINT = "#e4e9ed", MUTED = "#66727f", GHOST = "#aab4bd", BAR = "#dce6ee";
-const SKY = "#56b4e9", BLUE = "#0072b2";
+const INK = "#1f2933", GHOST = "#aab4bd", BLUE = "#0072b2";
 
 function element(made, attributes, children) {
   for (const [name, value] of Object.entries(attributes ?? {})) {

@@ -3,6 +3,8 @@
 const HALF = 13;        // pixels: half a side of a block
 const LONGEST = 0.24;   // of the smaller side of the drawing: the longest arrow
 const OFF_SCALE = 1.3;  // of the longest arrow: those of forces beyond the scale
+const ROOM = 34;        // pixels about the machine and its arrows
+const EVERY = 6;        // of the angles are looked at for the scale
 const STICKY = 9;       // pixels about the crank's circle on which its pin stays
 
 const LOAD = {name: "load", color: "#5a5148"};
@@ -127,27 +129,43 @@ class Machine {
     this.frame();
   }
 
-  // Choose the scale, unless a pin is held: what moves under the mouse must not jump.
+  // Draw anew; to another scale unless a pin is held: what moves under the mouse must not jump.
   frame() {
     if (!this.width || !this.cycle) return;
-    if (this.held === null || !this.scale) {
-      const xs = [], ys = [];
-      for (const cycle of [this.cycle, this.pinned]) if (cycle) {
-        for (const pair of [...Object.values(cycle.pins), cycle.curve]) {
-          const n = count(pair);
-          xs.push(least(pair.subarray(0, n)), most(pair.subarray(0, n)));
-          ys.push(least(pair.subarray(n)), most(pair.subarray(n)));
-        }
-      }
-      const [x1, x2, y1, y2] = [least(xs), most(xs), least(ys), most(ys)];
-      const room = 0.16 * Math.min(this.width, this.height);
-      this.scale = Math.min((this.width - 2 * room) / (x2 - x1 || 1), (this.height - 2 * room) / (y2 - y1 || 1));
-      this.x0 = this.width / 2 - this.scale * (x1 + x2) / 2;
-      this.y0 = this.height / 2 + this.scale * (y1 + y2) / 2;
-      this.top = most(Object.values(this.cycle.forces).map(pair => top(sizes(pair)))) || 1;
-    }
+    if (this.held === null || !this.scale) this.fit();
     this.still();
     this.draw(this.angle);
+  }
+
+  // Choose scale and place so that all positions and arrows are inside; arrows have the same length at any scale.
+  fit() {
+    this.top = most(Object.values(this.cycle.forces).map(pair => top(sizes(pair)))) || 1;
+    const points = [];
+    for (const cycle of [this.cycle, this.pinned]) if (cycle) {
+      for (const pair of [...Object.values(cycle.pins), cycle.curve])
+        for (let k = 0; k < count(pair); k += EVERY) points.push([at(pair, k), [0, 0]]);
+    }
+    for (const {name, pin} of this.picture.forces)
+      for (let k = 0; k < count(this.cycle.forces[name]); k += EVERY)
+        points.push([at(this.cycle.pins[pin], k), this.arrow(at(this.cycle.forces[name], k)) ?? [0, 0]]);
+    for (const {place, force} of this.cycle.loads)
+      for (let k = 0; k < count(force); k += EVERY)
+        points.push([at(place, k), (this.arrow(at(force, k)) ?? [0, 0]).map(x => -x)]);
+    const extent = scale => {
+      const xs = points.map(([[x], [dx]]) => scale * x + dx), ys = points.map(([[, y], [, dy]]) => dy - scale * y);
+      return [least(xs), most(xs), least(ys), most(ys)];
+    };
+    const fits = ([x1, x2, y1, y2]) => x2 - x1 <= this.width - 2 * ROOM && y2 - y1 <= this.height - 2 * ROOM;
+    let [low, high] = [0, 1];
+    while (fits(extent(high)) && high < 1e12) high *= 4;
+    for (let halving = 0; halving < 24; halving++) {
+      const middle = low > 0 ? Math.sqrt(low * high) : high / 4;
+      if (fits(extent(middle))) low = middle; else high = middle;
+    }
+    this.scale = low || high;
+    const [x1, x2, y1, y2] = extent(this.scale);
+    this.x0 = (this.width - x1 - x2) / 2;
+    this.y0 = (this.height - y1 - y2) / 2;
   }
 
   still() {
