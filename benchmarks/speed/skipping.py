@@ -17,6 +17,7 @@ from linksweep.engine.trace.plan import plan
 EVERYTHING = "everything"
 ALL_NINE = "nine unknowns stored"
 FRICTION = "slider-crank with friction"
+SECTION = "nine, section forces and stress of the coupler at one place"
 KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 EXTRA = {
     "nine, shaking force and moment": ("Fsx", "Fsy", "Ms"),
@@ -62,6 +63,7 @@ def rows(size: Size) -> list[Row]:
         *_compared(REQUESTS, requests, lambda sweep: sweep, size),
         *_compared(KERNELS, ROWS, lambda sweep: kernel_of(sweep).call, size),
         _friction(size),
+        _section(size),
         *_batches(size),
     ]
 
@@ -97,6 +99,27 @@ def _friction(size: Size) -> Row:
         timed = race(calls, size, size.angles)
     ours, theirs = machines
     return timed.row(SHARE, ours, theirs, error=error[ours], note=f"{work[ours]} of {work[theirs]} instructions")
+
+
+def _section(size: Size) -> Row:
+    """Time the nine unknowns of a four-bar of bars against the nine, section forces and stress at one place."""
+    lengths = (GENERAL.a, GENERAL.b, GENERAL.c)
+    crank, coupler, rocker = (ls.Bar(length, width=0.02, thickness=0.02, density=7750.0) for length in lengths)
+    machine = ls.FourBar(crank, coupler, rocker, ground=GENERAL.d)
+    bars = ls.Scene(machine, omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81), section=0.5)
+    requests = {ALL_NINE: NINE, SECTION: (*NINE, "axial_force3", "shear_force3", "bending_moment3", "stress3")}
+    calls, work = {}, {}
+    with way("compiled"):
+        for name, names in requests.items():
+            sweep = partial(ls.sweep, bars, size.angles, of=names, threads=1)
+            calls[name] = kernel_of(sweep).call
+            work[name] = plan(bars.table, names, bars.inputs.forms).instructions("theta2")
+        nine = ls.sweep(bars, size.angles, of=requests[SECTION], threads=1)
+        error = peers.difference(
+            stacked(nine, NINE), stacked(ls.sweep(bars, size.angles, of=NINE, solver="dense"), NINE)
+        )
+        timed = race(calls, size, size.angles)
+    return timed.row(SHARE, ALL_NINE, SECTION, error=error, note=f"{work[ALL_NINE]} of {work[SECTION]} instructions")
 
 
 def _reference(machine: ls.Scene, design: peers.Design, names: tuple[str, ...], n_angles: int) -> peers.Array:
