@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from typing import Any
 
 from linksweep.base.fields import converted_fields, declared, has_fields
@@ -29,6 +30,11 @@ class ByContent:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(self._own_words())})"
+
+    def _repr_html_(self) -> str:
+        """Return a drawing and tables for a notebook; by name, for they are made in a room above."""
+        html_of: Callable[[Any], str] = import_module("linksweep.reports.notebook").html_of
+        return html_of(self)
 
     def _own_words(self) -> Iterator[str]:
         """Yield "name=value" for each field that differs from its default, and for each thing that it names inline."""

@@ -47,14 +47,14 @@ def to_excel(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
         When the folder is missing, cannot be written or is full; an existing file stays.
     """
     ending_of(path, (".xlsx",))
-    new_book, shown = _workbook_class(), in_shown_units(ds)
-    table = to_pandas(shown)
+    new_book, ds = _workbook_class(), in_shown_units(ds)
+    table = to_pandas(ds)
     most = f"ds has {len(table)} rows: an Excel sheet holds {MOST_ROWS}; write a .csv or a .nc file"
     refuse([most] if len(table) > MOST_ROWS else [])
     with whole(path) as temporary:
         book = new_book(write_only=True)
         _write(book, "results", table.columns, table.itertuples(index=False))
-        _write(book, "columns", ("column", "unit", "meaning"), _meanings(shown))
+        _write(book, "columns", ("column", "unit", "meaning"), _meanings(ds))
         if isinstance(text := ds.attrs.get("scene"), str):
             _write(book, "scene", (), ([line] for line in text.splitlines()))
         book.save(temporary)

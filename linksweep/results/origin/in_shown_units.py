@@ -42,8 +42,10 @@ def results_in_shown_units(ds: xr.Dataset) -> xr.Dataset:
     """Return a cycle whose results are in the units in which they are shown; parameters of its scene stay as they are,
     so that it still holds the scene."""
     results = ds[[name for name in ds.data_vars if name not in PARAMETERS]].reset_coords(drop=True)
-    shown = in_shown_units(results)
-    return ds if shown is results else ds.assign({name: shown[name].variable for name in shown.data_vars})
+    converted = in_shown_units(results)
+    return (
+        ds if converted is results else ds.assign({name: each.variable for name, each in converted.data_vars.items()})
+    )
 
 
 def units_of(ds: xr.Dataset) -> UnitSystem:
