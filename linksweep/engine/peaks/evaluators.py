@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
@@ -49,9 +50,10 @@ SUMS = {"+", "-", "sum_low", "difference_low", "ordered_low"}
 
 
 class Functions(NamedTuple):
-    """The three functions, and the number of their lanes."""
+    """The three functions, the number of their lanes, and that of the constants of a design."""
 
     lanes: int
+    constants: int
     prepare: Callable[..., None]
     sample: Callable[..., None]
     evaluate: Callable[..., None]
@@ -81,28 +83,35 @@ class Evaluators:
 
     @cached_property
     def interpreted(self) -> Functions:
-        """The functions by numpy, for one lane."""
-        return Functions(1, self._prepare, self._sample, self._evaluate)
+        """The functions by the interpreter, for one lane: its constants are the widths, and the parameters as such."""
+        return Functions(1, 2 + len(self.inputs), self._prepare, self._sample, self._evaluate)
 
     def _prepare(self, inputs: np.ndarray, constants: np.ndarray) -> None:
-        values: Values = dict(zip(self.inputs, inputs, strict=True))
-        interpret([*self.fixed, *self.of_designs], values)
-        constants[:] = [float(values[node]) for node in self.constants]
+        constants[2:] = inputs
+        here = self._at(constants, np.zeros(1), 0.0)
+        constants[:2] = [here[node].item() for node in self.constants[:2]]
 
     def _sample(self, constants: np.ndarray, x: np.ndarray, rows: np.ndarray) -> None:
-        values = self._at(constants, x.reshape(2, PLACED)[:, 1:-1], np.array([[0.0], [1.0]]))
+        values = self._at(constants, x.reshape(2, PLACED)[:, 1:-1].ravel(), np.repeat([0.0, 1.0], 2 * HALF))
         for k, signal in enumerate(self.signals):
             rows[k : SAMPLES * len(self.signals) : len(self.signals)] = values[signal].ravel()
 
     def _evaluate(self, constants, table, x: int, value: int, far: int, signal: int, first: int, last: int) -> None:
         lanes = table[:, first:last]
         here = self._at(constants, lanes[x], lanes[far])
-        every = [np.broadcast_to(here[node], last - first) for node in self.signals]
+        every = [here[node].ravel() for node in self.signals]
         lanes[value] = np.choose(lanes[signal].astype(int), every)
 
-    def _at(self, constants: np.ndarray, tangent: Any, far: Any) -> Values:
-        values: Values = dict(zip(self.constants, constants, strict=True)) | {self.tangent: tangent, self.far: far}
-        return interpret([*self.fixed, *self.at_samples], values, BETWEEN_SAMPLES)
+    def _at(self, constants: np.ndarray, tangent: np.ndarray, far: Any) -> Values:
+        """Return the values of all signals at places."""
+        plan, axes = self.plan, [1] * len(self.plan.loops)
+        values: Values = {
+            node: np.full(axes, x) if node.dims else x for node, x in zip(self.inputs, constants[2:], strict=True)
+        }
+        places = {self.tangent: tangent, self.far: np.broadcast_to(far, tangent.shape)}
+        values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
+        values = evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})
+        return interpret(plan.late, values, BETWEEN_SAMPLES)
 
     # --------------------------------------------------------------------------------------------- compiled
 
@@ -112,6 +121,7 @@ class Evaluators:
         text = self._text()
         return Functions(
             LANES,
+            len(self.constants),
             compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
             compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[:, ::1], i8, i8, i8, i8, i8, i8)", text),

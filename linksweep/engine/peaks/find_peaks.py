@@ -132,7 +132,7 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
     functions = ready.functions(designs)
     lanes = functions.lanes
     run = abreast.search if lanes == 1 else compiled_search()
-    prepare, sample, evaluate = functions[1:] if lanes == 1 else map(address, functions[1:])
+    prepare, sample, evaluate = functions[2:] if lanes == 1 else map(address, functions[2:])
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
     strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
     strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
@@ -140,7 +140,7 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
     best = np.empty((BEST_ROWS + 1, columns * blocks))
 
     def work(first: int, last: int) -> None:
-        constants = len(ready.evaluators.constants) * lanes
+        constants = functions.constants * lanes
         run(
             first, last, designs, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
             strides, grades(), prepare, sample, evaluate,

@@ -13,7 +13,7 @@ import numpy as np
 from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
-from linksweep.engine.run import interpret
+from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Graph, Node
 
 Values = dict[Node, Any]
@@ -114,15 +114,18 @@ class Around(Lanewise):
         row = samples[: count * columns].reshape(count, columns)
         around = np.roll(row, 1, axis=0), row, np.roll(row, -1, axis=0), np.arange(count, dtype=float)[:, None]
         every = interpret(self.of_samples, dict(zip(self.inputs, around, strict=False)))
-        samplewise = {node: np.broadcast_to(value, row.shape) for node, value in every.items()}
         now: tuple[Any, ...] = self.start
-        running = [node for node in self.nodes if node not in every]
-        for j in range(count):
-            values: Values = {node: value[j] for node, value in samplewise.items()} | dict(
-                zip(self.inputs[4:], now, strict=True)
-            )
-            interpret(running, values)
-            now = tuple(values[node] for node in self.results)
+        running = [(OPERATORS[node.operator], node) for node in self.nodes if node not in every]
+        used = {x for _, node in running for x in node.operands if x in every}
+        samplewise = {node: np.broadcast_to(every[node], row.shape) for node in used}
+        values: Values = {}
+        with np.errstate(all="ignore"):
+            for j in range(count):
+                values.update({node: value[j] for node, value in samplewise.items()})
+                values.update(zip(self.inputs[4:], now, strict=True))
+                for function, node in running:
+                    values[node] = function(*[values[x] for x in node.operands])
+                now = tuple(values[node] for node in self.results)
         for k, value in zip(self.outputs, now, strict=True):
             table[k, :columns] = value
 
