@@ -1,8 +1,8 @@
 """Find the strokes of linkages, which have no closed form of them: their ends, reversals, and positions' crank angles.
 
-Even samples of a position and its rate bracket every reversal; reversals, the ends of arcs on which the machine closes,
-and the samples divide the motion into pieces on which the position goes one way, so that each has one crank angle for a
-position at most.
+Even samples of a position and its rate, with the extremes of the rate between them, bracket every reversal; reversals,
+the ends of arcs on which the machine closes, and the samples divide the motion into pieces on which the position goes
+one way, so that each has one crank angle for a position at most.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 PER_TURN, OFF_ROUND = 1440, 0.381966
 """Even samples of a turn; the first one, in steps: off round angles, where machines turn round."""
+THIRDS = 40
+"""Steps towards an extreme of a rate, each of which leaves two thirds of two steps between samples."""
 HALVINGS = 60
 """Halvings of a step towards the end of an arc: to the last digit of its angle."""
 
@@ -112,17 +114,9 @@ def _motion_of(alone: Scene, stroke: Stroke) -> Motion:
     even = np.tile((np.arange(count) + OFF_ROUND) * (period / count), (len(designs), 1))
     rows = np.repeat(np.arange(len(designs)), count)
     position, rate = at(rows, even.ravel()).reshape(2, *even.shape)
-    following = np.roll(rate, -1, axis=1)
-    known, known_after = np.isfinite(rate), np.isfinite(following)
-    step = period / count
-    row, k = np.nonzero(known & known_after & ((rate < 0.0) != (following < 0.0)))
-    start = even[row, k]
-    reversal = roots(
-        lambda root, angle: at(row[root], angle)[1],
-        np.stack([start, start + step]),
-        np.stack([rate[row, k], following[row, k]]),
-    )
-    end_row, end = _ends_of_arcs(at, even, known, known_after, step)
+    known, step = np.isfinite(rate), period / count
+    row, reversal = zeros_between(lambda row, angle: at(row, angle)[1], even, rate, step)
+    end_row, end = _ends_of_arcs(at, even, known, np.roll(known, -1, axis=1), step)
     special = by_row(np.append(row, end_row), in_period(np.append(reversal, end), period), len(designs))
     special = np.where(np.isnan(special), even[:, :1], special)
     angle = np.sort(np.concatenate([even, special], axis=1), axis=1)
@@ -131,6 +125,53 @@ def _motion_of(alone: Scene, stroke: Stroke) -> Motion:
     reversals = by_row(row, in_period(reversal, period), len(designs))
     turns = stroke.kind == "angle"
     return Motion(angle, position, reversals, lambda row, angle: at(row, angle)[0], turns, sizes, period)
+
+
+def zeros_between(
+    value_at: Callable[[Array, Array], Array], angles: Array, values: Array, step: float
+) -> tuple[Array, Array]:
+    """Return design and angle [degree] of the zeros of a smooth periodic function with values (design, sample).
+
+    They lie between samples that differ in sign, and on either side of an extreme beyond zero between samples that do
+    not; NaN are passed over.
+    """
+    following = np.roll(values, -1, axis=1)
+    known = np.isfinite(values) & np.isfinite(following)
+    row, k = np.nonzero(known & ((values < 0.0) != (following < 0.0)))
+    start = angles[row, k]
+    near, middle, least = _extremes_towards_zero(value_at, angles, values, step)
+    beyond = np.flatnonzero(least * values[near] < 0.0)
+    (turned, j), middle, least = (index[beyond] for index in near), middle[beyond], least[beyond]
+    rows, first = np.concatenate([row, turned, turned]), angles[turned, j]
+    count = values.shape[1]
+    places = [(start, first - step, middle), (start + step, middle, first + step)]
+    ends = [
+        (values[row, k], values[turned, j - 1], least),
+        (following[row, k], least, values[turned, (j + 1) % count]),
+    ]
+    x, heights = (np.stack([np.concatenate(end) for end in both]) for both in (places, ends))
+    return rows, roots(lambda root, angle: value_at(rows[root], angle), x, heights)
+
+
+def _extremes_towards_zero(
+    value_at: Callable[[Array, Array], Array], angles: Array, values: Array, step: float
+) -> tuple[tuple[Array, Array], Array, Array]:
+    """Return the samples nearest to zero, of one sign with those beside them, about which a function may reach it; the
+    angle [degree] of its extreme about each, and its value there."""
+    size, before, after = (np.abs(np.roll(values, shift, axis=1)) for shift in (0, 1, -1))
+    signs = np.sign(values)
+    with np.errstate(all="ignore"):
+        nearest = (signs == np.roll(signs, 1, axis=1)) & (signs == np.roll(signs, -1, axis=1))
+        nearest &= (size < before) & (size <= after)
+        drop = (before - after) ** 2 / (8.0 * (before + after - 2.0 * size))  # of the parabola through all three
+        near = np.nonzero(nearest & (drop > 0.5 * size))
+    low, high, sign = angles[near] - step, angles[near] + step, signs[near]
+    for _ in range(THIRDS):
+        third = (high - low) / 3.0
+        left, right = (sign * value_at(near[0], angle) for angle in (low + third, high - third))
+        low, high = np.where(left < right, low, low + third), np.where(left < right, high - third, high)
+    middle = 0.5 * (low + high)
+    return near, middle, value_at(near[0], middle)
 
 
 def _ends_of_arcs(

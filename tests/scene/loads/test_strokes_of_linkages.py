@@ -9,7 +9,7 @@ import xarray as xr
 import linksweep as ls
 from linksweep.scene.file.reading import parse_scene
 from linksweep.scene.file.writing import write_scene
-from linksweep.scene.strokes import stroke_of
+from linksweep.scene.strokes import stroke_of, zeros_between
 
 CRANK, ROD = ls.Link(0.04, 1.0, 1e-3, 0.01), ls.Link(0.14, 0.5, 1e-3, 0.05)
 PUSH = xr.DataArray([-50e3, 0.0], {"position": [0.0, 0.012]}, "position")
@@ -235,3 +235,19 @@ def test_both_branches_are_refused():
     both = replace(knuckle_press(push("ram")).mechanism, branch={"C": "both"})
     with pytest.raises(ValueError, match=r'over = .ram.to_end.: is a position of one branch; give branch.C="open"'):
         ls.Scene(both, 10.0, loads=[push("ram")])
+
+
+def test_reversals_between_two_samples_are_found():
+    """±(cos d − cos(θ − c)) is zero at c ± d alone, closer to each other than samples are, also across 0 degrees."""
+    centre, apart, step = np.array([40.0, 123.4567, 0.05, 359.99]), np.array([0.1, 1e-4, 0.04, 0.2]), 0.25
+    angles = np.tile((np.arange(1440) + 0.381966) * step, (4, 1))
+
+    def rate(design, angle):
+        return (-1.0) ** design * (np.cos(np.radians(apart[design])) - np.cos(np.radians(angle - centre[design])))
+
+    samples = rate(np.repeat(np.arange(4), 1440), angles.ravel()).reshape(angles.shape)
+    design, zero = zeros_between(rate, angles, samples, step)
+    order = np.lexsort((np.mod(zero - centre[design] + 180.0, 360.0), design))
+    away = np.mod(zero - centre[design] + 180.0, 360.0)[order] - 180.0
+    np.testing.assert_array_equal(design[order], np.repeat(np.arange(4), 2))
+    np.testing.assert_allclose(away, np.ravel([-apart, apart], order="F"), atol=1e-7)
