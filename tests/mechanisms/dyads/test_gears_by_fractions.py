@@ -290,6 +290,14 @@ def test_orders_are_fractions():
     np.testing.assert_allclose(orders.x_tower_amplitude, [0.0, 0.0, 0.0, 0.04, 0.0, 0.0, 0.0], atol=1e-16)
 
 
+def test_orders_of_a_part_of_the_cycle_are_refused():
+    scene = two_slides("3/2", phase=25.0)
+    with pytest.raises(ValueError, match=r"covers 360 degrees, but the motion repeats after 720: .* theta2=1440"):
+        ls.orders(ls.sweep(scene, np.arange(72) * 5.0, of=["x_tower"]), "x_tower", n=3)
+    twice = ls.orders(ls.sweep(scene, np.arange(288) * 5.0, of=["x_tower"]), "x_tower", n=1)
+    np.testing.assert_allclose(twice.order, np.arange(5) / 4)
+
+
 def test_a_flywheel_evens_out_all_turns():
     scene = five_bar("3/2")
     wheel = ls.flywheel(scene, fluctuation=0.02, theta2=2880)
