@@ -164,14 +164,14 @@ def _extremes_towards_zero(
         nearest = (signs == np.roll(signs, 1, axis=1)) & (signs == np.roll(signs, -1, axis=1))
         nearest &= (size < before) & (size <= after)
         drop = (before - after) ** 2 / (8.0 * (before + after - 2.0 * size))  # of the parabola through all three
-        near = np.nonzero(nearest & (drop > 0.5 * size))
-    low, high, sign = angles[near] - step, angles[near] + step, signs[near]
+        row, k = np.nonzero(nearest & (drop > 0.5 * size))
+    low, high, sign = angles[row, k] - step, angles[row, k] + step, signs[row, k]
     for _ in range(THIRDS):
         third = (high - low) / 3.0
-        left, right = (sign * value_at(near[0], angle) for angle in (low + third, high - third))
+        left, right = (sign * value_at(row, angle) for angle in (low + third, high - third))
         low, high = np.where(left < right, low, low + third), np.where(left < right, high - third, high)
     middle = 0.5 * (low + high)
-    return near, middle, value_at(near[0], middle)
+    return (row, k), middle, value_at(row, middle)
 
 
 def _ends_of_arcs(
