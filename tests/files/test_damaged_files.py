@@ -129,18 +129,34 @@ def test_bits_flipped_in_the_structure_of_a_plain_file_are_refused_or_read(plain
     assert any(text and text.startswith(": cannot be read as NetCDF (") for text in refused)
 
 
+def run_instead(program: str, monkeypatch) -> None:
+    """Run a program in place of the one that reads a file; it has the same arguments."""
+    start = subprocess.Popen
+    monkeypatch.setattr(
+        subprocess, "Popen", lambda command, **options: start([command[0], "-c", program, command[-1]], **options)
+    )
+
+
+@pytest.mark.long
+def test_a_sound_file_on_a_machine_whose_imports_take_long_is_read(plain, monkeypatch):
+    slow = "import sys, time\ntime.sleep(4.0)\nfrom linksweep.files.isolated import _main\n_main(sys.argv[1])"
+    run_instead(slow, monkeypatch)
+    monkeypatch.setattr(isolated, "LONGEST", 3.0)  # less than the imports take
+    assert refusal(plain[0]) is None
+
+
 @pytest.mark.parametrize(
     ("program", "message"),
     [
         ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "damaged: the NetCDF library crashes on it"),
-        ("while True: pass", "damaged: the NetCDF library has not returned after 0.5 s"),
+        ("print('ready', flush=True)\nwhile True: pass", "damaged: the NetCDF library has not returned after 0.5 s"),
         ("import sys; sys.exit('NetCDF: HDF error')", "NetCDF: HDF error"),
     ],
 )
 def test_a_crash_or_hang_of_the_library_is_reported(program, message, plain, monkeypatch):
-    run = subprocess.run
-    monkeypatch.setattr(subprocess, "run", lambda command, **options: run([command[0], "-c", program], **options))
+    run_instead(program, monkeypatch)
     monkeypatch.setattr(isolated, "LONGEST", 0.5 if "while" in program else 60.0)
+    monkeypatch.setattr(isolated, "SLOWEST", float("inf"))
     assert refusal(plain[0]) == f": cannot be read as NetCDF ({message}); a scene file ends in .toml"
 
 
