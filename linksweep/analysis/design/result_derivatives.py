@@ -142,6 +142,7 @@ def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     if quantity.squared:
         own = partial(_extreme, scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to)
         slopes, status = own(True)
+        status = xr.where(value == 0.0, NONE, status)  # a magnitude that is 0 has a corner there
         return Derived(value, {path: slope / (2.0 * value) for path, slope in slopes.items()}, status)
     sides = {word: (ds[f"{stem}_{word}_at"], ds[f"{stem}_{word}"], word == "max") for word in ("max", "min")}
     if end != "peak":
