@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import linksweep as ls
+from linksweep.analysis.strength.material import STRENGTHS
 from linksweep.base.validate import refuse
 from linksweep.base.version import installed_version
 from linksweep.cli.commands import (
@@ -124,6 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     page.add_argument("-o", "--output", type=Path, required=True, help="page to write: .html")
     page.add_argument("--title", help="heading of the page (name of the scene file)")
     add_part(page, "crank angles [degree] of a machine that moves over part of a turn")
+    page.add_argument("--material", choices=STRENGTHS, help="material of the links, for a table of their strength")
     add_commands(commands)
     add_sensitivity_commands(commands)
     for command in commands.choices.values():
@@ -206,7 +208,9 @@ def _check(options: argparse.Namespace) -> None:
 
 def _report(options: argparse.Namespace) -> None:
     part = tuple(options.theta2) if options.theta2 else None
-    ls.report(scene_named(options.scene), options.output, title=options.title or options.scene.stem, theta2=part)
+    steel = ls.material(options.material) if options.material else None
+    heading = options.title or options.scene.stem
+    ls.report(scene_named(options.scene), options.output, title=heading, theta2=part, material=steel)
     print(f"written: {options.output}")
 
 

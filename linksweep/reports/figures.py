@@ -54,7 +54,7 @@ def of_bearings_and_shaking(results: Results) -> Markup:
     drawing = results.scene.mechanism.drawing
     if not drawing or not results.moves:
         return Markup()
-    return pictures([*_of_bearings(results, drawing), *_of_shaking(results)])
+    return pictures([*_of_bearings(results, drawing), *_of_shaking(results), *_of_links(results)])
 
 
 def _of_cycle(results: Results, drawing: Drawing) -> Iterator[Picture]:
@@ -78,6 +78,21 @@ def _of_bearings(results: Results, drawing: Drawing) -> Iterator[Picture]:
     for force in drawing.pin_forces:
         title = f"Load of {drawing.joint_text(force)}: {symbol(force)}"
         yield Picture(title, SQUARE, partial(plot.bearing, results.cycle, force))
+
+
+def _of_links(results: Results) -> Iterator[Picture]:
+    """Yield the moment diagrams of links whose strength is computed."""
+    for link in () if results.strength is None else map(str, results.strength["link"].values):
+        title = f"Bending moment of the {link}"
+        yield Picture(title, SIZE, lambda ax, link=link: _plain(plot.moment_diagram(results.scene, link, ax=ax)))
+
+
+def _plain(ax: Axes) -> None:
+    """Leave out the legend and the title on the right, which takes the place of the picture's."""
+    legend = ax.get_legend()
+    if legend is not None:
+        legend.remove()
+    ax.set_title("", loc="right")
 
 
 def _of_shaking(results: Results) -> Iterator[Picture]:

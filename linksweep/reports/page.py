@@ -16,6 +16,7 @@ from typing import Any
 
 import xarray as xr
 
+from linksweep.analysis.strength.material import Material
 from linksweep.base.fields import PairField
 from linksweep.base.validate import Rule, refuse
 from linksweep.files.atomic import ending_of
@@ -26,7 +27,7 @@ from linksweep.reports import scene_tables
 from linksweep.reports import tables as page_tables
 from linksweep.reports.cylinder_page import parts_of
 from linksweep.reports.markup import Markup, joined, safe, section, tag
-from linksweep.reports.results_of_page import Range, Results, results_of
+from linksweep.reports.results_of_page import Range, Results, Steel, results_of
 from linksweep.reports.scene_tables import quantity
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.designs.choose import design_labels
@@ -50,6 +51,7 @@ def report(
     *,
     title: str | None = None,
     theta2: tuple[float, float] | None = None,
+    material: Material | Mapping[str, Material] | None = None,
     threads: int | None = None,
 ) -> None:
     """Write a report of one machine: inputs, checks, peaks, drive, geometry, shaking and figures, to print on A4.
@@ -66,6 +68,9 @@ def report(
     theta2 : pair of float, default None
         First and last crank angle [degree] of a machine that moves over part of a turn, as a tipper does; checks,
         figures and peaks are then of this part.
+    material : Material or mapping of str to Material, default None
+        Material of the links, or of each by role, for a table of their strength and their moment diagrams; None for no
+        such table.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -96,17 +101,25 @@ def report(
     ending_of(path, ENDINGS, ADVICE)
     if isinstance(scene, MultiCylinder):
         refuse([] if theta2 is None else [f"theta2 = {theta2}: must be left out for several cylinders"])
+        refuse([] if material is None else ["material: must be left out for several cylinders"])
         write_text(page_of_cylinders(scene.in_memory, title, threads), path)
         return
     one = scene if isinstance(scene, Scene) else scene_at(scene)
     refuse(_design_problems(one) + _part_problems(theta2, one.period))
-    text = page(one, title, theta2, threads)
+    refuse(["material: strength is of the whole cycle; leave out theta2"] if material and theta2 else [])
+    text = page(one, title, theta2, threads, material)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
 
 
-def page(scene: Scene, title: str | None = None, part: Range | None = None, threads: int | None = None) -> str:
+def page(
+    scene: Scene,
+    title: str | None = None,
+    part: Range | None = None,
+    threads: int | None = None,
+    material: Steel | None = None,
+) -> str:
     """Return the report as HTML."""
-    results = results_of(scene, part, threads)
+    results = results_of(scene, part, threads, material)
     kind = scene_tables.kind_of(scene)
     between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
     parts = {
@@ -114,7 +127,10 @@ def page(scene: Scene, title: str | None = None, part: Range | None = None, thre
         "kind": kind + between,
         "version": version("linksweep"),
         "warnings": page_checks.warnings(results),
-        "machine": section("Machine", scene_tables.links(scene), scene_tables.loads(scene)),
+        "machine": joined(
+            section("Machine", scene_tables.links(scene), scene_tables.loads(scene)),
+            section("Strength of the links", page_tables.strength(results)),
+        ),
         "left": joined(*_left(results)),
         "right": joined(*_right(results)),
         "figures": page_figures.of_the_cycle(results),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,8 @@ import xarray as xr
 from linksweep.analysis.design.geometry import geometry
 from linksweep.analysis.drive.duty import duty, steady_problems, turning_problems
 from linksweep.analysis.drive.flywheel import flywheel
+from linksweep.analysis.strength.material import Material
+from linksweep.analysis.strength.strength import strength
 from linksweep.results.check import check
 from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.results.sweep import sweep
@@ -20,6 +23,8 @@ SHAKING = ("Fs", "Ms")
 BESIDE_FORCES = (*SHAKING, "power", "transmission_angle")
 """Quantities whose peaks the page shows of any machine that has them, besides its own highlights."""
 
+Steel = Material | Mapping[str, Material]
+"""Material of all links, or of each by role."""
 Range = tuple[float, float]
 """First and last crank angle [degree] of a machine that moves over part of a turn."""
 
@@ -41,6 +46,7 @@ class Results(NamedTuple):
     geometry: xr.Dataset | None = None
     duty: xr.Dataset | None = None
     flywheel: xr.Dataset | None = None
+    strength: xr.Dataset | None = None
 
     @property
     def forces(self) -> tuple[str, ...]:
@@ -79,14 +85,18 @@ class Results(NamedTuple):
         return self.part is None or (angle - self.part[0]) % self.scene.period_of_motion <= self.part[1] - self.part[0]
 
 
-def results_of(scene: Scene, part: Range | None = None, threads: int | None = None) -> Results:
-    """Compute all results that the report shows of a scene of one design."""
+def results_of(
+    scene: Scene, part: Range | None = None, threads: int | None = None, material: Steel | None = None
+) -> Results:
+    """Compute all results that the report shows of a scene of one design; of strength where a material is stated."""
     theta2: Any = STEPS * int(scene.period)
     if part is not None:
         theta2 = np.linspace(*part, round((part[1] - part[0]) * STEPS) + 1)
     cycle = sweep(scene, theta2, of=_outputs(scene), threads=threads)
     worst = _exact(scene, threads) if part is None else peaks_of_part(scene, _peaks_of(scene), part, threads=threads)
     results = Results(scene, part, threads, cycle, worst, check(scene))
+    if material is not None:
+        results = results._replace(strength=strength(scene, material, threads=threads))
     if not results.linkage or part is not None:
         return results
     results = results._replace(geometry=geometry(scene, threads=threads))

@@ -23,6 +23,7 @@ WORKS = {
 }
 JOINT = re.compile(r"\((.*?)\) on link .*?\((.*?)\) at (?:pin (\w+)|the ([^:,]+))")
 """Two links, and the pin or the slide at which the first acts on the second, in the words of a quantity."""
+FIBRES = "Largest stress of the extreme fibres, without concentration at eyes, and safeties against failure."
 SHAKEN = {"Fs": "N", "Ms": "N m"}
 
 
@@ -147,6 +148,23 @@ def _with_rms(results: Results, name: str, row: tuple[str, Markup]) -> tuple[str
         return row
     rms = _of(float(results.peaks[f"{name}_peak"]), float(results.peaks[f"{name}_rms"]), SHAKEN[name])
     return row[0], joined(row[1], ", rms ", rms)
+
+
+def strength(results: Results) -> Markup:
+    """Return the table of the links' worst stress and safeties; empty where no material is stated."""
+    ds = results.strength
+    if ds is None:
+        return Markup()
+    least = ds["buckling_safety"].min("plane")
+    rows = []
+    for link in map(str, ds["link"].values):
+        one = {str(name): float(ds[name].sel(link=link)) for name in ds.data_vars if ds[name].dims == ("link",)}
+        place = joined(f"{100.0 * one['stress_section']:.0f} % of its length, ", angle(one["stress_at"]))
+        safeties = (one[f"{name}_safety"] for name in ("yield", "goodman", "soderberg"))
+        stress = number(one["stress"] / 1e6, "MPa")
+        rows.append((link, stress, place, *map(number, safeties), number(float(least.sel(link=link)))))
+    of_links = table(("link", "stress", "at", "yield", "Goodman", "Soderberg", "buckling"), rows)
+    return joined(of_links, tag("p", FIBRES, class_="note"))
 
 
 def highlights(results: Results) -> Markup:

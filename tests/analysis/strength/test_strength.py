@@ -121,6 +121,17 @@ def test_bad_requests_are_refused_in_a_sentence(change, sentence):
         ls.strength(scene, **{"material": STEEL, **change})
 
 
+def test_a_report_has_the_strength_of_links_where_a_material_is_stated(tmp_path):
+    press = ls.example("press")
+    ls.report(press, tmp_path / "page.html", material=STEEL)
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    stresses = ls.strength(press, STEEL).stress.values
+    assert all(f'value="{stress / 1e6!r}"' in page for stress in map(float, stresses))
+    assert page.count("Bending moment of the") == 3
+    with pytest.raises(ValueError, match="material: strength is of the whole cycle; leave out theta2"):
+        ls.report(press, tmp_path / "page.html", material=STEEL, theta2=(10.0, 50.0))
+
+
 def test_pins_reach_their_allowable_stresses():
     press, eye, arm = ls.example("press"), 0.02, 0.008
     limits = {"shear": 60e6, "pressure": 15e6, "bending": 120e6}
