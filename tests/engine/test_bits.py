@@ -3,6 +3,9 @@
 By numpy or compiled, by one thread or two, in any order, alone or among others, in one sweep or in chunks.
 """
 
+import os
+import subprocess
+import sys
 from functools import partial
 
 import numpy as np
@@ -260,3 +263,31 @@ def test_quantities_without_masses_are_computed_once():
     assert shared >= kinematics.operations("length", "theta2")
     assert forces.operations("length", "mass", "theta2").total() < shared.total()
     assert forces.loops.index("length") < forces.loops.index("mass")
+
+
+OTHER_PROCESSOR = """
+import hashlib
+import numpy as np
+import linksweep as ls
+
+press, engine = ls.example("press"), ls.example("engine")
+designs = ls.sample(press, {"coupler.length": (0.2, 0.24)}, n=4000)
+for ds in (ls.sweep(press, 20_000), ls.sweep(engine, 7200), ls.peaks(designs), ls.peaks(designs, theta2=360)):
+    numbers = (np.ascontiguousarray(each.values).tobytes() for each in ds.data_vars.values())
+    print(hashlib.sha256(b"".join(numbers)).hexdigest())
+"""
+
+
+@pytest.mark.long
+def test_an_older_processor_with_one_thread_gives_the_same_bits(tmp_path):
+    """Kernels compiled without FMA and wide vectors, of samples and of exact peaks."""
+    older = {"NUMBA_CPU_NAME": "x86-64-v2", "NUMBA_NUM_THREADS": "1", "LINKSWEEP_CACHE_DIR": str(tmp_path)}
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", OTHER_PROCESSOR], env=os.environ | more, capture_output=True, text=True, check=True
+        )
+        for more in ({}, older)
+    ]
+    digests = runs[0].stdout.split()
+    assert len(digests) == 4
+    assert runs[1].stdout.split() == digests
