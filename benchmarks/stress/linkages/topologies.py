@@ -128,13 +128,18 @@ def jansen_leg(sketch: Sketch) -> None:
     sketch.carried("H", "F", "G")
 
 
-def held_cylinder(sketch: Sketch) -> None:
-    """A stick on the rocker, held by a cylinder from the ground; another cylinder follows, or drives."""
+def held_at(sketch: Sketch, start: str) -> None:
+    """Two sides that meet at K, from the rocker and from the ground; the one from `start` is a held cylinder."""
     four_bar(sketch)
     sketch.carried("E", "D", "C")
     sketch.ground("G", "E")
     sketch.rrr("K", "E", "G")
-    sketch.cylinder("held", "G", "K")
+    sketch.cylinder("held", start, "K")
+
+
+def held_cylinder(sketch: Sketch) -> None:
+    """A stick on the rocker, held by a cylinder from the ground; another cylinder follows, or drives."""
+    held_at(sketch, "G")
     sketch.ground("H", "C")
 
 
@@ -234,11 +239,7 @@ def with_jack(name: str, pin: str) -> Family:
 
 def held_arm(sketch: Sketch) -> None:
     """An arm on the ground, held at the rocker by a cylinder of given length."""
-    four_bar(sketch)
-    sketch.carried("E", "D", "C")
-    sketch.ground("G", "E")
-    sketch.rrr("K", "E", "G")
-    sketch.cylinder("held", "E", "K")
+    held_at(sketch, "E")
 
 
 COUPLED = {f"{name}, jack drives": with_jack(name, pin) for name, pin in JACKS.items()} | {
