@@ -8,6 +8,7 @@ import xarray as xr
 from long import long_but
 
 import linksweep as ls
+from linksweep.analysis.strength.criteria import fatigue_safety
 
 STEEL = ls.material("S235")
 THREAD = {"width": 1e-6, "thickness": 1e-6, "density": 0.0}
@@ -72,6 +73,11 @@ def test_the_worst_of_many_samples_is_no_worse(name):
             assert -1e-9 < float(one[quantity] / most) - 1.0 < 1e-2, (role, quantity)
         for quantity, least in {"goodman": goodman.min(), "soderberg": soderberg.min()}.items():
             assert -1e-2 < float(one[f"{quantity}_safety"] / least) - 1.0 < 1e-9, (role, quantity)
+
+
+def test_a_mean_in_compression_neither_helps_nor_harms():
+    assert fatigue_safety(-100e6, 50e6, 100e6, 400e6) == 2.0
+    assert fatigue_safety(100e6, 50e6, 100e6, 400e6) == pytest.approx(1.0 / (0.5 + 0.25), rel=1e-15)
 
 
 def test_a_slender_rod_buckles_by_euler_and_a_stocky_one_by_johnson():
