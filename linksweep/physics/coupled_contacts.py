@@ -12,8 +12,8 @@ W is the work of all the rest; r and r_j are the rates of drive and slides per r
 With f_j = −σ_j d_j N_j, d_j = μ_j·sign(v_j), each choice of the signs σ is a linear system. It is a solution where its
 normal forces have these signs; one slide has exactly one where |C d| < 1, as in `linksweep.physics.coulomb`.
 
-Where a slide bears nothing, rounding leaves A_i and C_ij of either sign, near a dead centre (r = 0) many times as much as
-elsewhere. What may be rounding is set to zero before signs are tried: it would jam the slide where friction wedges.
+Where a slide bears nothing, rounding leaves A_i and C_ij of either sign, near a dead centre (r = 0) many times more.
+What may be rounding is set to zero before signs are tried: it would jam the slide where friction wedges.
 """
 
 from __future__ import annotations
