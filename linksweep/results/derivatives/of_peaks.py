@@ -79,9 +79,10 @@ def peak_derivatives(
     at, peak = pairs.numbers(angle), pairs.numbers(value)
     sign = 1.0 if largest else -1.0
     polished, smooth = _polished(pairs, name, at)
-    place = np.where(smooth, polished, _side(pairs, name, at, sign))
+    held, jumps, moves = _at_jumps(pairs, at, to)
+    smooth &= ~jumps
+    place = np.where(smooth, polished, _side(pairs, name, at, peak))
     slopes = pairs.at(tuple(derivative_of(name, path) for path in to), place)
-    held, moves = _at_jumps(pairs, at, to)
     (steep,) = pairs.at((derivative_of(name, ANGLE),), place)
     slopes = np.where(smooth, slopes, slopes + steep * moves)
     status = np.where(smooth | held, OK, JUMP)
@@ -119,11 +120,12 @@ def _polished(pairs: Pairs, name: str, angles: Array) -> tuple[Array, Array]:
     return np.where(smooth & ~flat, at, angles), smooth
 
 
-def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, Array]:
-    """Return whether each angle is one at which a force jumps or bends, and how far (parameter, design) a parameter
-    moves that [rad]."""
+def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, Array, Array]:
+    """Return whether each angle is one at which a force jumps or bends, whether that is a jump, and how far (parameter,
+    design) a parameter moves it [rad]."""
     scene = pairs.scene
-    held, moves = np.zeros(len(angles), dtype=bool), np.zeros((len(to), len(angles)))
+    held, jumps = np.zeros((2, len(angles)), dtype=bool)
+    moves = np.zeros((len(to), len(angles)))
     for angle in scene.quick.angles:
         held |= _near(angles, angle, scene.period)
     for jump in scene.moving_jumps:
@@ -131,10 +133,10 @@ def _at_jumps(pairs: Pairs, angles: Array, to: tuple[str, ...]) -> tuple[Array, 
             continue
         turn = scene.mechanism.period
         here = _near(angles, np.mod(_over(pairs, value_of(jump)), turn), turn)
-        held |= here
+        jumps |= here
         for row, path in zip(moves, to, strict=True):
             row[here] = np.radians(_over(pairs, slopes_of(jump).get(path, 0.0)))[here]
-    return held, moves
+    return held | jumps, jumps, moves
 
 
 def _over(pairs: Pairs, number: Any) -> Array:
@@ -147,12 +149,12 @@ def _near(angles: Array, place: Any, period: float) -> Array:
     return np.abs(away) < 10.0 * BESIDE
 
 
-def _side(pairs: Pairs, name: str, angles: Array, sign: float) -> Array:
-    """Return the angles beside these on the side where a quantity is larger (with sign -1, less)."""
-    beside = np.stack([angles - BESIDE, angles + BESIDE])
-    values = np.stack([sign * pairs.at((name,), some)[0] for some in beside])
-    known = np.where(np.isnan(values), -np.inf, values)
-    return np.where(known[0] > known[1], beside[0], beside[1])
+def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
+    """Return these angles, or those just beside them on the side where a quantity has its peak."""
+    places = np.stack([angles, angles - BESIDE, angles + BESIDE])
+    values = np.stack([pairs.at((name,), some)[0] for some in places])
+    away = np.nan_to_num(np.abs(values - peak), nan=np.inf)
+    return np.take_along_axis(places, np.argmin(away, axis=0)[None], axis=0)[0]
 
 
 def _tied(pairs: Pairs, name: str, to: tuple[str, ...], place: Array, peak: Array, sign: float, slopes: Array) -> Array:
