@@ -1,4 +1,4 @@
-"""What tolerances do to a result, parameter by parameter: a tornado plot."""
+"""Tornado plot: how far the tolerance of each parameter alone moves a result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What tolerances do to results: linear variance with the share of each, the worst case, and exact results beside.
+"""Tolerances and results: linear variance with the share of each, the worst case, and exact results beside.
 
 With the derivatives s_k of a result to the parameters p_k, each of which has a mean shift m_k, a standard deviation σ_k
 and limits l_k ≤ p − p0 ≤ u_k, all independent,
