@@ -72,11 +72,17 @@ def _text_problem(labels: list[Any]) -> str:
 
 def _time_problem(times: np.ndarray) -> str:
     """Return which time a file cannot hold; nothing where it can hold all of them."""
-    lost = np.isnat(times)
-    for unit in UNITS_OF_TIME:
-        lost |= times.astype(f"M8[{unit}]").astype(times.dtype) != times
+    lost = np.array([not all(_holds(unit, time) for unit in UNITS_OF_TIME) for time in times.reshape(-1)], dtype=bool)
     words = "must be a time in whole microseconds between the years 1678 and 2262, or a text"
-    return f"the label {times[lost][0]}: {words}" if lost.any() else ""
+    return f"the label {times.reshape(-1)[lost][0]}: {words}" if lost.any() else ""
+
+
+def _holds(unit: str, time: np.datetime64) -> bool:
+    """Return whether a unit of time holds a time exactly."""
+    try:
+        return bool(time.astype(f"M8[{unit}]").astype(time.dtype) == time)  # not so of NaT
+    except OverflowError:  # numpy 2.5 raises where others return another time
+        return False
 
 
 def _is_sound(text: str) -> bool:

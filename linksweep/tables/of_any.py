@@ -62,7 +62,9 @@ def _values(ds: xr.Dataset, names: list[str]) -> Table:
             angle = float(ds[f"{name}_at"].values[place]) if f"{name}_at" in ds else np.nan
             at = f"{angle:.2f}°" if np.isfinite(angle) else ""
             title = f"{name} ({', '.join(where)})" if where else name
-            rows.append((title, digits(float(ds[name].values[place])), _plain(unit_of(ds[name])), at))
+            value = float(ds[name].values[place])
+            known = (title, "none", "") if np.isnan(value) else (title, digits(value), _plain(unit_of(ds[name])))
+            rows.append((*known, at))
     cut = 4 if any(row[3] for row in rows) else 3
     header = ("quantity", "value", "unit", "at")
     return Table(header[:cut], [row[:cut] for row in rows], meanings=_of_rows(ds, rows))

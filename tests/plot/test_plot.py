@@ -293,10 +293,14 @@ def test_functions_draw_on_given_axes_and_the_accessor_delegates(cycles):
     assert ds.linksweep.scene == SCENES["press"]
 
 
+OF_SCENES = {"animate", "balance", "mechanism", "moment_diagram", "moment_diagrams", "over_speed"}
+"""Plots that take a scene."""
+
+
 def test_every_plot_of_a_dataset_is_a_method_of_the_accessor():
     """One line in linksweep/plot/__init__.pyi adds a plot to ``ls.plot``, its dir and the accessor."""
     methods = {name for name in vars(linksweep.plot.accessor.Cycle) if name in plot.__all__}
-    assert {*plot.__all__} - methods == {"balance", "over_speed"}  # these take scenes
+    assert {*plot.__all__} - methods == OF_SCENES - {"animate", "mechanism"}  # which take results, too
     assert dir(plot) == sorted(plot.__all__)
     path = Path(plot.__file__).with_suffix(".pyi")
     assert len(plot.__all__) == path.read_text(encoding="utf-8").count("from linksweep.plot.")
@@ -317,7 +321,7 @@ def test_missing_quantities_are_named(cycles):
 
 
 @pytest.mark.parametrize("wrong", [ls.example("press"), "cycle.nc", None])
-@pytest.mark.parametrize("name", sorted(set(plot.__all__) - {"animate", "balance", "mechanism", "over_speed"}))
+@pytest.mark.parametrize("name", sorted({*plot.__all__} - OF_SCENES))
 def test_anything_but_a_dataset_is_refused(name, wrong):
     arguments = {"heat_map": ("F32_peak",), "motor_load": (ls.Motor(speeds=(0.0, 600.0), torques=(4.0, 1.0)),)}
     words = {"scatter": {"x": "F32_peak", "y": "T12_peak"}}

@@ -50,9 +50,9 @@ class Objective:
     target : str, default ""
         Name of the result that is minimized or maximized; "" for a function.
     sign : float, default 1.0
-        1 where it is minimized, -1 where it is maximized.
-    subject_to : mapping of str to pair
-        Bounds of results by name.
+        1 where it is minimized, -1 where it is maximized [1].
+    subject_to : mapping of str to pair, default empty
+        Bounds of results by name, each in its result's unit [any].
 
     Examples
     --------
@@ -266,8 +266,9 @@ def objective(
         Quantities on which these functions depend, as in `peaks`. None for the one that `minimize` names; where there
         are functions, all pins and the torque besides.
     subject_to : mapping of str to pair, default None
-        Least and largest value of results by name, None for no bound: {"transmission_angle_min": (40, None), "swing":
-        (50, None)}, names as in `linksweep.sensitivities`. They are in `.constraints`, and in `.optimum()`.
+        Least and largest value of results by name, each in the result's unit [any], None for no bound:
+        {"transmission_angle_min": (40, None), "swing": (50, None)}, names as in `linksweep.sensitivities`. They are in
+        `.constraints`, and in `.optimum()`.
     **options
         Further arguments of `peaks`, such as theta2.
 
