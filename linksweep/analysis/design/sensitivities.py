@@ -85,8 +85,8 @@ def sensitivities(
     >>> ds = ls.sensitivities(press, of=["F32_peak"], to=["coupler.length", "ground"])
     >>> dict(ds.sizes), ds.parameter_unit.values.tolist()
     ({'parameter': 2}, ['m', 'm'])
-    >>> bool(abs(ds.F32_peak_elasticity.sel(parameter="ground")) > 1)
-    True
+    >>> round(float(ds.F32_peak_elasticity.sel(parameter="ground")), 2)
+    -0.53
     """
     require_scene(scene)
     refuse(count_problems("threads", threads))

@@ -13,8 +13,9 @@ from refusals import refusal
 
 import linksweep as ls
 from linksweep.base.fields import numbers
+from linksweep.base.frozen import bare
 from linksweep.scene.examples import names
-from linksweep.scene.parameters import bare, replaced
+from linksweep.scene.parameters import replaced
 
 STEEL = {"width": 0.02, "thickness": 0.02, "density": 7750}
 TEXT = "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F"
