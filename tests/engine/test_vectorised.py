@@ -71,7 +71,7 @@ REQUESTS = {
 
 
 @pytest.mark.parametrize("width", [4, 8, 16])
-@pytest.mark.parametrize("request_name", REQUESTS)
+@pytest.mark.parametrize("request_name", long_but(REQUESTS, "two toggles", "largest samples, masses side by side"))
 def test_any_width_has_the_bits_of_numpy(request_name, width, monkeypatch):
     """Rows are shorter than a vector, whole vectors, or neither."""
     monkeypatch.setattr(vectors, "width", lambda: width)

@@ -287,13 +287,14 @@ def subject(name: str) -> Subject:
 
 MACHINES = ("press", "engine", "quick-return", "loop", "scotch-yoke", *LINKAGES, "inline-four")
 ON_PAPER = {"press", "engine", "quick-return", "scotch-yoke", *LINKAGES, "inline-four"}
-"""Machines whose report takes seconds: it is a long test."""
+SLOWLY = {"report", "size_links"}
+"""Functions that take seconds of these machines: long tests."""
 BRIEFLY = {"sweep", "system", "save", "load_scene", "scene_at", "orders", "regressor", "with_counterweights", "pareto"}
 """Functions that examples of linkages meet in quick tests; the others are long."""
 
 
 def takes_long(machine: str, name: str) -> bool:
-    return name not in BRIEFLY if machine in EXAMPLES else name == "report" and machine in ON_PAPER
+    return name not in BRIEFLY if machine in EXAMPLES else name in SLOWLY and machine in ON_PAPER
 
 
 def pairs(names: Iterable[str], machines: tuple[str, ...]) -> list:
@@ -362,7 +363,11 @@ def test_a_function_gives_a_result_or_a_sentence(machine, name, tmp_path):
     check_pair(subject(machine), name, sentence(lambda: CALLS[name](subject(machine), tmp_path)))
 
 
-@pytest.mark.parametrize(("machine", "name"), pairs(COMMANDS, MACHINES[:-1]))
+OF_COMMANDS = [pair for pair in pairs(COMMANDS, MACHINES[:-1]) if pair.values[1] != "report" or "press" in pair.values]
+"""The page of a machine is the function's; one machine is enough for the command."""
+
+
+@pytest.mark.parametrize(("machine", "name"), OF_COMMANDS)
 def test_a_command_prints_a_result_or_a_sentence(machine, name, tmp_path, capsys):
     """A command gives what it prints, or exits with status 2 and its sentence."""
     code = main([str(argument) for argument in COMMANDS[name](subject(machine), tmp_path)])

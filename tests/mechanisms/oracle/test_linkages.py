@@ -24,7 +24,7 @@ def uncompiled():
         yield
 
 
-@pytest.mark.parametrize("designs", long_but([10, 50], 10))
+@pytest.mark.parametrize("designs", long_but([10, 30], 10))
 @pytest.mark.parametrize("name", ALL)
 def test_linkages_reach_the_goals(name, designs):
     figures = [errors.errors_of(solution) for solution in front_door.solutions(name, designs, 2026, at_once=5)]
