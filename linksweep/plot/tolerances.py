@@ -38,7 +38,8 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     Raises
     ------
     ValueError
-        For a Dataset without tolerances, for an unknown name, and for more than one design.
+        For a Dataset without tolerances, for an unknown name, for more than one design, and for a result that is
+        infinite or has no derivative.
 
     Examples
     --------
@@ -55,6 +56,8 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
     refuse([f"ds has several designs, over {several[0]}: take one, as ds.isel({several[0]}=0)"] if several else [])
     nominal, sigma = float(ds[name]), float(ds[f"{name}_sigma"])
+    finite = np.isfinite(nominal) and np.isfinite(sigma)
+    refuse([] if finite else [f"ds has no finite {name} with a derivative: its {name}_status says why"])
     lower, upper = (ds[f"{name}_{word}"].values for word in ("lower", "upper"))
     order = np.argsort(np.maximum(abs(lower), abs(upper)))[-most:]
     ax = grid(axes_or_new(ax, figsize=(6.4, 1.6 + 0.3 * len(order))))

@@ -229,6 +229,7 @@ LACKING: dict[str, str] = {
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+        plot.tornado
     """,
     "whitworth": """
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop

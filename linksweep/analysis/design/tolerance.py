@@ -207,9 +207,11 @@ def _linear(
 def _drawn(name: str, values: xr.DataArray, text: str) -> dict[str, tuple[xr.DataArray, str]]:
     """Return mean, deviation and ends of exact results of drawn designs."""
     values = values if DRAWN in values.dims else values.expand_dims(DRAWN)
+    with np.errstate(invalid="ignore"):  # forces without bound have no deviation: inf − inf
+        deviation = values.std(DRAWN)
     return {
         f"{name}_drawn_mean": (values.mean(DRAWN), f"mean over drawn designs of: {text}"),
-        f"{name}_drawn_sigma": (values.std(DRAWN), f"standard deviation over drawn designs of: {text}"),
+        f"{name}_drawn_sigma": (deviation, f"standard deviation over drawn designs of: {text}"),
         f"{name}_drawn_least": (values.min(DRAWN), f"least over drawn designs of: {text}"),
         f"{name}_drawn_largest": (values.max(DRAWN), f"largest over drawn designs of: {text}"),
     }
