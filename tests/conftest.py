@@ -6,17 +6,18 @@ import sys
 os.environ["MPLBACKEND"] = "Agg"
 
 
-class ExamplesClose:
-    """Close the figures that an example of a docstring draws: it is there to be read, and closes none."""
+class CloseFigures:
+    """Close the figures that a file of tests, or an example of a docstring, leaves open."""
 
     @staticmethod
-    def pytest_runtest_teardown(item):
-        if hasattr(item, "dtest") and "matplotlib.pyplot" in sys.modules:
+    def pytest_runtest_teardown(item, nextitem):
+        last = hasattr(item, "dtest") or nextitem is None or nextitem.path != item.path
+        if last and "matplotlib.pyplot" in sys.modules:
             sys.modules["matplotlib.pyplot"].close("all")
 
 
 def pytest_configure(config):
-    config.pluginmanager.register(ExamplesClose())  # of this file alone, it would see the tests alone
+    config.pluginmanager.register(CloseFigures())  # hooks of this file alone would see no docstrings
 
 
 def pytest_terminal_summary(terminalreporter, config):
