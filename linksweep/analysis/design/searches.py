@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from linksweep.analysis.design.objective import Objective
 
 ALLOWED = 1e-6
-"""How far a constraint may be passed, relative to its bound."""
+"""Excess over a constraint that is allowed, relative to its bound."""
 MOST = 200
 """Most iterations from one start."""
 

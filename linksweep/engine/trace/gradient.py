@@ -40,7 +40,7 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
     "abs": lambda z, w, x: ((x < 0.0).where(-w, w),),
     "atan2": lambda z, w, y, x: _to_vector(y, x, w / (x * x + y * y)),
 }
-"""What an operation passes on to its operands: of its result z, the adjoint w of that, and the operands."""
+"""Adjoints that an operation passes on to its operands, from its result z, the adjoint w of that, and the operands."""
 
 
 def gradient(value: Node, to: Collection[Node]) -> dict[Node, Node]:
