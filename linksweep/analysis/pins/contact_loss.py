@@ -8,9 +8,17 @@ mass that moves against the other link: contact is kept where
 
 and is surely lost where F vanishes. m is here m_i m_j/(m_i + m_j) of the two links, m_j where the other is the ground.
 
-S. W. E. Earles and C. L. S. Wu, A Determination of Contact-Loss at a Bearing of a Linkage Mechanism, Journal of
-Engineering for Industry 99 (1977) 375–380, replace the clearance by a massless link, which turns with the force; they
-and those after them compare γ'/F from design to design, which needs neither mass nor clearance.
+Earles and Wu's empirical formula needs neither mass nor clearance: contact is lost in a pin where γ'/F, of the forces
+without clearance, exceeds a threshold. It has a unit, so that a threshold belongs to machines of one size; 5 rad/N/s is
+quoted for the four-bars of their experiments. Therefore γ'/F is a result, and no threshold is built in.
+
+Sources: S. W. E. Earles and C. L. S. Wu, A Determination of Contact-Loss at a Bearing of a Linkage Mechanism, Journal
+of Engineering for Industry 99 (1977) 375–380, for the clearance as a link without mass that turns with the force; A
+Design Method for Reducing the Effects of Clearances at Revolute Joints, Proceedings of the Institution of Mechanical
+Engineers 199 (1985), doi 10.1243/PIME_PROC_1985_199_106_02, for a joint that their formula calls free of contact loss;
+M. Bengisu, T. Hidayetoglu and A. Akay, A Theoretical and Experimental Investigation of Contact Loss in the Clearances
+of a Four-Bar Mechanism, Journal of Mechanisms, Transmissions, and Automation in Design 108 (1986) 237–244, for a
+comparison of criteria.
 """
 
 from __future__ import annotations
@@ -63,7 +71,8 @@ def contact_loss(
         Results over `pin` and the dims of a sweep:
 
         - `F` [N] and `turning_rate` [rad/s], the rate at which the force's direction turns in ground axes
-        - `turning_per_force` [rad/N/s], the measure of Earles and Wu: the larger, the likelier contact is lost
+        - `turning_per_force` [rad/N/s], the measure of Earles and Wu: contact is lost where it exceeds a threshold,
+          which is quoted as 5 for their four-bars, and belongs to machines of that size
         - `knock` [1] with a clearance: the part of the force that it takes to keep the journal on its circle; contact
           is lost where it exceeds 1, inf where the force vanishes
         - `status` as in `linksweep.sweep`.
@@ -84,6 +93,8 @@ def contact_loss(
     >>> loss = ls.contact_loss(ls.example("press"), clearance=50e-6)
     >>> str(loss.knock.max("theta2").idxmax("pin").item()), bool((loss.knock > 1.0).any())
     ('D', False)
+    >>> bool((loss.turning_per_force > 5.0).any())  # by Earles and Wu
+    False
     """
     require(scene, "pins")
     scene = in_memory(scene)

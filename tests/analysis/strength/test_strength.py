@@ -162,9 +162,12 @@ def test_a_bar_that_only_its_own_inertia_loads_reaches_no_other_safety():
 
 
 def test_the_force_of_a_turning_bar_turns_with_it():
-    """γ' = ω and knock = m c ω²/F = 2c/L at the pivot of a turning bar."""
-    ds = ls.contact_loss(turning(), {"A": 1e-4}, theta2=24).sel(pin="A")
+    """γ' = ω, γ'/F = 2/(m ω L) and knock = m c ω²/F = 2c/L at the pivot of a turning bar."""
+    scene = turning()
+    ds = ls.contact_loss(scene, {"A": 1e-4}, theta2=24).sel(pin="A")
     assert np.allclose(ds.turning_rate, 50.0, rtol=1e-9) and np.allclose(ds.knock, 2e-4 / 0.3, rtol=1e-9)
+    mass = scene.mechanism.crank.mass
+    assert np.allclose(ds.turning_per_force, 2.0 / (mass * 50.0 * 0.3), rtol=1e-9)
 
 
 def test_the_tube_and_the_bar_have_the_moments_of_their_shapes():
