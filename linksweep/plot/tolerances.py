@@ -11,6 +11,7 @@ from linksweep.base.validate import name_problems, refuse
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, ORANGE
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.compute import require_dataset
+from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,6 +56,7 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     refuse(name_problems("of", name, known))
     several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
     refuse([f"ds has several designs, over {several[0]}: take one, as ds.isel({several[0]}=0)"] if several else [])
+    ds = in_shown_units(ds)
     nominal, sigma = float(ds[name]), float(ds[f"{name}_sigma"])
     finite = np.isfinite(nominal) and np.isfinite(sigma)
     refuse([] if finite else [f"ds has no finite {name} with a derivative: its {name}_status says why"])

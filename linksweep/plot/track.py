@@ -11,12 +11,15 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, VERMILION
+from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.kit.style import grid, panels
 from linksweep.results.compute import angles_missing
+from linksweep.results.origin.in_shown_units import in_shown_units, results_in_shown_units
 from linksweep.results.origin.machine_of_results import machine_of_results
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,11 +60,12 @@ def loop(ds: xr.Dataset) -> Figure:
     track = machine.track if machine else None
     if machine is None or track is None or machine.index not in ds.dims or track.force not in ds:
         raise ValueError("ds has no force of a track over the position: take what ls.sweep returns for a car in a loop")
-    scene, ds = scene_of(ds), ds.rename({machine.index: signals.INDEX})
+    scene, ds = scene_of(ds), results_in_shown_units(ds).rename({machine.index: signals.INDEX})
     signals.require_one_design([ds[track.force]])
     radius = float(getattr(scene.mechanism, track.radius))
     with panels(1, 2, figsize=PAGE, width_ratios=(1.0, 1.15)) as (figure, (left, right)):
         outer = draw_track(left, ds, track.force, radius)
+        show_lengths(left, shown_units(scene.units))
         _arrows(left, signals.by_angle(ds, ds[track.force])[0], outer, radius)
         draw_car(left, radius)
         draw_force(right, ds, scene)
@@ -69,13 +73,14 @@ def loop(ds: xr.Dataset) -> Figure:
 
 
 def draw_force(ax: Axes, ds: xr.Dataset, scene: Scene) -> None:
-    """Draw the force over the position, its extremes marked."""
+    """Draw the force over the position, its extremes marked, of a cycle in the units in which it is shown."""
     from matplotlib.ticker import MultipleLocator
 
     from linksweep.plot.kit.labels import label
 
     name = scene.mechanism.track.force  # type: ignore[union-attr]
     angles, force = signals.by_angle(ds, ds[name])
+    unit = signals.unit(ds[name], "N")
     grid(ax)
     ax.axhline(0.0, color=GREY, linewidth=0.8, zorder=2.0)
     ax.plot(angles, force, color=BLUE, label=f"_{name}")
@@ -86,9 +91,9 @@ def draw_force(ax: Axes, ds: xr.Dataset, scene: Scene) -> None:
         ax.set_xlim(angles[0], max(360.0, angles[-1]))
     for end, (angle, value) in _extremes(scene, name, angles, force).items():
         ax.plot([angle], [value], "o", color=BLUE, markersize=4.5, clip_on=False, label=f"_{end}")
-        label(ax, angle, value, (f"{end} {signals.number(value)} N at {signals.angle_text(angle)}", BLUE))
+        label(ax, angle, value, (f"{end} {signals.number(value)} {unit} at {signals.angle_text(angle)}", BLUE))
     ax.margins(y=0.18)
-    ax.set(xlabel="position $\\theta$ [°]", ylabel="force of the track $F_N$ [N]")
+    ax.set(xlabel="position $\\theta$ [°]", ylabel=f"force of the track $F_N$ [{unit}]")
 
 
 def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) -> dict[str, tuple[float, float]]:
@@ -96,7 +101,7 @@ def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) ->
     if not np.nanmin(force, initial=np.inf) < np.nanmax(force, initial=-np.inf):
         return {}
     if signals.full_turn(angles) and not design_labels(scene) and not angles_missing(scene):
-        worst = peaks(scene, of=[name])
+        worst = in_shown_units(peaks(scene, of=[name]))
         return {end: (worst[f"{name}_{end}_at"].item(), worst[f"{name}_{end}"].item()) for end in ("max", "min")}
     samples = {"max": int(np.nanargmax(force)), "min": int(np.nanargmin(force))}
     return {end: (angles[k], force[k]) for end, k in samples.items()}
@@ -117,7 +122,6 @@ def draw_track(ax: Axes, cycle: xr.Dataset, name: str, radius: float) -> np.ndar
     ax.plot(*place(outer, angles), color=BLUE, linewidth=1.0, label="_force")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
-    ax.set(xlabel="x [m]", ylabel="y [m]")
     return outer
 
 

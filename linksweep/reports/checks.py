@@ -11,7 +11,7 @@ import xarray as xr
 from linksweep.plot.kit import signals
 from linksweep.reports.markup import Markup, angle, joined, number, safe, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import STEPS, Results
-from linksweep.reports.tables import UNITS
+from linksweep.reports.units_of_page import measure
 
 LEAST_TRANSMISSION = 40.0
 """Least transmission angle of common practice [degree]: R. L. Norton, Design of Machinery, chapter 3."""
@@ -58,8 +58,8 @@ def _other(name: str, finding: xr.DataArray, results: Results) -> Iterator[Check
     elif finding.attrs["units"] == "degree" and values.size:
         yield _special(title, finding, results)
     elif values.size:
-        units = UNITS.get(finding.attrs["units"], finding.attrs["units"])
-        yield Check(title, _listed([number(float(value), units) for value in values.ravel()]))
+        unit = finding.attrs["units"]
+        yield Check(title, _listed([measure(float(value), unit, results.system) for value in values.ravel()]))
 
 
 def _checks(results: Results) -> Iterator[Check]:
@@ -158,7 +158,7 @@ def _jams(results: Results) -> Check:
 def _acceleration(results: Results) -> Check:
     """Return whether alpha2 is that of an omega2 that changes over the revolution."""
     worst, at = (float(results.check[f"alpha2_difference{end}"]) for end in ("", "_at"))
-    words = joined("differs from that of the speed by ", number(worst, "rad/s²"), " at ", angle(at))
+    words = joined("differs from that of the speed by ", measure(worst, "rad/s^2", results.system), " at ", angle(at))
     return Check("acceleration of the crank", words, worst <= EXACT * float((results.cycle["omega2"] ** 2).max()))
 
 

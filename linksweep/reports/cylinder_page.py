@@ -15,11 +15,14 @@ from linksweep.base.validate import refuse
 from linksweep.reports import scene_tables
 from linksweep.reports import tables as page_tables
 from linksweep.reports.figures import SIZE, Picture, of_shaking, pictures
-from linksweep.reports.markup import NONE, Markup, angle, joined, number, section, symbol, table, tag, tiny
+from linksweep.reports.markup import NONE, Markup, angle, joined, section, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import fluctuations
+from linksweep.reports.units_of_page import distance, measure
 from linksweep.results.cylinders.multi_cylinder import SHAKING, MultiCylinder
+from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.choose import design_labels
+from linksweep.scene.shown_units import UnitSystem, shown_units
 
 SIGNS = "Angles and torques count counter-clockwise, from x; z points towards the viewer."
 HINGED = "The crankshaft is taken as hinged at every main bearing (lever rule)."
@@ -48,7 +51,9 @@ def parts_of(machine: MultiCylinder, threads: int | None) -> dict[str, Any]:
         "right": joined(
             section("Motion", scene_tables.settings(engine)),
             section("Drive", _drive(machine, threads)),
-            section("Main bearings", _mains(mains), tag("p", HINGED, class_="note")) if mains is not None else Markup(),
+            section("Main bearings", _mains(mains, _system(machine)), tag("p", HINGED, class_="note"))
+            if mains is not None
+            else Markup(),
         ),
         "figures": pictures(_figures(machine, mains, threads)),
         "more": "",
@@ -63,8 +68,8 @@ def _cylinders(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     standing = zip(machine.crank_angles, machine.bank_angles, machine.positions, strict=True)
     rows = []
     for k, (ahead, bank, z) in enumerate(standing):
-        forces = (number(float(worst[f"{name}_peak"][k]), "N") for name in PINS)
-        rows.append((str(k + 1), angle(ahead), angle(bank), number(1e3 * z, "mm"), *forces))
+        forces = (measure(float(worst[f"{name}_peak"][k]), "N", _system(machine)) for name in PINS)
+        rows.append((str(k + 1), angle(ahead), angle(bank), distance(z, _system(machine)), *forces))
     return table(header, rows, class_="numbers")
 
 
@@ -72,13 +77,14 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     rows: list[tuple[Any, ...]] = []
     for name in SIGNALS:
         quantity, bound = machine.quantity[name], float(worst[f"{name}_bound"])
-        unit = page_tables.UNITS.get(quantity.units, quantity.units)
+        shown = partial(measure, unit=quantity.units, system=_system(machine))
         ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
         what = quantity.long_name.split(",")[0].split(" of all")[0].split(" of the drive")[0]
         for end, words in ends.items():
             value, at = float(worst[name + end]), float(worst[f"{name}{end}_at"])
             known = abs(value) > CANCELLED * bound
-            cells = (number(value if known else 0.0, unit), angle(at) if known else NONE, tiny(bound))
+            rounding = tiny(float(_system(machine).value(bound, quantity.units)))
+            cells = (shown(value if known else 0.0), angle(at) if known else NONE, rounding)
             rows.append((symbol(name), tag("span", what + words, title=quantity.long_name), *cells))
     return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
 
@@ -86,26 +92,34 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
 def _drive(machine: MultiCylinder, threads: int | None) -> Markup:
     work = duty(machine, threads=threads)
     wheels = flywheel(machine, fluctuation=fluctuations(), threads=threads)
-    torque = "mean torque", number(float(work["effort_mean"]), "N m")
-    rows = [torque, *page_tables.works(work), *page_tables.flywheels(wheels)]
+    system = _system(machine)
+    torque = "mean torque", measure(float(work["effort_mean"]), "N m", system)
+    rows = [torque, *page_tables.works(work, system), *page_tables.flywheels(wheels, system)]
     return table((), rows, class_="numbers")
 
 
-def _mains(loads: xr.Dataset) -> Markup:
+def _system(machine: MultiCylinder) -> UnitSystem:
+    return shown_units(machine.engine.units)
+
+
+def _mains(loads: xr.Dataset, system: UnitSystem) -> Markup:
     header = ("", "place", "largest load", "at θ₂", "equivalent load")
     rows = []
     for name in loads["main"].values:
         place, most, at, mean = (float(loads[key].sel(main=name)) for key in MAIN)
-        rows.append((str(name), number(1e3 * place, "mm"), number(most, "N"), angle(at), number(mean, "N")))
+        forces = measure(most, "N", system), angle(at), measure(mean, "N", system)
+        rows.append((str(name), distance(place, system), *forces))
     return table(header, rows, class_="numbers")
 
 
 def _figures(machine: MultiCylinder, mains: xr.Dataset | None, threads: int | None) -> Iterator[Picture]:
-    cycle = machine.sweep(threads=threads)
-    yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [cycle["T12"]], "torque [N m]"))
+    cycle, system = machine.sweep(threads=threads), _system(machine)
+    torque = in_shown_units(cycle[["T12"]], system)["T12"]
+    yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [torque], f"torque [{system.unit('N m')}]"))
     if mains is not None:
-        loads = [mains["F"].sel(main=name) for name in mains["main"].values]
-        yield Picture("Loads of the main bearings", SIZE, partial(_over_angle, loads, "force [N]"))
+        shown = in_shown_units(mains, system)["F"]
+        loads = [shown.sel(main=name) for name in mains["main"].values]
+        yield Picture("Loads of the main bearings", SIZE, partial(_over_angle, loads, f"force [{system.unit('N')}]"))
     yield from of_shaking(cycle)
 
 

@@ -16,6 +16,7 @@ from linksweep.reports import scene_tables
 from linksweep.reports.markup import Markup, joined, table, tag
 from linksweep.scene.designs.choose import chosen, design_labels
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 from linksweep.tables.table import STYLE
 
 WIDTH, HEIGHT, ROOM = 260.0, 170.0, 16.0
@@ -84,12 +85,12 @@ def _machine_tables(scene: Scene) -> list[Markup]:
 
 def _fields(thing: Any) -> Markup:
     """Return the table of an object's fields, each with its unit."""
-    rows = []
+    rows, system = [], shown_units()
     for name, kind, _ in declared(thing):
         value = getattr(thing, name)
         if not left_out(value):
             unit = UNITS[kind.rule.kind] if isinstance(kind, NumberField) and isinstance(value, float) else ""
-            rows.append((name, _text(value), unit.removesuffix("1")))
+            rows.append((name, _text(system.value(value, unit)), system.unit(unit).removesuffix("1")))
     return table((), rows)
 
 

@@ -28,7 +28,7 @@ from linksweep.reports import tables as page_tables
 from linksweep.reports.cylinder_page import parts_of
 from linksweep.reports.markup import Markup, joined, safe, section, tag
 from linksweep.reports.results_of_page import Range, Results, Steel, results_of
-from linksweep.reports.scene_tables import quantity
+from linksweep.reports.scene_tables import degrees
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.file.writing import write_scene
@@ -84,8 +84,9 @@ def report(
 
     Notes
     -----
-    Lengths stand in mm, speeds of a crank in rpm; all else as in the results. Every number of the tables stands in full
-    in the `value` of its element. Peaks are those of `linksweep.peaks`, with their bounds; checks those of
+    Numbers are in the units of `linksweep.units`, or of the scene; where none are chosen, lengths stand in mm, speeds
+    of a crank in rpm, and all else as in the results. Every number of the tables stands in full in the `value` of its
+    element. Peaks are those of `linksweep.peaks`, with their bounds; checks those of
     `linksweep.check`, and the balance of power and the rounding error of a sweep. The file holds the scene as well.
 
     Examples
@@ -121,7 +122,7 @@ def page(
     """Return the report as HTML."""
     results = results_of(scene, part, threads, material)
     kind = scene_tables.kind_of(scene)
-    between = f" from {quantity(part[0], 'angle')} to {quantity(part[1], 'angle')}" if part else ""
+    between = f" from {degrees(part[0])} to {degrees(part[1])}" if part else ""
     parts = {
         "title": title or kind,
         "kind": kind + between,

@@ -17,6 +17,7 @@ from linksweep.results.check import check
 from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem, shown_units
 
 STEPS = 10  # samples in a degree
 SHAKING = ("Fs", "Ms")
@@ -52,6 +53,11 @@ class Results(NamedTuple):
     def forces(self) -> tuple[str, ...]:
         """Default quantities of peaks: pin forces, torques, the force of a track."""
         return self.scene.mechanism.peak_quantities(self.scene.drive)
+
+    @property
+    def system(self) -> UnitSystem:
+        """Units of the page."""
+        return shown_units(self.scene.units)
 
     @property
     def linkage(self) -> bool:

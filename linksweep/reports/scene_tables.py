@@ -1,7 +1,7 @@
 """The inputs of a report: links in a table, motion and loads in words.
 
-Lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in bar. A number
-that changes over the revolution stands as its least and its largest value.
+Where no units are chosen, lengths stand in mm (from 10 m on in m), speeds of a crank in rpm beside rad/s, pressures in
+bar. A number that changes over the revolution stands as its least and its largest value.
 """
 
 from __future__ import annotations
@@ -23,27 +23,18 @@ from linksweep.base.fields import (
     left_out,
 )
 from linksweep.base.records import NamedField
-from linksweep.base.validate import UNITS
 from linksweep.mechanisms.links import Bar, Disk, Guide
 from linksweep.mechanisms.machine import Machine
 from linksweep.reports.markup import Markup, symbol, table, with_unit, written
+from linksweep.reports.units_of_page import unit_of_input
 from linksweep.scene.loads.ends import GROUND
 from linksweep.scene.loads.load import Load
 from linksweep.scene.loads.springs import EndField
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem, shown_units
 
-SHOWN = {
-    "length": ("mm", 1e3),
-    "angle": ("°", 1.0),
-    "angular_velocity": ("rpm", 30.0 / np.pi),
-    "pressure": ("bar", 1e-5),
-    "spring_rate": ("N/mm", 1e-3),
-    "dimensionless": ("", 1.0),
-}
-"""Unit on the page, and its count in the scene's own unit; other kinds of number stand in the scene's unit."""
 LEFT_OUT = ("length", "angle")
 """Kinds of number that are left out at their default, no offset and no turn."""
-LONG = 10.0  # m: lengths from here on stand in m
 
 TITLES = {"ground": "ground pin", "points": "pin", "guides": "guide", "branch": "branch of", "gears": "gears of"}
 """Titles of the rows of a linkage's named numbers, by parameter."""
@@ -58,9 +49,9 @@ def kind_of(scene: Scene) -> str:
 
 def links(scene: Scene) -> Markup:
     """Return the table of the links: lengths, masses, inertias and centres of gravity."""
-    mechanism: Any = scene.mechanism
+    mechanism, system = scene.mechanism, shown_units(scene.units)
     header = ["link", "length", "mass", "inertia", "centre of gravity", "made as"]
-    rows = [_link(mechanism, body.role, body.number) for body in mechanism.bodies]
+    rows = [_link(mechanism, body.role, body.number, system) for body in mechanism.bodies]
     if not any(row[-1] for row in rows):
         header, rows = header[:-1], [row[:-1] for row in rows]
     return table(header, rows, class_="links") if rows else Markup()
@@ -68,17 +59,19 @@ def links(scene: Scene) -> Markup:
 
 def loads(scene: Scene) -> Markup:
     """Return the table of the loads, each in words."""
-    pairs = zip(_sampled(scene).loads, scene.loads, strict=True)
-    rows = [(f"load {k}", _load(load, scene.mechanism) + _followed(own)) for k, (load, own) in enumerate(pairs, 1)]
+    system, pairs = shown_units(scene.units), zip(_sampled(scene).loads, scene.loads, strict=True)
+    words = (_load(load, scene.mechanism, system) + _followed(own) for load, own in pairs)
+    rows = [(f"load {k}", text) for k, text in enumerate(words, 1)]
     return table((), rows, class_="settings") if rows else Markup()
 
 
 def settings(scene: Scene) -> Markup:
     """Return the table of the mechanism's other parameters, its drive, its speed and gravity."""
+    system = shown_units(scene.units)
     rows = [
-        *_of_mechanism(_sampled(scene).mechanism),
-        *_of_motion(_sampled(scene)),
-        ("gravity", _gravity(*scene.gravity)),
+        *_of_mechanism(_sampled(scene).mechanism, system),
+        *_of_motion(_sampled(scene), system),
+        ("gravity", _gravity(scene.gravity, system)),
     ]
     return table((), rows, class_="settings")
 
@@ -88,120 +81,126 @@ def _sampled(scene: Scene) -> Scene:
     return scene.at(scene.grid(SAMPLES))
 
 
-def _link(mechanism: Any, role: str, number: int) -> tuple[str, ...]:
+def _link(mechanism: Any, role: str, number: int, system: UnitSystem) -> tuple[str, ...]:
     """Return a row of the table; a slider or a block has its numbers in the mechanism itself."""
     link = mechanism.parts.get(role)
     owner, prefix = (mechanism, f"{role}_") if link is None else (link, "")
     values = {kind: getattr(owner, prefix + kind, None) for kind in ("length", "mass", "inertia")}
-    sizes = ("" if value is None else quantity(value, kind) for kind, value in values.items())
+    sizes = ("" if value is None else quantity(value, kind, system) for kind, value in values.items())
     distance, angle = (getattr(owner, f"{prefix}cg_{word}") for word in ("distance", "angle"))
-    at_origin, place = f"on {_origin(mechanism, role)}", f"{quantity(distance, 'length')} at {quantity(angle, 'angle')}"
-    cg = at_origin if distance == 0.0 else place
-    return f"{number} {role}", *sizes, cg, _made(link)
+    place = f"{quantity(distance, 'length', system)} at {degrees(angle)}"
+    cg = f"on {_origin(mechanism, role)}" if distance == 0.0 else place
+    return f"{number} {role}", *sizes, cg, _made(link, system)
 
 
-def _made(link: Any) -> str:
+def _made(link: Any, system: UnitSystem) -> str:
+    factor = unit_of_input("length", 0.0, system)[1]
     if isinstance(link, Bar):
-        size = f"bar {_number(link.width, 1e3)} × {quantity(link.thickness, 'length')}"
+        size = f"bar {_number(link.width, factor)} × {quantity(link.thickness, 'length', system)}"
     elif isinstance(link, Disk):
-        size = f"disk ⌀ {_number(2.0 * link.radius, 1e3)} × {quantity(link.thickness, 'length')}"
+        size = f"disk ⌀ {_number(2.0 * link.radius, factor)} × {quantity(link.thickness, 'length', system)}"
     else:
         return ""
-    return f"{size}, {quantity(link.density, 'density')}"
+    return f"{size}, {quantity(link.density, 'density', system)}"
 
 
-def _of_mechanism(mechanism: Any) -> Iterator[tuple[str, str]]:
+def _of_mechanism(mechanism: Any, system: UnitSystem) -> Iterator[tuple[str, str]]:
     """Yield the parameters that belong to no link, and the branch."""
     bodies = tuple(f"{body.role}_" for body in mechanism.bodies)
     for name, field, default in declared(mechanism):
         value = getattr(mechanism, name)
         kind = field.rule.kind if isinstance(field, NumberField) else ""
         if kind and not name.startswith(bodies) and not (kind in LEFT_OUT and value == default):
-            yield _plain(name), quantity(value, kind)
+            yield _plain(name), quantity(value, kind, system)
         elif isinstance(value, str):
             yield name, value
         elif isinstance(field, NamedField) and not field.inline:
-            yield from ((f"{TITLES.get(name, name)} {key}", _named(field.each, item)) for key, item in value.items())
+            title = TITLES.get(name, name)
+            yield from ((f"{title} {key}", _named(field.each, item, system)) for key, item in value.items())
     for role in mechanism.topology.cylinders if isinstance(mechanism, Machine) else ():
         length = getattr(mechanism.parts.get(role), "length", None)
-        yield f"cylinder {role}", "follows" if length is None else f"{quantity(length, 'length')} long"
+        yield f"cylinder {role}", "follows" if length is None else f"{quantity(length, 'length', system)} long"
 
 
-def _named(kind: FieldKind, item: Any) -> str:
+def _named(kind: FieldKind, item: Any, system: UnitSystem) -> str:
     """Return a named thing in words: a point, a word, a guide, or gears by their fields."""
     if isinstance(item, Guide):
-        return _guide(item)
-    return _pair(kind, item) if isinstance(kind, PairField) else ", ".join(_fields(item)) if has_fields(item) else item
+        return _guide(item, system)
+    if isinstance(kind, PairField):
+        return _pair(kind, item, system)
+    return ", ".join(_fields(item, system)) if has_fields(item) else item
 
 
-def _guide(guide: Guide) -> str:
+def _guide(guide: Guide, system: UnitSystem) -> str:
     """Return a guide in words: "on the ground, through (0 mm, 20 mm) at 20°, friction 0.1"."""
     host = "on the ground" if guide.of == GROUND else f"on the {guide.of}, in its axes"
-    x, y = (quantity(number, "length") for number in guide.through)
-    friction = f", friction {quantity(guide.friction, 'dimensionless')}" if np.any(guide.friction) else ""
-    return f"{host}, through ({x}, {y}) at {quantity(guide.angle, 'angle')}{friction}"
+    x, y = (quantity(number, "length", system) for number in guide.through)
+    friction = f", friction {quantity(guide.friction, 'dimensionless', system)}" if np.any(guide.friction) else ""
+    return f"{host}, through ({x}, {y}) at {degrees(guide.angle)}{friction}"
 
 
-def _pair(kind: PairField, pair: Any) -> str:
+def _pair(kind: PairField, pair: Any, system: UnitSystem) -> str:
     """Return a point in words, by its coordinates or by distance and angle."""
-    first, second = quantity(pair[0], kind.first.kind), quantity(pair[1], kind.second.kind)
+    first, second = quantity(pair[0], kind.first.kind, system), quantity(pair[1], kind.second.kind, system)
     return f"{first} at {second}" if kind.second.kind == "angle" else f"({first}, {second})"
 
 
-def _of_motion(sampled: Scene) -> Iterator[tuple[str, str]]:
+def _of_motion(sampled: Scene, system: UnitSystem) -> Iterator[tuple[str, str]]:
     """Yield the parameters of the motion that the mechanism takes, in words."""
     mechanism, remarks = sampled.mechanism, sampled.mechanism.remarks(vars(sampled))
     if "drive" in mechanism.motion:
         yield "drive", f"{sampled.drive}; unknown: {symbol(mechanism.drives[sampled.drive])}"
     if "omega2" in mechanism.motion:
-        yield f"speed of the {mechanism.roles[0]}", _speed(sampled.omega2)
+        yield f"speed of the {mechanism.roles[0]}", _speed(sampled.omega2, system)
     if np.any(np.not_equal(sampled.motion.get("alpha2", 0.0), 0.0)):
-        yield "its acceleration", quantity(sampled.motion["alpha2"], "angular_acceleration")
+        yield "its acceleration", quantity(sampled.motion["alpha2"], "angular_acceleration", system)
     for name in ("speed", "thrust"):
         if name in mechanism.motion:
-            size = quantity(getattr(sampled, name), field_rules(Scene)[name].kind)
+            size = quantity(getattr(sampled, name), field_rules(Scene)[name].kind, system)
             yield name, f"{size} {remarks.get(name, '')}".rstrip()
     turns = round(sampled.period / mechanism.period)
     if turns > 1:
         yield "cycle", f"{turns} turns of the crank"
 
 
-def _speed(omega2: Any) -> str:
+def _speed(omega2: Any, system: UnitSystem) -> str:
     clockwise = np.mean(omega2) < 0.0
     size = -omega2 if clockwise else omega2
     way = "clockwise" if clockwise else "counter-clockwise"
-    return f"{quantity(size, 'angular_velocity')} ({_number(size)} rad/s) {way}"
+    beside = "" if system.chosen else f" ({_number(size)} rad/s)"
+    return f"{quantity(size, 'angular_velocity', system)}{beside} {way}"
 
 
-def _gravity(x: float, y: float) -> str:
-    size = quantity(float(np.hypot(x, y)), "acceleration")
+def _gravity(gravity: Sequence[Any], system: UnitSystem) -> str:
+    x, y = gravity
+    size = quantity(float(np.hypot(x, y)), "acceleration", system)
     if x == 0.0:
         return "none" if y == 0.0 else f"{size} {'down' if y < 0.0 else 'up'}"
-    return f"{size} at {quantity(float(np.degrees(np.arctan2(y, x))), 'angle')} to x"
+    return f"{size} at {degrees(float(np.degrees(np.arctan2(y, x))))} to x"
 
 
-def _load(load: Any, mechanism: Any) -> str:
+def _load(load: Any, mechanism: Any, system: UnitSystem) -> str:
     """Return a load in words: a force or torque as a sentence, anything else by its parameters."""
     if not isinstance(load, Load):
-        return _in_words(load)
+        return _in_words(load, system)
     parts = []
     if load.force is not None:
         start = "its centre of gravity" if load.origin == "cg" else _origin(mechanism, load.link)
         axes = "" if load.frame == "ground" else ", in its own axes"
-        parts.append(
-            f"({_number(load.force[0])}, {_number(load.force[1])}) N on the {load.link}{axes}, {_place(load.at, start)}"
-        )
+        unit, factor = unit_of_input("force", load.force, system)
+        x, y = (_number(part, factor) for part in load.force)
+        parts.append(f"({x}, {y}) {unit} on the {load.link}{axes}, {_place(load.at, start, system)}")
     if load.torque is not None:
-        parts.append(f"{quantity(load.torque, 'torque')} on the {load.link}")
+        parts.append(f"{quantity(load.torque, 'torque', system)} on the {load.link}")
     return "; ".join(parts + _breaks(load.breaks))
 
 
-def _place(at: Sequence[Any], origin: str) -> str:
+def _place(at: Sequence[Any], origin: str, system: UnitSystem) -> str:
     """Return a point of a link in words, by its polar coordinates from an origin."""
     distance, angle = at
     if np.all(distance == 0.0):
         return f"at {origin}"
-    return f"{quantity(distance, 'length')} at {quantity(angle, 'angle')} from {origin}"
+    return f"{quantity(distance, 'length', system)} at {degrees(angle)} from {origin}"
 
 
 def _origin(mechanism: Any, role: str) -> str:
@@ -221,52 +220,55 @@ def _followed(load: Any) -> str:
 
 def _breaks(angles: Sequence[float]) -> list[str]:
     """Return in words the angles at which a load jumps, kinks or is narrow."""
-    return [f"breaks at {', '.join(quantity(angle, 'angle') for angle in angles)}"] if angles else []
+    return [f"breaks at {', '.join(degrees(angle) for angle in angles)}"] if angles else []
 
 
-def _in_words(part: Any) -> str:
+def _in_words(part: Any, system: UnitSystem) -> str:
     """Return a dataclass in words: "Spring (from ground at (300 mm, 0 mm), to …, rate 2 N/mm)"."""
     title = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(part).__name__).capitalize()
-    return f"{title} ({', '.join(_fields(part))})"
+    return f"{title} ({', '.join(_fields(part, system))})"
 
 
-def _fields(part: Any) -> list[str]:
+def _fields(part: Any, system: UnitSystem) -> list[str]:
     """Return those fields of a dataclass that are stated, each in words."""
     fields = ((name, kind, getattr(part, name)) for name, kind, _ in declared(part))
-    return [_field_in_words(_plain(name), kind, value) for name, kind, value in fields if not left_out(value)]
+    return [_field_in_words(_plain(name), kind, value, system) for name, kind, value in fields if not left_out(value)]
 
 
-def _field_in_words(name: str, kind: FieldKind, value: Any) -> str:
+def _field_in_words(name: str, kind: FieldKind, value: Any, system: UnitSystem) -> str:
     if has_fields(value):
-        return f"{name}: {_in_words(value)}"
+        return f"{name}: {_in_words(value, system)}"
     if isinstance(kind, NumberField):
-        return f"{name} {quantity(value, kind.rule.kind)}"
+        return f"{name} {quantity(value, kind.rule.kind, system)}"
     if isinstance(kind, PairField):
-        return f"{name} {_pair(kind, value)}"
+        return f"{name} {_pair(kind, value, system)}"
     if isinstance(kind, RowField):
-        return f"{name} at {', '.join(quantity(number, kind.rule.kind) for number in value)}"
-    return f"{name} {_end(value) if isinstance(kind, EndField) else value}"
+        return f"{name} at {', '.join(quantity(number, kind.rule.kind, system) for number in value)}"
+    return f"{name} {_end(value, system) if isinstance(kind, EndField) else value}"
 
 
-def _end(end: tuple[str, Any, Any]) -> str:
+def _end(end: tuple[str, Any, Any], system: UnitSystem) -> str:
     """Return the end of a spring in words: a point of the ground, or of a link in its polar coordinates."""
     link, first, second = end
     if link == GROUND:
-        return f"ground at ({quantity(first, 'length')}, {quantity(second, 'length')})"
-    return f"{link}, {_place((first, second), 'its first pin')}"
+        return f"ground at ({quantity(first, 'length', system)}, {quantity(second, 'length', system)})"
+    return f"{link}, {_place((first, second), 'its first pin', system)}"
 
 
 def _plain(name: str) -> str:
     return name.strip("_").replace("_", " ")
 
 
-def quantity(value: Any, kind: str) -> str:
+def quantity(value: Any, kind: str, system: UnitSystem) -> str:
     """Format a parameter in its unit on the page; for one that changes over the revolution, its least and largest
     value."""
-    unit, factor = SHOWN.get(kind, (UNITS[kind].replace("^2", "²").replace("^3", "³"), 1.0))
-    if kind == "length" and np.max(np.abs(value)) >= LONG:
-        unit, factor = "m", 1.0
+    unit, factor = unit_of_input(kind, value, system)
     return with_unit(_number(value, factor), unit)
+
+
+def degrees(value: Any) -> str:
+    """Format an angle, or the least and largest of several."""
+    return with_unit(_number(value), "°")
 
 
 def _number(value: Any, factor: float = 1.0) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,11 @@ import xarray as xr
 
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
+from linksweep.reports.units_of_page import distance, measure
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import UnitSystem
 
 NOISE = 1e-12  # of the terms of a mean: the rounding of a sum that cancels
-UNITS = {"degree": "°", "1": "", "m/s^2": "m/s²", "kg m^2": "kg m²"}
 WORKS = {
     "work_fed": "work fed in a cycle",
     "work_regenerated": "work taken back or braked",
@@ -38,19 +40,22 @@ def peaks(results: Results) -> Markup:
 def _peak(results: Results, name: str, more: list[str]) -> Iterator[tuple[Any, ...]]:
     """Yield a row for a magnitude; for a signed quantity one for its largest and one for its least value."""
     worst, quantity = results.peaks, results.scene.table.quantity[name]
-    size, unit = float(worst[f"{name}_peak"]), UNITS.get(quantity.units, quantity.units)
-    rest = [_summary(size, kind, float(worst[f"{name}_{kind}"]), unit) for kind in more]
+    size, shown = float(worst[f"{name}_peak"]), partial(_of, unit=quantity.units, system=results.system)
+    bound = partial(results.system.value, si=quantity.units)
+    rest = [_summary(size, kind, float(worst[f"{name}_{kind}"]), shown, bound) for kind in more]
     ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
     for ending, suffix in ends.items():
         value, spot = float(worst[name + ending]), float(worst[f"{name}{ending}_at"])
         what = tag("span", _where(results.scene, name) + suffix, title=quantity.long_name)
-        yield symbol(name), what, _of(size, value, unit), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
+        yield symbol(name), what, shown(size, value), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
 
 
-def _summary(size: float, kind: str, value: float, unit: str) -> str:
+def _summary(
+    size: float, kind: str, value: float, shown: Callable[[float, float], Markup], bound: Callable[[float], float]
+) -> str:
     if kind == "bound":
-        return tiny(value) if np.isfinite(size) else NONE
-    return _of(size, value, unit)
+        return tiny(bound(value)) if np.isfinite(size) else NONE
+    return shown(size, value)
 
 
 def _where(scene: Scene, name: str) -> str:
@@ -69,25 +74,26 @@ def drive(results: Results) -> Markup:
     """Return the table of power; for a whole revolution work as well, for a steady crank its flywheel."""
     if "power_peak" not in results.peaks:
         return Markup()
-    ends = joined(number(float(results.peaks["power_min"])), " to ", number(float(results.peaks["power_max"]), "W"))
-    of_cycle = [] if results.duty is None else works(results.duty)
-    return table((), [("power", ends), *of_cycle, *flywheels(results.flywheel)], class_="numbers")
+    system = results.system
+    ends = _range(float(results.peaks["power_min"]), float(results.peaks["power_max"]), "W", system)
+    of_cycle = [] if results.duty is None else works(results.duty, system)
+    return table((), [("power", ends), *of_cycle, *flywheels(results.flywheel, system)], class_="numbers")
 
 
-def works(work: xr.Dataset) -> list[tuple[Any, ...]]:
+def works(work: xr.Dataset, system: UnitSystem) -> list[tuple[Any, ...]]:
     """Return the rows of the mean power and of the works of a cycle."""
     most = max(abs(float(work[f"power_{end}"])) for end in ("max", "min"))
     turned = float(abs(work["work_fed"]) + abs(work["work_regenerated"]))
-    rows = [(title, _of(turned, float(work[name]), "J")) for name, title in WORKS.items() if name in work]
-    return [("mean power", _of(most, float(work["power_mean"]), "W")), *rows]
+    rows = [(title, _of(turned, float(work[name]), "J", system)) for name, title in WORKS.items() if name in work]
+    return [("mean power", _of(most, float(work["power_mean"]), "W", system)), *rows]
 
 
-def flywheels(sizes: xr.Dataset | None) -> Iterator[tuple[Any, ...]]:
+def flywheels(sizes: xr.Dataset | None, system: UnitSystem) -> Iterator[tuple[Any, ...]]:
     """Yield a row for each flywheel that can be made."""
     for one in sizes["target"].values if sizes is not None else ():
         size = float(sizes["flywheel_inertia"].sel(target=one))  # type: ignore[index]
         if np.isfinite(size):
-            yield joined(f"flywheel for {100.0 * one:g} % fluctuation"), number(size, "kg m²")
+            yield joined(f"flywheel for {100.0 * one:g} % fluctuation"), measure(size, "kg m^2", system)
 
 
 def geometry(results: Results) -> Markup:
@@ -99,8 +105,12 @@ def geometry(results: Results) -> Markup:
     if "swing" in shape:
         rows.append(("swing of the rocker", angle(float(shape["swing"]), 2)))
     if "stroke" in shape:
-        rows.append(("stroke of the slider", number(1e3 * float(shape["stroke"]), "mm")))
-    rows += [_travel(shape, str(name).removesuffix("_travel")) for name in shape if str(name).endswith("_travel")]
+        rows.append(("stroke of the slider", distance(float(shape["stroke"]), results.system)))
+    rows += [
+        _travel(shape, str(name).removesuffix("_travel"), results.system)
+        for name in shape
+        if str(name).endswith("_travel")
+    ]
     if "time_ratio" in shape:
         rows.append(("time ratio", number(float(shape["time_ratio"]))))
         turns = [angle(float(one), 2) for one in _reversals(results) if np.isfinite(one)]
@@ -108,13 +118,13 @@ def geometry(results: Results) -> Markup:
     return table((), _there(rows), class_="numbers") if _there(rows) else Markup()
 
 
-def _travel(shape: xr.Dataset, name: str) -> tuple[str, Any]:
+def _travel(shape: xr.Dataset, name: str, system: UnitSystem) -> tuple[str, Any]:
     """Return the row of a position's travel: its size, the time ratio, and the crank angles of its ends."""
     size, ratio = float(shape[f"{name}_travel"]), float(shape[f"{name}_time_ratio"])
     ends = sorted(float(shape[f"{name}_{end}_at"]) for end in ("min", "max"))
     _, _, title = str(shape[f"{name}_travel"].attrs["long_name"]).partition(": ")
     of_length = shape[f"{name}_travel"].attrs["units"] == "m"
-    text = number(1e3 * size, "mm") if of_length else angle(size, 2)
+    text = distance(size, system) if of_length else angle(size, 2)
     turns = joined(angle(ends[0], 2), " and ", angle(ends[1], 2))
     words = joined("travel ", text, ", time ratio ", number(ratio), ", turns round at ", turns)
     return title.split(",")[0].split(" from ")[0], words if np.isfinite(size) else NONE
@@ -136,8 +146,8 @@ def shaking(results: Results) -> Markup:
         return Markup()
     at = float(worst["Fs_peak_at"])
     at = at % results.inertia_period if results.part is None else at
-    force = joined(number(float(worst["Fs_peak"]), "N"), " at ", angle(at))
-    moment = joined(number(float(worst["Ms_min"])), " to ", number(float(worst["Ms_max"]), "N m"))
+    force = joined(measure(float(worst["Fs_peak"]), "N", results.system), " at ", angle(at))
+    moment = _range(float(worst["Ms_min"]), float(worst["Ms_max"]), "N m", results.system)
     rows = {"Fs": ("force", force), "Ms": ("moment about A", moment)}
     return table((), (_with_rms(results, name, row) for name, row in rows.items()), class_="numbers")
 
@@ -146,7 +156,8 @@ def _with_rms(results: Results, name: str, row: tuple[str, Markup]) -> tuple[str
     """Append the root mean square, for a whole revolution."""
     if not results.whole:
         return row
-    rms = _of(float(results.peaks[f"{name}_peak"]), float(results.peaks[f"{name}_rms"]), SHAKEN[name])
+    size, mean = (float(results.peaks[f"{name}_{kind}"]) for kind in ("peak", "rms"))
+    rms = _of(size, mean, SHAKEN[name], results.system)
     return row[0], joined(row[1], ", rms ", rms)
 
 
@@ -174,16 +185,21 @@ def highlights(results: Results) -> Markup:
 
 
 def _highlight(results: Results, name: str) -> Markup:
-    peaks, units = results.peaks, results.scene.table.quantity[name].units
-    unit = UNITS.get(units, units)
+    peaks, system, unit = results.peaks, results.system, results.scene.table.quantity[name].units
     if f"{name}_min" in peaks:
-        return joined(number(float(peaks[f"{name}_min"]), unit), " to ", number(float(peaks[f"{name}_max"]), unit))
-    return joined(number(float(peaks[f"{name}_peak"]), unit), " at ", angle(float(peaks[f"{name}_peak_at"])))
+        ends = (measure(float(peaks[f"{name}_{end}"]), unit, system) for end in ("min", "max"))
+        return joined(next(ends), " to ", next(ends))
+    return joined(measure(float(peaks[f"{name}_peak"]), unit, system), " at ", angle(float(peaks[f"{name}_peak_at"])))
 
 
-def _of(size: float, value: float, unit: str) -> Markup:
+def _range(low: float, high: float, unit: str, system: UnitSystem) -> Markup:
+    """Return two numbers with their one unit."""
+    return joined(number(float(system.value(low, unit))), " to ", measure(high, unit, system))
+
+
+def _of(size: float, value: float, unit: str, system: UnitSystem) -> Markup:
     """Return a number, 0 where it is the rounding of terms of this size."""
-    return number(value, unit, "0" if abs(value) <= NOISE * size else "")
+    return measure(value, unit, system, "0" if abs(value) <= NOISE * size else "")
 
 
 def _there(rows: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:

@@ -1,4 +1,4 @@
-"""Plots and films are in the units that were chosen: labels, marked values, ticks, arrows."""
+"""Plots, films and reports are in the units that were chosen: labels, marked values, ticks, arrows, tables."""
 
 import re
 from dataclasses import replace
@@ -6,12 +6,18 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from html_page import Page
 
 import linksweep as ls
 from linksweep.cli.main import main
+from linksweep.reports import figures as page_figures
+from linksweep.reports.markup import tag
+from linksweep.reports.page import page
 
 SHOP = replace(ls.example("press"), units="in, lbf, rpm")
-SI = ("[N]", " N ", " N m", "[N m]", "rad/s", "[m]", "kg", "[W]")
+LOOP = replace(ls.example("loop"), units="ft, lbf, rpm")
+SI = ("[N]", " N ", " N m", "[N m]", "rad/s", "[m]", "kg", "[W]", " m/s ")
+POUND, INCH = 4.4482216152605, 0.0254  # N, m
 
 
 def study():
@@ -30,6 +36,10 @@ DRAWN = {
     "parallel": lambda: ls.plot.parallel_coordinates(study()).figure,
     "hodograph": lambda: ls.plot.hodograph(ls.sweep(SHOP, 72, of=["Fsx", "Fsy"])).figure,
     "orders": lambda: ls.plot.orders(ls.orders(ls.sweep(SHOP, 72, of=["Fsx", "Fsy"]), "Fsx", n=4)).figure,
+    "loop": lambda: ls.sweep(LOOP).linksweep.loop(),
+    "tornado": lambda: ls.plot.tornado(ls.tolerance(SHOP, {"ground": "js9"}, of="F32_peak", n=0)).figure,
+    "film": lambda: ls.plot.animate(SHOP, frames=2).figure,
+    "film of a loop": lambda: ls.plot.animate(LOOP, frames=2).figure,
 }  # fmt: skip
 
 
@@ -49,7 +59,7 @@ def texts(figure) -> list[str]:
 def test_no_text_of_a_plot_is_in_si_units(name):
     words = texts(DRAWN[name]())
     assert not [word for word in words if any(unit in f"{word} " for unit in SI)]
-    assert [word for word in words if re.search(r"lbf|\[in\]|rpm", word)]
+    assert [word for word in words if re.search(r"lbf|\[in\]|\[ft\]|rpm", word)]
 
 
 def test_marked_values_are_the_exact_peaks():
@@ -70,8 +80,36 @@ def test_a_machine_is_drawn_in_metres_with_ticks_round_in_inches():
     np.testing.assert_array_equal(ax.dataLim.get_points(), plain.dataLim.get_points())
 
 
-def test_a_film_is_in_shown_units():
-    assert not [word for word in texts(ls.plot.animate(SHOP, frames=2).figure) if word.endswith((" N", "[N]", "[m]"))]
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave out the figures of reports, which are plots."""
+    monkeypatch.setattr(page_figures, "_image", lambda figure, title: tag("img", src="data:,", alt=title))
+
+
+def test_a_report_is_in_shown_units(undrawn):
+    own, plain = Page(page(SHOP)), Page(page(ls.example("press")))
+    with ls.units("in, lbf, rpm"):
+        assert Page(page(ls.example("press"))).sections == own.sections
+    sizes = {"N": POUND, "N m": POUND * INCH, "J": POUND * INCH, "kg m²": 0.45359237 * INCH**2, "W": 745.6998715822702}
+    compared = 0
+    for title, rows in own.sections.items():
+        for row, before in zip(rows, plain.sections[title], strict=True):
+            for (text, values), (words, numbers) in zip(row, before, strict=True):
+                assert not re.search(r"\b(N|mm|J|W|kg)\b", text)
+                unit = words.rpartition("\u202f")[2]
+                if len(numbers) == 1 and unit in sizes:
+                    compared += 1
+                    assert values == pytest.approx([numbers[0] / sizes[unit]], abs=1e-12)
+    assert compared > 20
+    words = {row[0][0]: [cell[0].replace("\u202f", " ") for cell in row[1:]] for row in own.sections["Machine"]}
+    assert words["2 crank"][:2] == ["3.1496 in", "0.54675 lb"]  # 80 mm; 0.248 kg
+    assert words["load 1"] == ["(0, −80) lbf on the coupler, 3.937 in at 15° from its first pin"]
+    assert own.rows("Motion")["speed of the crank"][0][0].replace("\u202f", " ") == "300 rpm counter-clockwise"
+
+
+def test_a_link_in_a_notebook_is_in_shown_units():
+    with ls.units("US"):
+        assert "3.14961" in ls.Bar(0.08, width=0.02, thickness=0.02, density=7750)._repr_html_()
 
 
 def test_a_dataset_that_was_plotted_is_still_in_si():

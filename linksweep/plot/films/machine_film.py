@@ -24,6 +24,7 @@ from linksweep.plot.films.frames import (
     way,
 )
 from linksweep.plot.kit import signals
+from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.machine import ARROW, draw_ground
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.sweep import sweep
@@ -81,14 +82,16 @@ def film_of_track(scene: Scene, track: Track, angles: Any, frames: int, title: s
     from linksweep.plot.kit.film import Film
 
     names, index = [track.force, track.speed], {scene.mechanism.index: signals.INDEX}
-    cycle = sweep(scene, angles, of=names).rename(index)
+    system = shown_units(scene.units)
+    cycle = results_in_shown_units(sweep(scene, angles, of=names)).rename(index)
     signals.require_one_design(cycle[name] for name in names)
     at = way(cycle, cycle[track.speed], frames, to_and_fro=False)
-    shots = sweep(scene, at, of=names).rename(index)
+    shots = results_in_shown_units(sweep(scene, at, of=names)).rename(index)
     force, speed = (np.broadcast_to(shots[name].values, len(at)) for name in names)
     figure, ax, (curve,) = panels(1.0)
     radius, largest = float(getattr(scene.mechanism, track.radius)), float(np.nanmax(cycle[track.force].values))
     track_plot.draw_track(ax, cycle, track.force, radius)
+    show_lengths(ax, system)
     track_plot.draw_force(curve, cycle, scene)
     write = readings(ax, "$\\theta$ =", {track.force: "$F_N$", track.speed: "speed"})
     follow = follower(curve, [track.force])
@@ -96,7 +99,8 @@ def film_of_track(scene: Scene, track: Track, angles: Any, frames: int, title: s
 
     def draw(k: int) -> list[Artist]:
         renewed(ax, moving, partial(_car, ax, at[k], radius, force[k] / largest))
-        values = {track.force: f"{signals.number(force[k])} N", track.speed: f"{signals.number(speed[k])} m/s"}
+        now = {track.force: (force[k], system.unit("N")), track.speed: (speed[k], system.unit("m/s"))}
+        values = {name: f"{signals.number(value)} {unit}" for name, (value, unit) in now.items()}
         return [*moving, *write(at[k], values), *follow(at[k], {track.force: force[k]})]
 
     return Film(figure, draw, len(at), title)
