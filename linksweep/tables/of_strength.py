@@ -16,7 +16,7 @@ SAFETIES = {"yield": "yield_safety", "Goodman": "goodman_safety", "Soderberg": "
 
 
 def strength_parts(ds: xr.Dataset) -> Iterator[Part]:
-    """Yield the table of links: the worst stress with its place and angle, and the safeties."""
+    """Yield the table of links: the worst stress with its place and angle, the safeties, and a life if there is one."""
     unit, size = HANDY.get(unit_of(ds["stress"]), (unit_of(ds["stress"]), 1.0))
     buckling = ds["buckling_safety"].min("plane").values
     rows: list[Row] = []
@@ -26,8 +26,10 @@ def strength_parts(ds: xr.Dataset) -> Iterator[Part]:
         }
         place = (f"{100.0 * one['stress_section']:.1f}", f"{one['stress_at']:.1f}")
         safeties = (_digits(value) for value in (*(one[name] for name in SAFETIES.values()), float(buckling[k])))
-        rows.append((str(link), _digits(one["stress"] / size), *place, *safeties))
-    header = ("link", f"stress [{unit}]", "at [%]", "at [°]", *SAFETIES, "buckling")
+        life = (_digits(float(ds["life"].values[k])),) if "life" in ds else ()
+        rows.append((str(link), _digits(one["stress"] / size), *place, *safeties, *life))
+    of_life = ("life [cycles]",) if "life" in ds else ()
+    header = ("link", f"stress [{unit}]", "at [%]", "at [°]", *SAFETIES, "buckling", *of_life)
     yield Table(header, rows, right=range(1, len(header)))
 
 

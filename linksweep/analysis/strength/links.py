@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.strength.material import Material
-from linksweep.analysis.strength.strength import beams_of, strength
+from linksweep.analysis.strength.strength import beams_of, materials_of, strength
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, refuse
 from linksweep.mechanisms.links import Bar
@@ -105,11 +105,12 @@ def size_links(
         "stress_concentration": stress_concentration,
         "effective_length": effective_length,
     }
-    by_role = material if isinstance(material, Mapping) else dict.fromkeys(roles, material)
+    by_role = materials_of(roles, material)
+    without_life = {role: replace(one, slope=None) for role, one in by_role.items()}
 
     def excess(log: Any) -> Any:
         """Return the logarithm of the safety over the required one, at logarithms of the measures."""
-        ds = strength(_with(scene, roles, vary, np.exp(log)), by_role, threads=threads, **options)
+        ds = strength(_with(scene, roles, vary, np.exp(log)), without_life, threads=threads, **options)
         return np.log(_least_safety(ds) / required)
 
     start = joined([getattr(scene.mechanism.parts[role], vary) for role in roles], "link", roles)

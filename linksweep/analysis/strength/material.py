@@ -31,6 +31,11 @@ class Material(ByContent):
     endurance : float or DataArray
         Amplitude of a stress without mean that the part endures for ever [Pa]: of a specimen, times the factors of the
         part's surface, size and reliability.
+    slope : float or DataArray, default None
+        Slope k of the S-N curve, N = knee·(endurance/σ)^k [1], for a finite life: about 5 for machined parts, 3 for
+        welded ones; None where no life is computed.
+    knee : float or DataArray, default 1e6
+        Number of cycles at which that curve reaches the endurance [1]: about 1e6 for steel, 5e8 for aluminium.
 
     Raises
     ------
@@ -48,6 +53,8 @@ class Material(ByContent):
     yield_strength: Number = parameter("pressure", above=0.0)
     tensile_strength: Number = parameter("pressure", above=0.0)
     endurance: Number = parameter("pressure", above=0.0)
+    slope: Number = parameter("dimensionless", None, above=0.0)
+    knee: Number = parameter("dimensionless", 1e6, above=0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.strength.criteria import buckling_load, fatigue_safety, mean_and_amplitude
+from linksweep.analysis.strength.fatigue import life
 from linksweep.analysis.strength.material import Material
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, choice_problems, name_problems, quote, refuse
@@ -47,6 +48,12 @@ TEXTS = {
     "buckling_load": ("N", "load at which the link buckles, by Euler and Johnson"),
     "buckling_safety": ("1", "buckling load over the largest compression"),
 }
+TEXTS_OF_LIFE = {
+    "stress_cycles": ("1", "closed cycles of stress in a cycle of motion, where fatigue is worst"),
+    "damage": ("1", "damage of a cycle of motion by Miner's rule, where fatigue is worst"),
+    "life": ("1", "number of cycles of motion until the damage is 1, inf where none damages"),
+}
+"""Results where some material has a slope."""
 
 
 def strength(
@@ -87,17 +94,22 @@ def strength(
           and `stress_amplitude` [Pa] at the place of the former, `fatigue_section` [1]
         - `compression` [N], `compression_at` [degree], and over `plane` ("motion", "across") `buckling_load` [N] and
           `buckling_safety` [1], inf for a link that is never pressed; NaN for a Section without second moments
+        - where a material has a slope: `stress_cycles` [1], the closed cycles of stress in a cycle of motion at the
+          place of `goodman_safety`, their `damage` [1] by Miner's rule, and the `life` [1] in cycles of motion, inf
+          where that safety is at least 1; NaN of a link that does not move at all crank angles
         - `status` as in `linksweep.peaks`.
 
     Raises
     ------
     ValueError
         If a link is no beam, none is, or a number is out of bounds.
+    ImportError
+        If a material has a slope and rainflow, which counts cycles, is not installed.
 
     Notes
     -----
     Stress is that of extreme fibres, N/A ± M/W; shear, which is 0 there, is left out. A cycle of stress has its exact
-    extremes as ends. Criteria and sources: `linksweep.analysis.strength.criteria`.
+    extremes as ends. Criteria and sources: `linksweep.analysis.strength.criteria`, and `fatigue` beside it.
 
     Examples
     --------
@@ -108,13 +120,16 @@ def strength(
     """
     require_scene(scene)
     roles = beams_of(scene, links)
-    materials = _materials(roles, material)
+    materials = materials_of(roles, material)
     factor = checked_number("stress_concentration", stress_concentration, CONCENTRATION)
     lengths = [checked_number(f"effective_length[{k}]", one, FACTOR) for k, one in enumerate(effective_length, 1)]
     scene = in_memory(scene)
     parts = [_Link(scene, role, materials[role], factor, threads).results(lengths) for role in roles]
     statuses = [part.pop("status") for part in parts]
-    described = with_units({name: (joined([p[name] for p in parts], "link", roles), *TEXTS[name]) for name in TEXTS})
+    texts = TEXTS | (TEXTS_OF_LIFE if any("life" in part for part in parts) else {})
+    described = with_units(
+        {name: (joined([part.get(name, np.nan) for part in parts], "link", roles), *texts[name]) for name in texts}
+    )
     status = joined(statuses, "link", roles).max("link").astype(np.int8)
     words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
     bare = replace(scene, section=None)
@@ -137,7 +152,9 @@ class _Link:
         fine = [self._about(rank) for rank in (self._size(coarse).max(("fibre", "end")), -self._goodman(coarse))]
         close = self._peaks(_in_a_row(fine), xr.DataArray(1.0))
         ds = xr.Dataset({name: _in_a_row([coarse[name], close[name]]) for name in coarse if name != "status"})
-        return {**self._stress(ds), **self._fatigue(ds), **self._buckling(ds, factors), "status": coarse["status"]}
+        status = coarse["status"]
+        worst = status.max([dim for dim in status.dims if dim == PLACE])  # a stress may be unbounded at some sections
+        return {**self._stress(ds), **self._fatigue(ds), **self._buckling(ds, factors), "status": worst}
 
     def _sections(self) -> tuple[xr.DataArray, xr.DataArray]:
         """Return sections from end to end and through all pins, and the factors on their stresses."""
@@ -162,7 +179,10 @@ class _Link:
         ds = ds.drop_vars(ds.coords)
         stress, angle = (self._of_fibres(ds, ends) for ends in (ENDS, tuple(f"{end}_at" for end in ENDS)))
         results = {"stress": stress * factor, "angle": angle, "axial": ds[f"{force}_min"], "at": ds[f"{force}_min_at"]}
-        whole = {name: values.broadcast_like(section) for name, values in {**results, "share": section}.items()}
+        whole = {
+            name: values.broadcast_like(section)
+            for name, values in {**results, "share": section, "factor": factor}.items()
+        }
         return xr.Dataset(whole).assign(status=ds["status"])
 
     def _of_fibres(self, ds: xr.Dataset, ends: tuple[str, ...]) -> xr.DataArray:
@@ -196,9 +216,15 @@ class _Link:
         steel = self.material
         goodman = fatigue_safety(mean, amplitude, steel.endurance, steel.tensile_strength)
         soderberg = fatigue_safety(mean, amplitude, steel.endurance, steel.yield_strength)
-        danger, mean, amplitude, share = _at_largest(1.0 / goodman, mean, amplitude, ds["share"])
+        fibre = xr.DataArray(np.arange(len(FIBRES)), dims="fibre")
+        places = mean, amplitude, ds["share"], ds["factor"], fibre
+        danger, mean, amplitude, share, factor, fibre = _at_largest(1.0 / goodman, *places)
         (other,) = _at_largest(1.0 / soderberg)
         results = {"fatigue_section": share, "stress_mean": mean, "stress_amplitude": amplitude}
+        if steel.slope is not None:
+            ends = {"largest": mean + amplitude, "least": mean - amplitude}
+            place = xr.Dataset({"share": share, "factor": factor, "fibre": fibre, **ends})
+            results |= life(self.scene, (self.names[0], self.names[1]), place, steel)
         with np.errstate(divide="ignore"):
             return results | {"goodman_safety": 1.0 / danger, "soderberg_safety": 1.0 / other}
 
@@ -247,7 +273,7 @@ def beams_of(scene: Scene, links: Any) -> list[str]:
     return roles
 
 
-def _materials(roles: list[str], material: Any) -> dict[str, Material]:
+def materials_of(roles: list[str], material: Any) -> dict[str, Material]:
     """Return the material of each link."""
     by_role = material if isinstance(material, Mapping) else dict.fromkeys(roles, material)
     wrong = {role: item for role, item in by_role.items() if not isinstance(item, Material)}
