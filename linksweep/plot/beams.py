@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from linksweep.results.sweep import sweep
 from linksweep.scene.at_sections import COUNT, marks, places
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
+from linksweep.scene.shown_units import shown_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,8 +40,8 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib Axes
-        Axes with the link as a thick line, its pins as circles, and the moment [N m] over the distance from its first
-        pin [mm]. The envelope is the exact largest and least moment of each section.
+        Axes with the link as a thick line, its pins as circles, and the moment over the distance from its first pin, in
+        N m over mm unless other units were chosen. The envelope is the exact largest and least moment of each section.
 
     Raises
     ------
@@ -57,8 +58,40 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     several = ", ".join(design_labels(scene))
     refuse([f"scene: has several designs, over {several}; give one, as of ls.scene_at"] if several else [])
     (role,) = beams_of(scene, [link])
-    name = f"bending_moment{2 + scene.mechanism.roles.index(role)}"
+    system = shown_units(scene.units)
+    unit, size = (system.unit("m"), system.size("m")) if system.chosen else ("mm", 1e-3)
     along = _at_sections(scene, role)
+    start, stop = (end / size for end in _ends(scene, role))
+    x = start + (stop - start) * along.section.values
+    worst = _worst_moments(along, f"bending_moment{2 + scene.mechanism.roles.index(role)}")
+    moment, top, low = (system.value(moments, "N m") for moments in worst[1:])
+    ax = grid(axes_or_new(ax))
+    ax.fill_between(x, moment, color=SKY, alpha=0.5, linewidth=0.0)
+    ax.plot(x, moment, color=BLUE, label=f"at $\\theta_2$ = {worst.angle:.1f}°")
+    ax.plot(x, top, color=GREY, linestyle="--", linewidth=1.0, label="envelope of the cycle")
+    ax.plot(x, low, color=GREY, linestyle="--", linewidth=1.0)
+    ax.plot([start, stop], [0.0, 0.0], color=BLACK, linewidth=2.5, solid_capstyle="round")
+    pins = np.array([0.0, float(scene.mechanism.parts[role].length), *scene.mechanism.third_pins_along(role)]) / size
+    ax.plot(pins, np.zeros_like(pins), "o", color=BLACK, markerfacecolor="white", markersize=6.0)
+    largest, torque = moment[np.nanargmax(np.abs(moment))], system.unit("N m")
+    ax.set_title(f"{role}: {signals.number(largest)} {torque}", loc="right")
+    ax.set(xlabel=f"distance from the first pin [{unit}]", ylabel=f"bending moment [{torque}]")
+    ax.margins(y=0.15)
+    legend_above(ax, ncols=2)
+    return ax
+
+
+class WorstMoments(NamedTuple):
+    """Bending moments of sections [N m] at the worst crank angle [degree], and their extremes over the cycle."""
+
+    angle: float
+    moment: np.ndarray
+    largest: np.ndarray
+    least: np.ndarray
+
+
+def _worst_moments(along: Scene, name: str) -> WorstMoments:
+    """Return the moments of this name at the sections of a scene."""
     worst = peaks(along, of=[name])
     top, low = (worst[f"{name}_{end}"].broadcast_like(along.section).values for end in ("max", "min"))
     high = float(np.nanmax(top, initial=-np.inf)) >= -float(np.nanmin(low, initial=np.inf))
@@ -66,21 +99,7 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     k = int(np.nanargmax(np.abs(values)))
     at = float(worst[f"{name}_{end}_at"].broadcast_like(along.section).values[k])
     moment = sweep(along, [at], of=[name])[name].isel(theta2=0).broadcast_like(along.section).values
-    start, stop = _ends(scene, role)
-    x = 1e3 * (start + (stop - start) * along.section.values)
-    ax = grid(axes_or_new(ax))
-    ax.fill_between(x, moment, color=SKY, alpha=0.5, linewidth=0.0)
-    ax.plot(x, moment, color=BLUE, label=f"at $\\theta_2$ = {at:.1f}°")
-    ax.plot(x, top, color=GREY, linestyle="--", linewidth=1.0, label="envelope of the cycle")
-    ax.plot(x, low, color=GREY, linestyle="--", linewidth=1.0)
-    ax.plot(1e3 * np.array([start, stop]), [0.0, 0.0], color=BLACK, linewidth=2.5, solid_capstyle="round")
-    pins = 1e3 * np.array([0.0, float(scene.mechanism.parts[role].length), *scene.mechanism.third_pins_along(role)])
-    ax.plot(pins, np.zeros_like(pins), "o", color=BLACK, markerfacecolor="white", markersize=6.0)
-    ax.set_title(f"{role}: {signals.number(values[k])} N m", loc="right")
-    ax.set(xlabel="distance from the first pin [mm]", ylabel="bending moment [N m]")
-    ax.margins(y=0.15)
-    legend_above(ax, ncols=2)
-    return ax
+    return WorstMoments(at, moment, top, low)
 
 
 def moment_diagrams(scene: Scene) -> Figure:

@@ -12,7 +12,7 @@ import xarray as xr
 
 from linksweep.reports.markup import NONE, Markup, angle, joined, number, symbol, table, tag, tiny
 from linksweep.reports.results_of_page import Results
-from linksweep.reports.units_of_page import distance, measure
+from linksweep.reports.units_of_page import distance, measure, stress
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem
 
@@ -172,8 +172,15 @@ def strength(results: Results) -> Markup:
         one = {str(name): float(ds[name].sel(link=link)) for name in ds.data_vars if ds[name].dims == ("link",)}
         place = joined(f"{100.0 * one['stress_section']:.0f} % of its length, ", angle(one["stress_at"]))
         safeties = (one[f"{name}_safety"] for name in ("yield", "goodman", "soderberg"))
-        stress = number(one["stress"] / 1e6, "MPa")
-        rows.append((link, stress, place, *map(number, safeties), number(float(least.sel(link=link)))))
+        rows.append(
+            (
+                link,
+                stress(one["stress"], results.system),
+                place,
+                *map(number, safeties),
+                number(float(least.sel(link=link))),
+            )
+        )
     of_links = table(("link", "stress", "at", "yield", "Goodman", "Soderberg", "buckling"), rows)
     return joined(of_links, tag("p", FIBRES, class_="note"))
 

@@ -36,6 +36,11 @@ def distance(value: float, system: UnitSystem) -> Markup:
     return measure(value, "m", system) if system.chosen else number(1e3 * value, "mm")
 
 
+def stress(value: float, system: UnitSystem) -> Markup:
+    """Return a stress [Pa] of the results, in MPa where no unit was chosen."""
+    return measure(value, "Pa", system) if system.chosen else number(value / 1e6, "MPa")
+
+
 def unit_of_input(kind: str, value: Any, system: UnitSystem) -> tuple[str, float]:
     """Return the unit of an input of this kind, and its count in the SI unit."""
     if system.chosen or kind not in USUAL or (kind == "length" and np.max(np.abs(value)) >= LONG):

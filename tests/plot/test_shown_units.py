@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,8 +12,10 @@ from html_page import Page
 import linksweep as ls
 from linksweep.cli.main import main
 from linksweep.reports import figures as page_figures
+from linksweep.reports import tables as page_tables
 from linksweep.reports.markup import tag
 from linksweep.reports.page import page
+from linksweep.scene.shown_units import unit_system
 
 SHOP = replace(ls.example("press"), units="in, lbf, rpm")
 LOOP = replace(ls.example("loop"), units="ft, lbf, rpm")
@@ -105,6 +108,24 @@ def test_a_report_is_in_shown_units(undrawn):
     assert words["2 crank"][:2] == ["3.1496 in", "0.54675 lb"]  # 80 mm; 0.248 kg
     assert words["load 1"] == ["(0, −80) lbf on the coupler, 3.937 in at 15° from its first pin"]
     assert own.rows("Motion")["speed of the crank"][0][0].replace("\u202f", " ") == "300 rpm counter-clockwise"
+
+
+def test_stresses_of_a_report_are_in_shown_units():
+    ds = ls.strength(SHOP, ls.material("S235"))
+    table = str(page_tables.strength(SimpleNamespace(strength=ds, system=unit_system("US"))))
+    numbers = [float(number) for number in re.findall(r'value="([^"]*)"', table)]
+    stresses = ds.stress.values / 6894.757293168361
+    assert "MPa" not in table and np.isclose(np.subtract.outer(stresses, numbers), 0.0, atol=1e-9).any(axis=1).all()
+
+
+def test_moments_are_drawn_in_shown_units():
+    plain, shown = (ls.plot.moment_diagram(scene, "coupler") for scene in (ls.example("press"), SHOP))
+    assert (shown.get_xlabel(), shown.get_ylabel()) == ("distance from the first pin [in]", "bending moment [lbf in]")
+    assert plain.get_title("right").endswith(" N m") and shown.get_title("right").endswith(" lbf in")
+    for before, after in zip(plain.get_lines(), shown.get_lines(), strict=True):
+        x, y = before.get_xydata().T
+        expected = np.column_stack([1e-3 * x / INCH, y / (POUND * INCH)])
+        np.testing.assert_allclose(after.get_xydata(), expected, rtol=1e-12, atol=1e-12)
 
 
 def test_a_link_in_a_notebook_is_in_shown_units():

@@ -104,7 +104,8 @@ def size_pins(
             "diameter": (diameter_for.max("criterion", skipna=False), "m", "least diameter for all allowable stresses"),
         }
     )
-    governing = known.argmax("criterion").astype(np.int8).assign_attrs(flags("what decides the diameter", limits))
+    governing = known.argmax("criterion", keep_attrs=False).astype(np.int8)
+    governing.attrs = flags("what decides the diameter", limits)
     attributes = worst.attrs | by_command("linksweep.size_pins(scene, ...)")
     return xr.Dataset({**results, "governing": governing, "status": worst["status"]}, attrs=attributes)
 

@@ -1,5 +1,6 @@
 """Strength of links and pins: closed forms, and the largest of many samples at many sections."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -152,6 +153,14 @@ def test_pins_reach_their_allowable_stresses():
     for name, limit in limits.items():
         assert float(reached[name]) == pytest.approx(limit, rel=1e-12)
     assert str(ds.criterion.values[int(ds.governing.sel(pin="B"))]) == "bending"
+
+
+def test_what_governs_a_pin_is_a_word_in_any_units():
+    limits = {"shear": 60e6, "bending": 120e6}
+    ds = ls.size_pins(ls.example("press"), allowable=limits, eye=0.02)
+    assert "units" not in ds.governing.attrs
+    with ls.units("US"):
+        assert re.search(r"governing: +bending\n", str(ds.linksweep))
 
 
 def test_a_bar_that_only_its_own_inertia_loads_reaches_no_other_safety():
