@@ -14,7 +14,11 @@ from linksweep.analysis.design.sensitivities import sensitivities
 from linksweep.analysis.design.tolerance import tolerance
 from linksweep.analysis.drive.duty import duty
 from linksweep.analysis.drive.flywheel import flywheel
-from linksweep.analysis.drive.motor import Motor, motor_load
+from linksweep.analysis.drive.motor_load import motor_load
+from linksweep.analysis.drive.motors.curve import Motor
+from linksweep.analysis.drive.motors.direct_current import DCMotor
+from linksweep.analysis.drive.motors.governed import GovernedMotor
+from linksweep.analysis.drive.motors.induction import InductionMotor
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
@@ -60,14 +64,17 @@ __all__ = [
     "Bearing",
     "Counterweight",
     "Cylinder",
+    "DCMotor",
     "Damper",
     "DieselCycle",
     "Disk",
     "FourBar",
     "GasPressure",
     "Gears",
+    "GovernedMotor",
     "Guide",
     "IBeam",
+    "InductionMotor",
     "InvertedSliderCrank",
     "Link",
     "Linkage",

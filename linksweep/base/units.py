@@ -63,6 +63,9 @@ KINDS = {
         ("damping_coefficient", "300 N s/m", "N s/m, N s/mm, kN s/m, lbf s/in, lbf s/ft"),
         ("torsional_rate", "5 N m/rad", _TORSIONAL_RATES),
         ("torsional_damping", "0.2 N m s/rad", "N m s/rad, N mm s/rad, lbf in s/rad, lbf ft s/rad"),
+        ("voltage", "24 V", "V, mV, kV"),
+        ("resistance", "0.6 ohm", "ohm, mohm, kohm"),
+        ("torque_constant", "0.05 N m/A", "N m/A, N cm/A, mN m/A, lbf in/A, lbf ft/A"),
         ("dimensionless", "10 %", "%"),
     )
 }

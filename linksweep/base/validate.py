@@ -34,6 +34,9 @@ UNITS = {
     "damping_coefficient": "N s/m",
     "torsional_rate": "N m/rad",
     "torsional_damping": "N m s/rad",
+    "voltage": "V",
+    "resistance": "ohm",
+    "torque_constant": "N m/A",
     "dimensionless": "1",
 }
 """Unit in which each kind of number is passed in and stored."""

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.drive.motor import Motor
+from linksweep.analysis.drive.motors.curve import Motor
+from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.base.validate import refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.plot.kit import signals
@@ -134,15 +135,15 @@ def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray, unit: str) -> Non
         label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} {unit}", BLUE))
 
 
-def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
+def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Axes:
     """Plot the torque that a motor must give over its speed, beside the most that it can give.
 
     Parameters
     ----------
     ds : Dataset
         Result of `linksweep.motor_load`, of one design.
-    motor : Motor
-        Motor of that result.
+    motor : Motor, InductionMotor, DCMotor or GovernedMotor
+        Motor of that result, of one design.
     ax : matplotlib Axes, default None
         Axes to draw into; None for a new figure.
 
@@ -171,7 +172,8 @@ def motor_load(ds: xr.Dataset, motor: Motor, *, ax: Axes | None = None) -> Axes:
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])
     ax = grid(axes_or_new(ax))
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
-    speeds, torques = (np.asarray(points, dtype=float) for points in (motor.speeds, motor.torques))
+    speeds = np.asarray(motor.speeds if isinstance(motor, Motor) else np.linspace(0.0, float(motor.top_speed), 201))
+    torques = np.asarray(motor.torque_at(speeds))
     curve = side * system.value(speeds, "rad/s"), system.value(torques, "N m")
     ax.fill_between(curve[0], -curve[1], curve[1], color=SHADE, linewidth=0.0, label="what the motor can give")
     ax.plot(np.r_[curve[0], curve[0][::-1]], np.r_[curve[1], -curve[1][::-1]], color=GREY, linewidth=1.0)

@@ -1,4 +1,4 @@
-"""Load of the drive: duty over a cycle, flywheel, motor behind a gear.
+"""Load of the drive: duty over a cycle, flywheel, motors, and a machine on its motor.
 
 Their functions are public; plots, reports and the command line import from here.
 """

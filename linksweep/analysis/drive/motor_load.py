@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from linksweep.base.checked_number import array_unit_problems, checked_number
-from linksweep.base.conversion import all_to_float64, to_float64
-from linksweep.base.frozen import normalise
-from linksweep.base.validate import Number, Rule, number_problems, quote, refuse
+from linksweep.analysis.drive.motors.motor import AnyMotor, motor_problems
+from linksweep.base.checked_number import checked_number
+from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.results.compute import require
 from linksweep.results.dataset import with_units
@@ -20,79 +17,13 @@ from linksweep.results.over_time import mean_over_time
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 
-INERTIA = Rule("inertia", at_least=0.0)
-CURVE = {"speeds": Rule("angular_velocity", at_least=0.0), "torques": Rule("torque", at_least=0.0)}
 RATIO = Rule("dimensionless", above=0.0)
 EFFICIENCY = Rule("dimensionless", above=0.0)
 
 
-@dataclass(frozen=True)
-class Motor:
-    """A motor: its curve of torque over speed, and the inertia of its rotor.
-
-    Parameters
-    ----------
-    speeds : sequence of float
-        Speeds of the curve's points [rad/s], from 0, growing.
-    torques : sequence of float
-        Largest torques at these speeds [N m]; straight lines between; none beyond the last speed.
-    inertia : float, default 0.0
-        Moment of inertia of its rotor [kg m²].
-
-    Raises
-    ------
-    ValueError
-        If the points form no curve, or a number is out of bounds.
-
-    Examples
-    --------
-    A direct-current motor: 2 N m when held, 400 rad/s when free.
-
-    >>> import linksweep as ls
-    >>> ls.Motor(speeds=(0.0, 400.0), torques=(2.0, 0.0), inertia=1e-4).torque_at(100.0)
-    1.5
-    """
-
-    speeds: Sequence[float]
-    torques: Sequence[float]
-    inertia: float = 0.0
-
-    def __post_init__(self) -> None:
-        normalise(self, inertia=to_float64(self.inertia, INERTIA.kind))
-        problems = number_problems("inertia", self.inertia, INERTIA)
-        for name, rule in CURVE.items():
-            points = np.ravel(np.asarray(all_to_float64(getattr(self, name), rule.kind), dtype=object)).tolist()
-            problems += array_unit_problems(name, getattr(self, name), rule.kind)
-            problems += [p for k, point in enumerate(points, 1) for p in number_problems(f"{name}[{k}]", point, rule)]
-            normalise(self, **{name: tuple(points)})
-        count = len(self.speeds)
-        if len(self.torques) != count or count < 2:
-            problems.append(f"torques has {len(self.torques)} values for {count} speeds: give as many, two at least")
-        elif not problems and (self.speeds[0] != 0.0 or np.any(np.diff(self.speeds) <= 0.0)):
-            problems.append(f"speeds = {quote(list(self.speeds))}: must grow from 0")
-        refuse(problems)
-
-    def torque_at(self, speed: Any) -> Any:
-        """Return the largest torque at a speed, in either direction.
-
-        Parameters
-        ----------
-        speed : float or array_like
-            Speed [rad/s].
-
-        Returns
-        -------
-        float or array
-            Torque [N m].
-        """
-        at = np.abs(speed)
-        torque = np.interp(at, self.speeds, self.torques, right=0.0)
-        return float(torque) if np.ndim(torque) == 0 else torque
-
-
 def motor_load(
     scene: Scene,
-    motor: Motor,
+    motor: AnyMotor,
     *,
     ratio: Number = 1.0,
     efficiency: Number = 1.0,
@@ -105,8 +36,8 @@ def motor_load(
     ----------
     scene : Scene
         Scene driven by the torque on one of its links.
-    motor : Motor
-        Motor with its curve.
+    motor : Motor, InductionMotor, DCMotor or GovernedMotor
+        Motor with its torque over speed.
     ratio : float or DataArray, default 1.0
         Ratio of the gear: the motor's speed per that of the driven link [1].
     efficiency : float or DataArray, default 1.0
@@ -158,7 +89,7 @@ def motor_load(
     T, speed = cycle[torque].broadcast_like(cycle[index]), ratio * cycle[omega]
     fed = T * cycle[omega] > 0.0
     needed = xr.where(fed, T / efficiency, T * efficiency) / ratio + motor.inertia * ratio * cycle[alpha]
-    available = xr.apply_ufunc(motor.torque_at, speed).where(speed.notnull())
+    available = motor.torque_at(abs(speed))
     results = {
         "motor_speed": (speed, "rad/s", "angular velocity of the motor"),
         "motor_torque": (needed, "N m", "torque of the motor, in the direction of the torque on the driven link"),
@@ -171,7 +102,7 @@ def motor_load(
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:
-    problems = [] if isinstance(motor, Motor) else [f"motor = {quote(motor)}: must be a Motor"]
+    problems = motor_problems(motor)
     if pair_of(scene.mechanism.drives[scene.drive]) is None:
         problems.append(f'drive = "{scene.drive}": must be the torque on a link, for a motor to turn it')
     return problems

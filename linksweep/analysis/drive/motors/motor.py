@@ -1,0 +1,94 @@
+"""The base of motors, and checks of their numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linksweep.base.checked_number import unit_attribute_problems
+from linksweep.base.equality import ByContent
+from linksweep.base.fields import field_problems, numbers
+from linksweep.base.validate import Number, is_lazy, quote, refuse
+
+
+class AnyMotor(ByContent):
+    """Base of motors: torque over the speed in the direction in which it turns, positive where it drives."""
+
+    inertia: Number
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        refuse(field_problems(self))
+        refuse(unit_attribute_problems(numbers(self)))
+
+    @property
+    def top_speed(self) -> Number:
+        """Least speed at which it no longer drives [rad/s]."""
+        raise NotImplementedError
+
+    def torque_at(self, speed: Any) -> Any:
+        """Return the torque at a speed.
+
+        Parameters
+        ----------
+        speed : float, array or DataArray
+            Speed [rad/s], positive in the direction in which the motor drives.
+
+        Returns
+        -------
+        float, array or DataArray
+            Torque [N m].
+        """
+        return self._torque(speed)
+
+    def torque_slope_at(self, speed: Any) -> Any:
+        """Return the derivative of the torque to the speed; at a corner of the curve, that of the faster side.
+
+        Parameters
+        ----------
+        speed : float, array or DataArray
+            Speed [rad/s].
+
+        Returns
+        -------
+        float, array or DataArray
+            Derivative [N m s/rad].
+        """
+        return self._slope(speed)
+
+    def heat_at(self, speed: Any) -> Any:
+        """Return the power that turns into heat at a speed: in an induction motor that in its rotor alone.
+
+        Parameters
+        ----------
+        speed : float, array or DataArray
+            Speed [rad/s].
+
+        Returns
+        -------
+        float, array or DataArray
+            Power [W]; NaN of a motor whose parameters do not tell it.
+        """
+        return self._heat(speed)
+
+    def _torque(self, speed: Any) -> Any:
+        raise NotImplementedError
+
+    def _slope(self, speed: Any) -> Any:
+        raise NotImplementedError
+
+    def _heat(self, speed: Any) -> Any:
+        return np.nan * speed
+
+
+def motor_problems(motor: Any) -> list[str]:
+    """Return the problem of anything but a motor."""
+    kinds = "Motor, InductionMotor, DCMotor or GovernedMotor"
+    return [] if isinstance(motor, AnyMotor) else [f"motor = {quote(motor)}: must be a {kinds}"]
+
+
+def not_less_problems(name: str, value: Number, other: str, limit: Number) -> list[str]:
+    """Return the problem of a number that must be less than another, in some design."""
+    wrong = not (is_lazy(value) or is_lazy(limit)) and bool(np.any(value >= limit))
+    return [f"{name} = {quote(value)}: must be less than {other} = {quote(limit)}"] if wrong else []
