@@ -263,12 +263,12 @@ def test_geometry_that_never_closes_is_refused(capsys):
     [
         (["check", "pres.toml"], 'pres.toml: there is no such file; did you mean "press.toml"?'),
         (["check", "no.nc"], "no.nc: there is no such file"),
-        (["peaks", "press.toml", "--of", "F32,T21"], "of: nothing is named 'T21'; did you mean \"T12\"?"),
-        (["peaks", "press.toml", "--theta2", "0"], "theta2 = 0: a count of angles must be at least 1"),
-        (["peaks", "press.toml", "--theta2", "-3"], "theta2 = -3: a count of angles must be at least 1"),
+        (["peaks", "press.toml", "--of", "F32,T21"], "--of: nothing is named 'T21'; did you mean \"T12\"?"),
+        (["peaks", "press.toml", "--theta2", "0"], "--theta2 0: a count of angles must be at least 1"),
+        (["peaks", "press.toml", "--theta2", "-3"], "--theta2 -3: a count of angles must be at least 1"),
         (
             ["sweep", "press.toml", "-o", "c.nc", "--outputs", "t12"],
-            "of: nothing is named 't12'; did you mean",
+            "--of: nothing is named 't12'; did you mean",
         ),
         (["sweep", "press.toml", "-o", "no/c.nc"], "no/c.nc: there is no folder no; make it first"),
         (["demo", "-o", "no/demo"], "no/demo.nc: there is no folder no; make it first"),
@@ -299,7 +299,7 @@ def test_a_picture_that_fails_leaves_no_file(press, monkeypatch, capsys):
         path.write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("linksweep.cli.commands._write_png", broken)
+    monkeypatch.setattr("linksweep.cli.running._write_png", broken)
     Path("cycle.png").write_bytes(b"old")
     assert main(["sweep", press, "-o", "cycle.nc", "--plot", "cycle.png"]) == 2
     assert "No space left on device" in capsys.readouterr().err
@@ -330,7 +330,7 @@ def test_ctrl_c_prints_no_traceback(press, monkeypatch, capsys):
             2,
             r"c.xyz: its ending must be \.png or \.pdf or \.svg",
         ),
-        (["peaks", "press.toml", "--of", " ,"], 2, "argument --of: must be names of quantities, such as F32 T12"),
+        (["peaks", "press.toml", "--of", " ,"], 2, "argument --of: must be names, such as F32 T12"),
         (["peaks", "press.toml", "--theta2", "many"], 2, "argument --theta2/--theta: invalid int value: 'many'"),
     ],
 )

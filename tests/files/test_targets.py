@@ -15,8 +15,8 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.cli.commands import write_figure
 from linksweep.cli.main import main
+from linksweep.cli.running import write_figure
 from linksweep.files.atomic import whole
 
 GET = fcntl.F_GETFL

@@ -19,6 +19,13 @@ TURNED = "; for a point on the other side turn its angle by 180 degrees"
 ADVICE = "must|give|make|write|name |leave|hold|less|begin|once|did you mean|shorten|there are"
 ADVICE += "|every angle|declare|accepted: "
 
+PYTHON = r"\bls\.\w+|\blinksweep\.[a-z]+|\w*DataArray|\w*Dataset\w*|\bisel\b|\w+\((?!s\))|\b[a-z]\w*=\S+"
+
+
+def python_words(text: str) -> list[str]:
+    """Return what only Python understands: calls, keywords, and names of its libraries."""
+    return re.findall(PYTHON, text)
+
 
 def coupler(**changes) -> ls.Scene:
     return replace(SCENE, mechanism=replace(FOUR_BAR, coupler=replace(LINK, **changes)))
