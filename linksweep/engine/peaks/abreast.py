@@ -80,9 +80,10 @@ def search(
     first, last, designs, lanes, smooth, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate,
     digits, inputs, constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
-    """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each lane of each signal, block
-    after block."""
+    """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
+    signal after the other, each filled up to whole blocks."""
     columns = state.shape[1]
+    width = best.shape[1] // (columns // lanes)
     none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
     for k in range(columns):
         state[NUMBER, k] = k // lanes
@@ -108,19 +109,16 @@ def search(
             place_last(state, columns)
             call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, none, columns))
             settle_peaks(state, columns)
-            of_block = best[:, block * columns : (block + 1) * columns]
+            for k in range(0, columns, lanes):
+                keep_peaks(state, k, lanes, best, k // lanes * width + block * lanes)
             for k in range(columns):
-                for row in range(BEST_ROWS):
-                    of_block[row, k] = state[row, k]
-                of_block[EVALUATIONS, k] = SAMPLES + 4
-            for k in range(columns):
+                tag = k // lanes * width + block * lanes + k % lanes
                 if not smooth or state[FINAL, k] == 0.0:
                     if count + 2 * HALF > brackets.shape[1]:
-                        refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best)
+                        refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
                         count = none
-                    tag = block * columns + k
                     count = open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best)
-        refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best)
+        refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
 
 
 def gather(front, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs):
@@ -266,6 +264,15 @@ def settle_peaks(
     return best, place_at(x1, x2, x3, vertex), far, larger(gain + loss, floor) + tolerance, final, confirmed, floor
 
 
+def keep_peaks(state, column, lanes, best, tag):
+    """Copy the peaks of one signal."""
+    for row in range(BEST_ROWS):
+        for lane in range(lanes):
+            best[row, tag + lane] = state[row, column + lane]
+    for lane in range(lanes):
+        best[EVALUATIONS, tag + lane] = SAMPLES + 4
+
+
 def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
     """Open brackets about all summits of a signal that may exceed its peak so far, or else its highest sample; return
     their number."""
@@ -302,7 +309,7 @@ def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
     return count
 
 
-def refine(brackets, count, lanes, columns, start, constants, gathered, evaluate, best):
+def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):
     """Refine all brackets, several side by side, until none is left."""
     for _ in range(ROUNDS):
         if count == 0:
@@ -311,7 +318,7 @@ def refine(brackets, count, lanes, columns, start, constants, gathered, evaluate
         for front in range(0, count, lanes):
             for lane in range(lanes):
                 tag = int(brackets[TAG, min(front + lane, count - 1)])
-                own, its = constants[tag // columns - start], tag % lanes
+                own, its = constants[tag % width // lanes - start], tag % lanes
                 for row in range(len(gathered) // lanes):
                     gathered[row * lanes + lane] = own[row * lanes + its]
                 if front + lane < count:

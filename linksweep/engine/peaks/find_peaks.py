@@ -137,7 +137,7 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
     strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
     strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
     columns, blocks = lanes * len(signals), -(-designs // lanes)
-    best = np.empty((BEST_ROWS + 1, columns * blocks))
+    best = np.empty((BEST_ROWS + 1, columns * blocks))  # a column for each design of each signal, in whole blocks
 
     def work(first: int, last: int) -> None:
         constants = functions.constants * lanes
@@ -152,9 +152,8 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
 
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD, threads)
-    stored = best.reshape(len(best), blocks, len(signals), lanes).swapaxes(1, 2).reshape(len(best), len(signals), -1)
-    stored = stored[..., :designs].reshape(len(best), len(signals), *shape)
-    return {name: Peak(*(Field(plan.loops, row[k, ...]) for row in stored)) for k, name in enumerate(signals)}
+    stored = best.reshape(len(best), len(signals), -1)[..., :designs]
+    return {name: Peak(*(Field(plan.loops, row[k].reshape(shape)) for row in stored)) for k, name in enumerate(signals)}
 
 
 def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
