@@ -40,7 +40,7 @@ def test_derivatives_are_those_of_the_balance():
 
 
 def test_the_acceleration_leaves_nothing_lacking():
-    """Of an engine with friction, and of a bare disk on a motor that is cut: J α = −c ω."""
+    """An engine with friction, and a bare disk on a motor that is cut off: J α = −c ω."""
     drive = drive_train(ls.example("engine"), MOTOR, 5.0, 0.1)
     speed = np.linspace(1.0, 31.0, 96)
     balance = drive.at(ANGLES).balance(speed, drive.at(ANGLES).acceleration(speed))
