@@ -34,6 +34,7 @@ from linksweep.results.derivatives.of_peaks import (
     turning_point_derivatives,
 )
 from linksweep.results.peaks import peaks
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.scene import Scene
 
 ENDS = ("peak", "max", "min", "mean", "rms")
@@ -65,6 +66,7 @@ def derived(
     scene: Scene, name: str, to: tuple[str, ...], threads: int | None = None, fluctuation: float = 0.02
 ) -> Derived:
     """Return a result by its name, with its derivatives to parameters; `fluctuation` is that of a flywheel."""
+    scene = with_sections(scene, name)
     if name in OUTPUT or name.endswith(TRAVEL):
         return _travel(scene, name, to, threads)
     if name == FLYWHEEL:

@@ -16,6 +16,7 @@ from linksweep.results.compute import angles_of, quantity_problems, requested, r
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, provenance, status_attributes
 from linksweep.results.derivatives.of_peaks import MEANINGS
 from linksweep.results.derivatives.samples import sample_derivatives
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.derivatives.differentiated import number_problem
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.parameters import free
@@ -60,12 +61,12 @@ def sensitivities(
     Returns
     -------
     Dataset
-        Over the design dims, for each result such as F32_peak: its value, and over the dim `parameter`
-        `F32_peak_derivative`, per unit of the parameter as `parameter_unit` states it, and `F32_peak_elasticity` [1],
-        the percent by which the result grows for one percent of the parameter. `F32_peak_status` states whether a peak
-        has derivatives: "ok"; "tie", of two equal rises that change differently; "moving_jump", at a jump, a kink or an
-        end of the motion whose way is not known; "unbounded"; "no_peak". Where it is not ok they are NaN. With angles
-        there is the `status` of a sweep.
+        Over the design dims, and the dim `section` of what is inside links, for each result such as F32_peak: its
+        value, and over the dim `parameter` `F32_peak_derivative`, per unit of the parameter as `parameter_unit` states
+        it, and `F32_peak_elasticity` [1], the percent by which the result grows for one percent of the parameter.
+        `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises that change
+        differently; "moving_jump", at a jump, a kink or an end of the motion whose way is not known; "unbounded";
+        "no_peak". Where it is not ok they are NaN. With angles there is the `status` of a sweep.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def sensitivities(
     require_scene(scene)
     refuse(count_problems("threads", threads))
     angles = angles_of(scene, theta2=theta2, theta=theta)
-    scene = in_memory(scene)
+    scene = with_sections(in_memory(scene), of)
     paths = parameters_of(scene, to)
     if angles is not None:
         return _of_samples(scene, angles, of, paths, threads)

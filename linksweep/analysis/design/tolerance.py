@@ -31,6 +31,7 @@ from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.results.compute import requested, require_scene
 from linksweep.results.dataset import flags
 from linksweep.results.derivatives.of_peaks import MEANINGS
+from linksweep.scene.at_sections import with_sections
 from linksweep.scene.derivatives.differentiated import number_problem
 from linksweep.scene.designs.distributions import Normal, Tolerance
 from linksweep.scene.designs.lazy import in_memory
@@ -112,7 +113,7 @@ def tolerance(
     (1.0, 'N')
     """
     require_scene(scene)
-    scene = in_memory(scene)
+    scene = with_sections(in_memory(scene), of)
     choices = _choices(scene, tolerances)
     names = requested("of", of, scene)
     problems = [problem for name in names for problem in result_problems(scene, "of", name)]

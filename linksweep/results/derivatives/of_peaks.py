@@ -207,7 +207,7 @@ def _rivals(pairs: Pairs, name: str, place: Array, sign: float) -> Array:
     step = scene.period / len(samples)
     away = np.abs(in_period(samples - place[:, None] + 0.5 * scene.period, scene.period) - 0.5 * scene.period)
     rises = (low >= before) & (low >= after) & (away > 1.5 * step) & np.isfinite(low)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):  # of two samples that are alike
         bend = np.where(np.isfinite(before + after), 2.0 * low - before - after, np.inf)
         height = np.where(rises, low + 0.125 * np.where(bend > 0.0, (after - before) ** 2 / bend, 0.0), -np.inf)
     k = np.argmax(height, axis=1)

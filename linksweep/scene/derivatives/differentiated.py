@@ -171,6 +171,8 @@ def _slopes(scene: Differentiated, grid: Grid) -> Iterator[Slope]:
     """Yield the slopes of the inputs at the angles of a grid."""
     sampled = SlopedRevolution(_with_slopes(scene), grid, scene).sampled()
     values = sampled.motion | sampled.mechanism.parameters()
+    if "section" in values:
+        values |= sampled.mechanism.beam_numbers()
     for k, load in enumerate(sampled.loads, 1):
         values |= load.parameters(f"load{k}", values)
     for name, value in values.items():

@@ -26,6 +26,7 @@ PARTIALS: dict[Any, Callable[..., tuple[Any, ...]]] = {
     np.power: lambda z, x, y: (y * x ** (y - 1.0), z * np.log(x)),
     np.remainder: lambda z, x, y: (1.0, 0.0),
     np.minimum: lambda z, x, y: (1.0 * (x <= y), 1.0 * (x > y)),
+    np.maximum: lambda z, x, y: (1.0 * (x >= y), 1.0 * (x < y)),
     np.hypot: lambda z, x, y: (x / z, y / z),
     np.arctan2: lambda z, y, x: (x / (x * x + y * y), -(y / (x * x + y * y))),
     np.negative: lambda z, x: (-1.0,),

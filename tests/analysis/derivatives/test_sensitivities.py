@@ -100,15 +100,16 @@ def in_60_digits(value, at: dict, node) -> float:
 
 @pytest.mark.parametrize("name", long_but(sorted(examples()), "engine", "scotch-yoke", "wipers"))
 def test_gradients_of_the_traced_operations_are_those_of_60_digits(name):
-    """The first pin force and the drive of every machine to every input, at an arbitrary angle."""
-    scene = ls.example(name)
+    """The first pin force, the drive and a stress of every machine to every input, at an arbitrary angle."""
+    scene = replace(ls.example(name), section=0.37)
     grid = scene.grid([77.7])
     sampled = scene.at(grid)
     inputs = sampled.inputs
     forms = tuple((own, field.dims) for own, field in inputs.fields.items())
     rows = {row: float(number[0]) for row, number in zip(grid.names, grid.table, strict=True)}
     every = scene.mechanism.peak_quantities(scene.drive)
-    of = tuple(dict.fromkeys((every[0], every[-1])))
+    stresses = [f"stress{scene.mechanism.topology.number(role)}_left" for role in scene.mechanism.beams[-1:]]
+    of = tuple(dict.fromkeys((every[0], every[-1], *stresses)))
     request = plan(scene.table, of, (*forms, *((row, (grid.dim,)) for row in rows)))
     numbers = {own: float(np.ravel(field.values)[0]) for own, field in inputs.fields.items()} | rows
     nodes = {node.value: node for node in request.nodes if node.operator == "input"}
