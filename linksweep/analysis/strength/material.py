@@ -2,8 +2,9 @@
 
 Sources: structural steels, EN 1993-1-1 (Eurocode 3), table 3.1 with corrigendum AC:2009, thickness up to 40 mm, and E
 of clause 3.2.6; AISI steels, R. G. Budynas and J. K. Nisbett, Shigley's Mechanical Engineering Design, tables A-5, A-20
-and A-21; aluminium alloys, ASM Handbook, volume 2 (their fatigue strength is that of 5e8 cycles). The endurance limit
-of a steel is half its tensile strength, that of a polished specimen in rotating bending (Shigley, chapter on fatigue).
+(estimated minimum values of SAE) and A-21; aluminium alloys, typical values of the Aluminum Association as in ASM
+Handbook, volume 2 (their fatigue strength is that of 5e8 cycles). The endurance limit of a steel is half its tensile
+strength, that of a polished specimen in rotating bending (Shigley, chapter on fatigue).
 """
 
 from __future__ import annotations
