@@ -7,17 +7,15 @@ plan are interpreted, and the kernel is compiled once the interpreted work has a
 from __future__ import annotations
 
 import math
-import operator
 import os
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.base import low_words
 from linksweep.base.memory import require_memory
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.interpreter import evaluate as interpreter
@@ -27,7 +25,7 @@ from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.patience import Patience
-from linksweep.engine.trace.graph import LOW_WORDS, Node
+from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
 COMPILE_AFTER = 1_000_000
@@ -35,25 +33,6 @@ COMPILE_AFTER = 1_000_000
 
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
-
-LATE_SAMPLES = 2**13
-"""Samples (angles × designs) that numpy works on at a time: they stay in the cache."""
-
-OPERATORS = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "<": operator.lt,
-    "negate": operator.neg,
-    "abs": operator.abs,
-    "sqrt": np.sqrt,
-    "atan2": np.arctan2,
-    "where": np.where,
-    **{name: getattr(low_words, name) for name in LOW_WORDS},
-}
-"""Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
-
 
 Numbers = np.ndarray | np.float64
 """The value of a node: an array, or a single number where it has no dims."""
@@ -156,10 +135,6 @@ def evaluate(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes, threads: int 
     stored = {slot.node: _rows_of(slot, block, grid) for slot in layout.rows}
     stored |= {slot.node: single_of(slot, single) for slot in layout.singles}
     stored |= {node: Field((), np.asarray(node.value)) for node in plan.constants}
-    if plan.late:
-        operands = {x for node in plan.late for x in node.operands if x in stored}
-        values = _late(plan, {x: _align(plan, x.dims, stored[x]) for x in operands}, grid, sizes, threads)
-        stored |= {node: _field(plan, node, value, grid, sizes) for node, value in values.items()}
     return {name: stored[node] for name, node in plan.outputs.items()}
 
 
@@ -169,7 +144,7 @@ def reduce_rows(
     """Return two numbers for each reduction (value and angle, or value and count), over the signal's dims but the
     index."""
     ready = runner(plan, reductions)
-    if plan.late or ready.should_interpret(_samples(plan, grid, sizes), COMPILE_AFTER):
+    if ready.should_interpret(_samples(plan, grid, sizes), COMPILE_AFTER):
         fields = _interpreted(plan, inputs, grid, sizes)
         return {r: _reduced_in_python(r, fields[r.name], grid) for r in reductions}
     layout = ready.layout(sizes)
@@ -184,19 +159,7 @@ def reduce_rows(
 def _interpreted(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes) -> dict[str, Field]:
     """Return every output of the plan without a kernel of its own."""
     values = interpreter.evaluate(plan, aligned(plan, inputs, grid), {**sizes, grid.dim: len(grid.angles)})
-    interpret(plan.late, values)
     return {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
-
-
-def interpret(nodes, values: dict[Node, Numbers], operators=OPERATORS) -> dict[Node, Numbers]:
-    """Evaluate the nodes in order, on numpy arrays or on any numbers that `operators` handle."""
-    with np.errstate(all="ignore"):
-        for node in nodes:
-            if node.operator == "constant":
-                values[node] = np.float64(node.value)
-            elif node.operator != "input":
-                values[node] = operators[node.operator](*[values[x] for x in node.operands])
-    return values
 
 
 def aligned(plan: Plan, inputs: Fields, grid: Grid) -> dict[Node, Numbers]:
@@ -269,34 +232,6 @@ def over_threads(work: Callable[[int, int], None], length: int, workers: int, th
     bounds = [length * k // (4 * workers) for k in range(4 * workers + 1)]
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(work, bounds[:-1], bounds[1:]))
-
-
-def _late(
-    plan: Plan, operands: dict[Node, Numbers], grid: Grid, sizes: Sizes, threads: int | None
-) -> dict[Node, Numbers]:
-    """Evaluate the outputs left to numpy from rows that a kernel stored: some samples at a time, which then stay in the
-    cache, by a pool of threads."""
-    late = set(plan.late)
-    outputs = {node for node in plan.outputs.values() if node in late}
-    if not all(plan.index in node.dims for node in outputs):
-        values = interpret(plan.late, operands)
-        return {node: values[node] for node in outputs}
-    shapes = {node: tuple(sizes[dim] if dim in node.dims else 1 for dim in plan.loops) for node in outputs}
-    samples = len(grid.angles)
-    results = {node: new_block(math.prod(shape), samples).reshape(*shape, -1) for node, shape in shapes.items()}
-    step = max(512, LATE_SAMPLES // max(map(math.prod, shapes.values())))
-
-    def work(first: int, last: int) -> None:
-        for start in range(first, last, step):
-            part = slice(start, min(start + step, last))
-            some: dict[Node, Any] = dict(operands)
-            some |= {node: some[node][..., part] for node in operands if plan.index in node.dims}
-            values = interpret(plan.late, some)
-            for node, result in results.items():
-                result[..., part] = values[node]
-
-    over_threads(work, samples, 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD, threads)
-    return dict(results)
 
 
 def _samples(plan: Plan, grid: Grid, sizes: Sizes) -> int:

@@ -122,9 +122,8 @@ def test_compiled_and_interpreted_kernels_agree_for_each_drive(sweep, drive):
 
 
 def test_one_thread_and_two_agree(sweep, monkeypatch):
-    """Designs are shared among the threads, or the angles of a single design; numpy's part of them piece by piece."""
+    """Designs are shared among the threads, or the angles of a single design."""
     monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)
-    monkeypatch.setattr(run, "LATE_SAMPLES", 700)
     for scene, count in ((designs(), 72), (loaded(), 5000)):
         one, two, three = (sweep("compiled", scene, count, threads=n) for n in (1, 2, 3))
         assert_same_bits(one, two)

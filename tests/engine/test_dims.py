@@ -14,6 +14,7 @@ import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
 from linksweep.engine.peaks import find_peaks
+from linksweep.engine.trace.operators import OPERATORS
 
 PRESS = ls.example("press")
 OF = ["F32", "T12"]
@@ -24,7 +25,7 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | run.OPERATORS | {"in_vectors": whole_row, "number": np.float64, "math": math}
+        namespace = vars(reduce) | OPERATORS | {"in_vectors": whole_row, "number": np.float64, "math": math}
         namespace["vectorised"] = lambda function: function
         exec(source, namespace)
         return namespace["kernel"]

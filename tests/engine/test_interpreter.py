@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from linksweep.base import cache
-from linksweep.engine import run
 from linksweep.engine.interpreter import machine
 from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.interpreter.machine import OPERANDS, OPERATORS, TILE
 from linksweep.engine.interpreter.program import programs
 from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import Plan
 
 SPECIAL = (0.0, -0.0, 1.0, -1.5, 1e300, -1e-310, np.inf, -np.inf, np.nan)
@@ -57,7 +57,7 @@ def test_interpreted_as_by_numpy(samples):
     for _ in range(20):
         plan, sizes = drawn_plan(draw), {"theta2": samples, "mass": 3, "length": 2}
         values = drawn_values(draw, plan, sizes)
-        expected = run.interpret(plan.nodes, dict(values))
+        expected = interpret(plan.nodes, dict(values))
         result = evaluate(plan, dict(values), sizes)
         for node in plan.outputs.values():
             theirs = np.broadcast_to(np.asarray(expected[node], dtype=np.float64), np.shape(result[node]))

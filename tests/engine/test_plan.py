@@ -84,8 +84,8 @@ def test_costs_rise_with_the_request():
 
 def test_all_of_the_kinematics_is_shared_by_the_forces():
     together = cost(scene(), *KINEMATICS, *UNKNOWNS)
-    late = 4  # theta3 and theta4: atan2, and degrees
-    assert together - cost(scene(), *UNKNOWNS) == late
+    angles = 4  # theta3 and theta4: atan2, and degrees
+    assert together - cost(scene(), *UNKNOWNS) == angles
 
 
 def test_one_root_and_one_division_an_angle():

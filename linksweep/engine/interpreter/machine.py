@@ -26,7 +26,7 @@ from linksweep.engine.trace.graph import LOW_WORDS
 
 TILE = 8 * REGISTER
 """Samples of a register: enough to make the choice of an operation cheap, few enough for the fastest cache."""
-OPERATORS = ("+", "-", "*", "/", "<", "negate", "abs", "sqrt", "where", *sorted(LOW_WORDS))
+OPERATORS = ("+", "-", "*", "/", "<", "negate", "abs", "sqrt", "atan2", "where", *sorted(LOW_WORDS))
 OPERANDS = {"negate": 1, "abs": 1, "sqrt": 1, "where": 3}
 """Operands of those operations that have not two."""
 CODES = {name: code for code, name in enumerate([*OPERATORS, "load", "store"])}

@@ -31,8 +31,7 @@ class Program:
 @lru_cache(maxsize=256)
 def programs(plan: Plan) -> tuple[Program, ...]:
     """Return the programs of all that a plan stores, those of fewer dims first: later ones read what they need."""
-    late = set(plan.late)
-    work = [node for node in plan.nodes if node.operands and node not in late]
+    work = [node for node in plan.nodes if node.operands]
     output = {*plan.stored} | {x for node in work for x in node.operands if x.dims != node.dims}
     groups = sorted({node.dims for node in work}, key=lambda dims: (len(dims), sorted(dims)))
     return tuple(_program(plan, [node for node in work if node.dims == dims], output) for dims in groups)

@@ -12,9 +12,12 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
+from linksweep.base import arctangent
+from linksweep.engine.trace.operators import interpret, traced_arctangent
+
 REGISTER = 8
 """Doubles that fill a register of 512 bits."""
-SOURCE = inspect.getsource(sys.modules[__name__])
+SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(arctangent)
 """All that enters the machine code besides what is asked for."""
 
 
@@ -141,10 +144,7 @@ class Instructions:
         return self.builder.select(condition, x, y)
 
     def _atan2(self, y: Any, x: Any) -> Any:
-        """Call the C library's function for each number: there is no instruction."""
-        if y.type == self.double:
-            return self._called("atan2", y, x)
-        for lane in map(self.integer, range(self.width)):
-            angle = self._called("atan2", *(self.builder.extract_element(value, lane) for value in (y, x)))
-            y = self.builder.insert_element(y, angle, lane)
-        return y
+        """Write the operations of `base.arctangent`: there is no instruction."""
+        traced = traced_arctangent()
+        values = interpret([*traced.constants, *traced.instructions], {traced.y: y, traced.x: x}, self.operators)
+        return values[traced.instructions[-1]]

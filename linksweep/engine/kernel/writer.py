@@ -48,8 +48,7 @@ class Writer:
     def __init__(self, plan: Plan, reductions: tuple[Reduction, ...]) -> None:
         self.plan, self.reductions = plan, reductions
         self.innermost = min(len(plan.loops), DEEPEST)
-        late = set(plan.late)
-        self.nodes = [node for node in plan.nodes if node not in late]
+        self.nodes = list(plan.nodes)
         stored = () if reductions else plan.stored
         self.rows = tuple(node for node in stored if self.per_sample(node))
         self.singles = tuple(node for node in stored if not self.per_sample(node))

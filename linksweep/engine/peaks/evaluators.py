@@ -15,7 +15,6 @@ mirror those after it, and share all operations whose results are the same there
 from __future__ import annotations
 
 import inspect
-import math
 import sys
 from collections.abc import Callable
 from functools import cached_property
@@ -28,8 +27,8 @@ from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
-from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Node
+from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import Plan
 
 Values = dict[Node, Any]
@@ -40,10 +39,6 @@ TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
-
-
-BETWEEN_SAMPLES = {**OPERATORS, "atan2": np.vectorize(math.atan2, otypes=[float])}
-"""Operations on numbers or arrays; numpy's own arctangent differs in the last bit from that of machine code."""
 
 
 SUMS = {"+", "-", "sum_low", "difference_low", "ordered_low"}
@@ -110,8 +105,7 @@ class Evaluators:
         }
         places = {self.tangent: tangent, self.far: np.broadcast_to(far, tangent.shape)}
         values |= {node: place.reshape([*axes, -1]) for node, place in places.items()}
-        values = evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})
-        return interpret(plan.late, values, BETWEEN_SAMPLES)
+        return evaluate(plan, values, dict.fromkeys(plan.loops, 1) | {plan.index: len(tangent)})
 
     # --------------------------------------------------------------------------------------------- compiled
 

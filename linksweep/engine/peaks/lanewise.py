@@ -13,8 +13,8 @@ import numpy as np
 from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
-from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.operators import OPERATORS, interpret
 
 Values = dict[Node, Any]
 """Values of nodes: numbers, arrays, or instructions that compute vectors."""

@@ -13,9 +13,8 @@ from functools import cached_property, lru_cache
 
 from linksweep.engine.quantity import Row, Table, Total
 from linksweep.engine.trace.graph import Graph, Node
+from linksweep.engine.trace.operators import traced_arctangent
 
-LATE = {"atan2"}
-"""Operations done by numpy on stored rows after the kernel: much faster there than compiled."""
 INSTRUCTIONS = {"sum_low": 5, "difference_low": 5, "ordered_low": 2}
 """Instructions of operations that take more than one, besides the sum itself."""
 
@@ -61,21 +60,10 @@ class Plan:
         return tuple(sorted(dims, key=lambda dim: (-weight[dim], -every[dim], dim)))
 
     @cached_property
-    def late(self) -> tuple[Node, ...]:
-        """Return the nodes left to numpy, to be computed from rows that the kernel stores."""
-        late: set[Node] = set()
-        for node in self.nodes:
-            if node.operator in LATE or not late.isdisjoint(node.operands):
-                late.add(node)
-        return tuple(node for node in self.nodes if node in late)
-
-    @cached_property
     def stored(self) -> tuple[Node, ...]:
-        """Return the nodes that the kernel stores: outputs, and operands of late nodes."""
-        late = set(self.late)
-        nodes = [node for node in self.outputs.values() if node not in late]
-        nodes += [x for node in self.late for x in node.operands if x not in late]
-        return tuple(sorted({node for node in nodes if node.operator != "constant"}, key=lambda n: n.position))
+        """Return the nodes that are outputs, but constants."""
+        nodes = {node for node in self.outputs.values() if node.operator != "constant"}
+        return tuple(sorted(nodes, key=lambda node: node.position))
 
     def operations(self, *dims: str) -> Counter:
         """Return how many operations of each kind are done once per sample of these dims (no dims: once in all)."""
@@ -86,8 +74,9 @@ class Plan:
         )
 
     def instructions(self, *dims: str) -> int:
-        """Return how many instructions that takes: a low word of a sum takes several."""
-        return sum(count * INSTRUCTIONS.get(operator, 1) for operator, count in self.operations(*dims).items())
+        """Return how many instructions that takes: a low word of a sum and an arctangent take several."""
+        several = INSTRUCTIONS | {"atan2": len(traced_arctangent().instructions)}
+        return sum(count * several.get(operator, 1) for operator, count in self.operations(*dims).items())
 
     def only(self, names: tuple[str, ...]) -> Plan:
         """Return the plan of some of the outputs."""

@@ -14,9 +14,9 @@ from references import mp
 from shifted import derivative, shifted, step_of
 
 import linksweep as ls
-from linksweep.engine.run import OPERATORS, interpret
 from linksweep.engine.trace.gradient import gradient
 from linksweep.engine.trace.graph import LOW_WORDS
+from linksweep.engine.trace.operators import OPERATORS, interpret
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.scene.examples import names as examples
 from linksweep.scene.parameters import free, replaced

@@ -1,0 +1,59 @@
+"""Evaluate traced operations on numpy arrays, or on any numbers that have operators of their own."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.base import low_words
+from linksweep.base.arctangent import arctangent
+from linksweep.engine.trace.graph import LOW_WORDS, Graph, Node
+
+OPERATORS: Mapping[str, Callable[..., Any]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "<": operator.lt,
+    "negate": operator.neg,
+    "abs": operator.abs,
+    "sqrt": np.sqrt,
+    "atan2": lambda y, x: arctangent(y, x, np.where),
+    "where": np.where,
+    **{name: getattr(low_words, name) for name in LOW_WORDS},
+}
+"""Operations on arrays; on numpy scalars, Python's own operators give numpy's results, and much faster."""
+
+
+def interpret(nodes: Iterable[Node], values: dict[Node, Any], operators=OPERATORS) -> dict[Node, Any]:
+    """Evaluate nodes in order; `values` has those of the inputs, and gets all others."""
+    with np.errstate(all="ignore"):
+        for node in nodes:
+            if node.operator == "constant":
+                values[node] = np.float64(node.value)
+            elif node.operator != "input":
+                values[node] = operators[node.operator](*[values[x] for x in node.operands])
+    return values
+
+
+class Arctangent(NamedTuple):
+    """The operations of an arctangent: constants first, then instructions, the last of which gives the angle."""
+
+    y: Node
+    x: Node
+    constants: list[Node]
+    instructions: list[Node]
+
+
+@cache
+def traced_arctangent() -> Arctangent:
+    """Return the arctangent as traced operations."""
+    graph = Graph()
+    y, x = graph.input("y", ()), graph.input("x", ())
+    arctangent(y, x, Node.where)
+    constants = [node for node in graph.nodes if node.operator == "constant"]
+    return Arctangent(y, x, constants, [node for node in graph.nodes if node.operands])
