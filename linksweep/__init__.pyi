@@ -44,6 +44,7 @@ from linksweep.results.quantities import QuantityTable, quantities
 from linksweep.results.sweep import sweep
 from linksweep.results.system import system
 from linksweep.scene.curves.interpolation import OvershootWarning
+from linksweep.scene.designs.combinations import grid
 from linksweep.scene.designs.distributions import Normal, Tolerance
 from linksweep.scene.designs.drawing import draw
 from linksweep.scene.designs.sampling import sample
@@ -112,6 +113,7 @@ __all__ = [
     "flywheel",
     "from_pmks",
     "geometry",
+    "grid",
     "load_scene",
     "load_spectrum",
     "material",

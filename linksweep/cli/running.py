@@ -1,4 +1,4 @@
-"""What commands share when they run: scenes by name, tables, figures."""
+"""Load scenes by name, print tables and write figures, for all commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The heat map of a study: one result over two of its design dims."""
+"""The heat map of a study: one result over two of its design dims, or over two parameters of a sample, in bins."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.pareto import variable_problems
-from linksweep.base.validate import name_problems, quote, refuse
+from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
 from linksweep.plot.kit import scales, signals
+from linksweep.plot.kit.bins import STATISTICS, binned, bins_of
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok
 from linksweep.plot.kit.style import axes_or_new, legend_above
@@ -49,25 +50,34 @@ def heat_map(
     y: str | None = None,
     maximize: bool = False,
     contours: bool | str = False,
+    bins: int = 24,
+    statistic: str = "best",
     ax: Axes | None = None,
 ) -> Axes:
     """Plot a result over two design dims in colours, the best design marked, those without peaks hatched.
+
+    Designs of a sample, which lie along one dim, are counted in bins of two parameters.
 
     Parameters
     ----------
     ds : Dataset
         Results over designs, as from `linksweep.peaks`.
     of : str
-        Result, such as "F32_peak", that depends on two dims.
+        Result, such as "F32_peak", that depends on two dims; or on one, that of a sample.
     x : str, default None
         Dim along the horizontal axis, or a parameter over it ("crank.length"); None for the second dim, as the
-        parameter whose values are its labels.
+        parameter whose values are its labels. Of a sample a parameter, or another result; None for the second of two.
     y : str, default None
         Dim along the vertical axis, or a parameter over it; None for the first dim, likewise.
     maximize : bool, default False
         True where the largest value is the best, False where the least is.
     contours : bool or str, default False
-        True for lines of equal value; the name of another result, "transmission_angle_min", for lines of that.
+        True for lines of equal value; the name of another result, "transmission_angle_min", for lines of that (of its
+        mean in each bin).
+    bins : int, default 24
+        Count of bins along each axis, of a sample.
+    statistic : str, default "best"
+        Colour of a bin: the "best" of its designs, their "mean", or the "worst".
     ax : matplotlib Axes, default None
         Axes to draw into; None for a new figure.
 
@@ -80,7 +90,8 @@ def heat_map(
     Raises
     ------
     ValueError
-        For unknown names, for a result over other than two dims, and where no design is ok.
+        For unknown names, for a result over more than two dims or none, for a sample of which the two parameters are
+        not stated, and where no design is ok.
 
     Examples
     --------
@@ -94,7 +105,12 @@ def heat_map(
     ('coupler length [m]', 'crank length [m]')
     """
     require_dataset(ds, "ls.peaks of several designs")
+    refuse(variable_problems(ds, "of", of, numbers="fiub"))
     ds = in_shown_units(ds)
+    sample = ds if ds[of].ndim == 1 else None
+    if sample is not None:
+        ds = _in_bins(ds, of, x, y, bins, statistic, maximize, contours)
+        y, x = (str(dim) for dim in ds[of].dims)
     across, up = _sides(ds, of, x, y)
     _require_on_map(ds, contours, across, up)
     values = _field(ds[of], across, up)
@@ -104,8 +120,15 @@ def heat_map(
     limits = scales.span(values[ok])
     colored = np.ma.masked_where(~ok, values)
     mesh = ax.pcolormesh(across.edges, up.edges, colored, cmap="viridis", norm=scales.norm(limits), rasterized=True)
-    scales.color_bar(ax, mesh, column(ds[of], values[ok]), limits)
-    handles = [_best(ax, ds[of], across, up, np.where(ok, values, np.nan), maximize)]
+    height = column(ds[of], values[ok])
+    if sample is not None:
+        height = height._replace(text=f"{statistic} {height.text}")
+    scales.color_bar(ax, mesh, height, limits)
+    star = _best_cell(across, up, np.where(ok, values, np.nan), maximize)
+    if sample is not None and statistic == "best":
+        star = _best_design(sample, of, across, up, maximize)
+    kind = ("largest" if maximize else "least") + ("" if statistic == "best" else f" {statistic}")
+    handles = [_star(ax, star, kind, ds[of], across, up)]
     if contours is True:  # the colour bar has their unit
         _contours(ax, ds[of], across, up, ok)
     elif contours:
@@ -118,7 +141,6 @@ def heat_map(
 
 def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
     """Return the axes x and y."""
-    refuse(variable_problems(ds, "of", name, numbers="fiub"))
     dims = [str(dim) for dim in ds[name].dims]
     refuse([] if len(dims) == 2 else [_other_dims(name, dims)])
     known = {**{dim: dim for dim in dims}, **_along(ds, dims)}
@@ -133,10 +155,32 @@ def _sides(ds: Any, name: Any, x: Any, y: Any) -> tuple[Side, Side]:
 
 
 def _other_dims(name: str, dims: list[str]) -> str:
-    over = f"{name} depends on {', '.join(dims) or 'no dim'}: a heat map takes a result over two dims; "
-    if len(dims) > 2:
-        return over + f"choose one of the others, such as ds.isel({dims[0]}=0)"
-    return over + "plot.scatter and plot.parallel_coordinates show a sample"
+    over = f"{name} depends on {', '.join(dims) or 'no dim'}: a heat map takes a result over two dims, or a sample"
+    return over + (f"; choose one of the others, such as ds.isel({{{dims[0]!r}: 0}})" if dims else "")
+
+
+def _in_bins(
+    ds: xr.Dataset, of: str, x: Any, y: Any, bins: Any, statistic: Any, maximize: bool, contours: Any
+) -> xr.Dataset:
+    """Return the result of a sample, and that of its contours, over two parameters in bins."""
+    refuse(count_problems("bins", bins) + choice_problems("statistic", statistic, STATISTICS))
+    refuse(["bins = 1: must be 2 or more"] if bins == 1 else [])
+    (dim,) = ds[of].dims
+    known = {str(name): item for name, item in ds.variables.items() if item.dims == (dim,) and item.dtype.kind in "fiu"}
+    parameters = [str(name) for name in ds.coords if name in known and name != dim]
+    chosen = {"y": y, "x": x}
+    refuse([p for path, name in chosen.items() if name is not None for p in name_problems(path, name, known)])
+    rest = [name for name in parameters if name not in (x, y)]
+    if len(rest) != sum(name is None for name in chosen.values()):
+        several = f"state two of the parameters over {dim}, {', '.join(parameters)}, or of the results"
+        refuse([f"{path} is missing: {several}" for path, name in chosen.items() if name is None])
+    named = {path: name if name is not None else rest.pop(0) for path, name in chosen.items()}
+    refuse([] if named["x"] != named["y"] else [f"x and y are both {named['x']!r}: give two parameters"])
+    constant = [name for name in named.values() if not float(ds[name].min()) < float(ds[name].max())]
+    refuse([f"{name} is the same for all designs: give a parameter that varies" for name in constant])
+    further = {contours: "mean"} if isinstance(contours, str) and contours in known and contours != of else {}
+    across, up = (bins_of(ds[name], int(bins)) for name in (named["x"], named["y"]))
+    return binned(ds, {of: statistic} | further, across, up, maximize)
 
 
 def _along(ds: xr.Dataset, dims: list[str]) -> dict[str, str]:
@@ -210,15 +254,27 @@ def _outline(x: np.ndarray, y: np.ndarray, cells: np.ndarray) -> Any:
     return Path(points, codes)
 
 
-def _best(ax: Axes, item: xr.DataArray, across: Side, up: Side, values: np.ndarray, maximize: bool) -> Any:
-    """Draw a star on the best design; return its handle, with value and place."""
+def _best_cell(across: Side, up: Side, values: np.ndarray, maximize: bool) -> tuple[float, float, float]:
+    """Return x, y and value of the best cell."""
     row, col = np.unravel_index(np.nanargmax(values if maximize else -values), values.shape)
-    at = float(across.places[col]), float(up.places[row])
-    text = f"{'largest' if maximize else 'least'}: {signals.number(values[row, col])} {item.attrs.get('units', '')}"
-    where = f"{text.strip()} at {across.text_at(at[0])}, {up.text_at(at[1])}"
+    return float(across.places[col]), float(up.places[row]), float(values[row, col])
+
+
+def _best_design(ds: xr.Dataset, of: str, across: Side, up: Side, maximize: bool) -> tuple[float, float, float]:
+    """Return x, y and value of the best design of a sample."""
+    values = np.where(has_peaks(ds) & np.isfinite(ds[of]), ds[of], np.nan)
+    k = int(np.nanargmax(values if maximize else -values))
+    return float(ds[across.name][k]), float(ds[up.name][k]), float(values[k])
+
+
+def _star(ax: Axes, star: tuple[float, float, float], kind: str, item: xr.DataArray, across: Side, up: Side) -> Any:
+    """Draw a star on the best design, or bin; return its handle, with value and place."""
+    x, y, value = star
+    text = f"{kind}: {signals.number(value)} {item.attrs.get('units', '')}"
+    where = f"{text.strip()} at {across.text_at(x)}, {up.text_at(y)}"
     style: dict[str, Any] = {"markersize": 13.0, "color": "white", "markeredgecolor": BLACK, "zorder": 3.0}
-    (star,) = ax.plot([at[0]], [at[1]], "*", label=where, clip_on=False, **style)
-    return star
+    (drawn,) = ax.plot([x], [y], "*", label=where, clip_on=False, **style)
+    return drawn
 
 
 def _require_on_map(ds: xr.Dataset, contours: Any, across: Side, up: Side) -> None:

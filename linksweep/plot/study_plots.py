@@ -7,6 +7,7 @@ the best, which are marked, are those of all designs.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,10 +17,11 @@ from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import count_problems, refuse
 from linksweep.plot.kit import scales
 from linksweep.plot.kit.colors import BLACK, BLUE, VERMILION
-from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, whole
+from linksweep.plot.kit.designs import Column, Designs, by_chance, designs_of, in_words, whole
 from linksweep.plot.kit.style import axes_or_new, grid, legend_above
 from linksweep.results.compute import requested, require_dataset
 from linksweep.results.front import front as front_of
+from linksweep.results.front import stated_objective
 from linksweep.results.origin.in_shown_units import in_shown_units
 
 if TYPE_CHECKING:
@@ -145,8 +147,9 @@ def parallel_coordinates(
     ds: xr.Dataset,
     of: Iterable[str] | None = None,
     *,
+    minimize: str | None = None,
+    maximize: str | bool = False,
     color: str | None = None,
-    maximize: bool = False,
     best: int = 5,
     ax: Axes | None = None,
 ) -> Axes:
@@ -157,11 +160,15 @@ def parallel_coordinates(
     ds : Dataset
         Results over designs, as from `linksweep.peaks`.
     of : iterable of str, default None
-        Names for the axes, from left to right; None for the parameters that vary, then the peaks.
+        Names for the axes, from left to right; None for the parameters that vary, then the peaks, of angles their least
+        and largest values.
+    minimize : str, default None
+        Objective whose least value is the best; None for that which `linksweep.screen` or `linksweep.pareto` was asked
+        for, else `color`, else the last of the names, or without names the first peak.
+    maximize : str or bool, default False
+        Objective whose largest value is the best; or True where the largest of the one above is.
     color : str, default None
-        Objective; None for the last of the names.
-    maximize : bool, default False
-        True where the largest objective is the best, False where the least is.
+        Name of what is drawn by colour; None for the objective.
     best : int, default 5
         Count of the best designs to mark.
     ax : matplotlib Axes, default None
@@ -189,25 +196,34 @@ def parallel_coordinates(
     require_dataset(ds, "ls.peaks of several designs")
     of_axes = _axis_names(ds) if of is None else requested("of", of)
     refuse(_problems(ds, of_axes, color, best))
-    designs = designs_of(in_shown_units(ds), of_axes if color is None else [*of_axes, color])
-    objective = designs.columns[of_axes[-1] if color is None else color]
-    order = np.argsort(-objective.values if maximize else objective.values, kind="stable")
+    aim, largest = _objective(ds, of_axes, of is None, minimize, maximize, color)
+    of_axes += [aim] if of is None and aim not in of_axes and len(of_axes) < MOST_AXES else []
+    designs = designs_of(in_shown_units(ds), [*of_axes, aim, color or aim])
+    objective = designs.columns[aim]
+    order = np.argsort(-objective.values if largest else objective.values, kind="stable")
     drawn = by_chance(designs.number, LINES, order[:best])
     drawn = drawn[np.argsort(-np.argsort(order)[drawn])]  # better ones on top
     axes = [designs.columns[name] for name in of_axes]
     points = np.stack([_fractions(item) for item in axes], axis=-1)
     ax = axes_or_new(ax, figsize=(max(6.4, 1.25 * len(of_axes) + 1.4), 4.4))
-    _lines(ax, points[drawn], objective, drawn, designs.counted(len(drawn)))
+    _lines(ax, points[drawn], designs.columns[color or aim], drawn, designs.counted(len(drawn)))
     if best:
-        _mark(ax, points[order[:best]], f"best: {designs.labels_at(order[:best])}")
+        end = f"{'largest' if largest else 'least'} {in_words(aim)}"
+        _mark(ax, points[order[:best]], f"best ({end}): {designs.labels_at(order[:best])}")
     for place, item in enumerate(axes):
         _axis(ax, place, item)
-    ax.set_xticks(range(len(axes)), [item.text.replace(" [", "\n[") for item in axes])
+    ax.set_xticks(range(len(axes)), [_in_lines(item.text) for item in axes])
     ax.tick_params(axis="x", length=0.0)
     ax.set(xlim=(-0.3, len(axes) - 0.7), ylim=(-1.2 * ROOM, 1.0 + 1.2 * ROOM), yticks=[])
     ax.spines[:].set_visible(False)
     legend_above(ax)
     return ax
+
+
+def _in_lines(text: str) -> str:
+    """Return the heading of an axis in short lines, its unit in the last."""
+    words, bracket, unit = text.partition(" [")
+    return "\n".join([*wrap(words, 16), *([bracket.strip() + unit] if bracket else [])])
 
 
 def _problems(ds: xr.Dataset, names: list[str], color: Any, best: Any) -> list[str]:
@@ -218,13 +234,34 @@ def _problems(ds: xr.Dataset, names: list[str], color: Any, best: Any) -> list[s
     return problems + ([] if best == 0 else count_problems("best", best))
 
 
+def _objective(
+    ds: xr.Dataset, of_axes: list[str], by_default: bool, minimize: Any, maximize: Any, color: Any
+) -> tuple[str, bool]:
+    """Return the name of the objective, and whether its largest value is the best."""
+    names = {"minimize": minimize} | ({} if isinstance(maximize, bool) else {"maximize": maximize})
+    chosen = {path: name for path, name in names.items() if name is not None}
+    refuse([p for path, name in chosen.items() for p in variable_problems(ds, path, name, numbers="fiu")])
+    refuse(["minimize and maximize are both given: the best is so by one of them"] if len(chosen) > 1 else [])
+    if chosen:
+        ((path, name),) = chosen.items()
+        return name, path == "maximize" or maximize is True
+    if maximize is False and color is None and (stated := stated_objective(ds)):
+        return stated
+    first = next((name for name in of_axes if name.endswith("_peak")), of_axes[-1])
+    return color or (first if by_default else of_axes[-1]), bool(maximize)
+
+
 def _axis_names(ds: xr.Dataset) -> list[str]:
-    """Return the parameters that vary, labels of dims only where no parameter says more, and the peaks."""
+    """Return the parameters that vary, labels of dims only where no parameter says more, and the peaks; of angles the
+    least and largest values, since none is better for being far from zero."""
     labels = [str(name) for name in ds.dims if name in ds.coords and ds[name].dtype.kind not in "iu"]
     parameters = [str(name) for name, item in ds.coords.items() if item.dims and name not in ds.dims]
     known = {ds[name].values.tobytes() for name in parameters}
     labels = [name for name in labels if ds[name].values.tobytes() not in known]
-    return [*labels, *parameters, *(str(name) for name in ds.data_vars if str(name).endswith("_peak"))]
+    peaks = [str(name) for name in ds.data_vars if str(name).endswith("_peak")]
+    angles = {name: name.removesuffix("_peak") for name in peaks if ds[name].attrs.get("units") == "degree"}
+    ends = {name: [f"{base}_min", f"{base}_max"] for name, base in angles.items() if f"{base}_min" in ds}
+    return [*labels, *parameters, *(each for name in peaks for each in ends.get(name, [name]))]
 
 
 def _limits(item: Column) -> tuple[float, float]:

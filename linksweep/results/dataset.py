@@ -40,6 +40,7 @@ def described(
         if name in known or name not in quantity
     }
     attributes = provenance(scene, command, coordinates)
+    variables = {name: values for name, values in variables.items() if values.dims != (name,)}  # a dim's own labels
     beside = {name: values for name, values in coordinates.items() if name not in variables}
     return dataset_of(variables, beside, attributes, axis_of(scene, grid))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import xarray as xr
 
@@ -16,6 +18,21 @@ def has_peaks(ds: xr.Dataset) -> xr.DataArray:
         return xr.DataArray(True)
     words = str(ds["status"].attrs.get("flag_meanings", "ok")).split()
     return ds["status"].isin([code for code, word in enumerate(words) if word in KEPT])
+
+
+def objective_attributes(minimize: Iterable[str], maximize: Iterable[str]) -> dict[str, str]:
+    """Return attributes of a Dataset that state what its designs were chosen for, the first objective first."""
+    words = {"minimize": ", ".join(minimize), "maximize": ", ".join(maximize)}
+    return {word: names for word, names in words.items() if names}
+
+
+def stated_objective(ds: xr.Dataset) -> tuple[str, bool] | None:
+    """Return the first objective that a Dataset states, and whether it is to be large; None where it states none."""
+    for word in ("minimize", "maximize"):
+        name = str(ds.attrs.get(word, "")).partition(", ")[0]
+        if name in ds.variables:
+            return name, word == "maximize"
+    return None
 
 
 def front(costs: np.ndarray) -> np.ndarray:

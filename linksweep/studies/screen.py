@@ -21,13 +21,15 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.files.atomic import ending_of, target_of
 from linksweep.files.netcdf import loaded, save_dataset
+from linksweep.files.progress import progress_bar
 from linksweep.files.seal import SAVED, sealed
 from linksweep.results.compute import requested
+from linksweep.results.front import objective_attributes
 from linksweep.studies.cluster import AHEAD, client_of
 from linksweep.studies.screen_progress import Progress, other_screening
 from linksweep.studies.screen_request import counts_problems, ready, screening_of
 from linksweep.studies.screening import DIM, Screening, tally_there
-from linksweep.studies.study import CHUNK, SLOW_CHUNK, progress_bar
+from linksweep.studies.study import CHUNK, SLOW_CHUNK
 from linksweep.studies.tally import Tally
 
 INTERVAL = 1.0
@@ -159,7 +161,7 @@ def _run(task: Screening, n: int, chunk: int, threads: int | None, client: Any, 
     parts = _in_turn(task, starts, n, threads) if client is None else _on_cluster(client, task, starts, n, threads)
     written = monotonic()
     try:
-        with progress_bar(n) as bar, contextlib.closing(parts):
+        with progress_bar(n, "designs") as bar, contextlib.closing(parts):
             bar.update(state[0])
             for start, part in zip(starts, parts, strict=True):
                 last = min(start + chunk, n)
@@ -241,4 +243,6 @@ def _result(task: Screening, tally: Tally, n: int, further: list[str], threads: 
         coordinates |= {f"{name}_{end}": (dim, values, units) for end, values in ends.items()}
         first += len(counts)
     command = f"linksweep.screen(scene, parameters, n={n}, seed={task.seed}, of={of})"
-    return ds.assign(variables).assign_coords(coordinates).assign_attrs(command=command)
+    small, large = ([name for name, sign in task.objectives.items() if sign == each] for each in (1.0, -1.0))
+    chosen_for = objective_attributes(small, large)
+    return ds.assign(variables).assign_coords(coordinates).assign_attrs(command=command, **chosen_for)

@@ -14,7 +14,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import sys
 from collections.abc import Generator, Iterable, Iterator
 from importlib.metadata import version
 from itertools import chain
@@ -26,6 +25,7 @@ import xarray as xr
 
 from linksweep.base.validate import count_problems, refuse
 from linksweep.files.atomic import ending_of, sync_folder, target_of
+from linksweep.files.progress import progress_bar
 from linksweep.files.seal import seal, sealed
 from linksweep.results.compute import requested, require_scene
 from linksweep.scene.designs.lazy import in_memory
@@ -48,9 +48,6 @@ LONGEST_NAME = 255
 ADVICE = (
     ': a study file is NetCDF; ls.open_study("study.nc").linksweep.to_csv("study.csv") writes a finished one as a table'
 )
-
-SHOWN_AFTER = 1.0
-"""Seconds of work after which a progress bar appears."""
 
 
 def study(
@@ -180,7 +177,7 @@ def _run(job: Job, kept: Partial, target: Path, threads: int | None, client: Any
             yield block, ds
 
     try:
-        with progress_bar(prod(job.sizes.values())) as bar:
+        with progress_bar(prod(job.sizes.values()), "designs") as bar:
             stored = [number for number in range(len(job.blocks)) if kept.holds(number)]
             missing = sorted({*range(len(job.blocks))} - {*stored})
             with contextlib.closing(compute(missing)) as computed:
@@ -203,12 +200,3 @@ def _advising(folder: Path) -> Iterator[None]:
     except OSError as error:
         advice = f"{error.strerror or error}; mend that and run the same again: finished chunks stay"
         raise OSError(error.errno, advice, str(folder)) from error
-
-
-def progress_bar(designs: int) -> Any:
-    """Return a progress bar that shows in a notebook and on a terminal."""
-    from tqdm.auto import tqdm  # here: only studies need it
-
-    disable = True if sys.stderr is None else None  # None: only on a terminal
-    words = {"unit": " designs", "unit_scale": True, "delay": SHOWN_AFTER, "file": sys.stderr}
-    return tqdm(total=designs, disable=disable, **words)

@@ -145,7 +145,8 @@ NO_COMMAND = """
     analysis/design/searches.py analysis/drive/flywheel.py analysis/pins/bearing.py analysis/pins/main_bearings.py
     analysis/pins/pin_friction.py analysis/strength/strength.py files/pmks/from_pmks.py mechanisms/mechanism.py
     physics/closures/freudenstein.py results/compute.py scene/curves/over_angle.py scene/curves/over_position.py
-    scene/derivatives/sloped.py scene/designs/distributions.py scene/designs/drawing.py scene/designs/sampling.py
+    scene/derivatives/sloped.py scene/designs/combinations.py
+    scene/designs/distributions.py scene/designs/drawing.py scene/designs/sampling.py
     studies/cluster.py studies/scene_at.py studies/screen_request.py tables/of_any.py reports/page.py
     reports/notebook.py results/check.py files/netcdf.py
 """
@@ -181,9 +182,9 @@ def test_no_message_that_a_command_can_meet_speaks_python():
     for path in sorted(PACKAGE.rglob("*.py")):
         name = path.relative_to(PACKAGE)
         if name.parts[0] not in NEVER:
-            said = [in_shell_words(text, parser, COMMANDS) for text in texts(path) if is_message(text)]
-            left[name.as_posix()] = [text for text in said if python_words(text)]
-    assert {name: found for name, found in left.items() if found and name not in NO_COMMAND.split()} == {}
+            advice = [in_shell_words(text, parser, COMMANDS) for text in texts(path) if is_message(text)]
+            left[name.as_posix()] = [text for text in advice if python_words(text)]
+    assert {name: wrong for name, wrong in left.items() if wrong and name not in NO_COMMAND.split()} == {}
     assert {name for name in NO_COMMAND.split() if not left.get(name)} == set()
 
 

@@ -232,8 +232,8 @@ def test_a_scatter_of_very_many_designs_is_thinned_with_a_note():
     lines = ls.plot.parallel_coordinates(ds)
     assert len(lines.collections[0].get_segments()) == 1500
     assert legend(lines)[0] == f"1\N{THIN SPACE}500 of {whole(100_000)} designs, chosen by chance"
-    best = ds.design.values[np.argsort(ds.T12_peak.values)[:5]]
-    assert legend(lines)[1] == f"best: design {', '.join(map(str, best))}"
+    best = ds.design.values[np.argsort(ds.F32_peak.values)[:5]]
+    assert legend(lines)[1] == f"best (least $F_{{32}}$ peak): design {', '.join(map(str, best))}"
 
 
 def axis_names(ax) -> list[str]:
@@ -247,12 +247,12 @@ def test_parallel_coordinates_pass_each_axis_at_the_designs_value():
     assert axis_names(ax) == ["crank length\n[m]", "coupler length\n[m]", "$F_{32}$ peak\n[N]", "$T_{12}$ peak\n[N m]"]
     values = np.stack([ds[name].values for name in names], axis=-1)
     heights = (values - values.min(axis=0)) / np.ptp(values, axis=0)
-    worst_first = np.argsort(-ds.T12_peak.values)
+    worst_first = np.argsort(-ds.F32_peak.values)
     drawn = np.array(ax.collections[0].get_segments())
     np.testing.assert_allclose(drawn[:, :, 1], heights[worst_first], atol=1e-12)
     np.testing.assert_array_equal(drawn[0, :, 0], range(4))
-    np.testing.assert_array_equal(ax.collections[0].get_array(), ds.T12_peak.values[worst_first])
-    assert colour_bar(ax).get_ylabel() == "$T_{12}$ peak [N m]"
+    np.testing.assert_array_equal(ax.collections[0].get_array(), ds.F32_peak.values[worst_first])
+    assert colour_bar(ax).get_ylabel() == "$F_{32}$ peak [N]"
     marked = [line.get_ydata() for line in ax.lines[:5]]
     np.testing.assert_allclose(marked, heights[worst_first[::-1][:5]], atol=1e-12)
     assert len(plt.get_fignums()) == 1
@@ -272,7 +272,7 @@ def test_axes_of_parallel_coordinates():
     ds = sample(40)
     ax = ds.linksweep.parallel_coordinates(["T12_peak", "coupler.length"], color="F32_peak", maximize=True, best=2)
     order = np.argsort(-ds.F32_peak.values)
-    assert legend(ax) == ["40 designs", f"best: design {order[0] + 10}, {order[1] + 10}"]
+    assert legend(ax) == ["40 designs", f"best (largest $F_{{32}}$ peak): design {order[0] + 10}, {order[1] + 10}"]
     np.testing.assert_array_equal(ax.collections[0].get_array(), ds.F32_peak.values[order[::-1]])
     assert (
         ls.plot.parallel_coordinates(ds, ["T12_peak", "F32_peak"], best=0).get_legend().get_texts()[-1].get_text()
@@ -285,7 +285,7 @@ def test_parallel_coordinates_of_several_dims_words_and_far_away_designs():
     ax = ls.plot.parallel_coordinates(ds, ["branch", "crank.length", "F32_peak"])
     assert len(ax.collections[0].get_segments()) == 24
     assert {note.get_text() for note in ax.texts if note.xy[0] == 0} == {"open", "crossed"}
-    assert legend(ax)[1] == "best: branch = open, crank = 0.07, coupler = 0.2"
+    assert legend(ax)[1] == "best (least $F_{32}$ peak): branch = open, crank = 0.07, coupler = 0.2"
     far = sample(100)
     far["F32_peak"][3] = 1e9
     ax = ls.plot.parallel_coordinates(far)
@@ -323,13 +323,13 @@ OVER_ANGLE = xr.Dataset({"F32": (("design", "theta2"), np.ones((2, 3)))})
             "x = 'crank' and y = 'rpm' both lie along crank",
         ),
         (
-            lambda: ls.plot.heat_map(SAMPLE, "F32_peak"),
-            "F32_peak depends on design: a heat map takes a result over two dims; plot.scatter and",
+            lambda: ls.plot.heat_map(SAMPLE.isel(design=0), "F32_peak"),
+            "F32_peak depends on no dim: a heat map takes a result over two dims, or a sample",
         ),
         (
             lambda: ls.plot.heat_map(GRID.expand_dims(rpm3=2), "F32_peak"),
-            "F32_peak depends on rpm3, crank, coupler: a heat map takes a result over two dims; choose one of the "
-            "others, such as ds.isel(rpm3=0)",
+            "F32_peak depends on rpm3, crank, coupler: a heat map takes a result over two dims, or a sample; "
+            "choose one of the others, such as ds.isel({'rpm3': 0})",
         ),
         (
             lambda: ls.plot.heat_map(GRID.isel(crank=[0]), "F32_peak"),

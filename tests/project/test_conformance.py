@@ -113,6 +113,7 @@ CALLS = {
     "explore": lambda s, path: ls.explore(s.machine),
     "flywheel": lambda s, path: s.flywheel,
     "geometry": lambda s, path: ls.geometry(s.machine),
+    "grid": lambda s, path: ls.grid(s.machine, {s.word: [s.value, 1.1 * s.value]}),
     "load_scene": lambda s, path: ls.load_scene(written(s, path)),
     "load_spectrum": lambda s, path: ls.load_spectrum(ls.bearings(s.machine, s.bearings, theta2=SAMPLES)),
     "motor_load": lambda s, path: ls.motor_load(s.machine, MOTOR, theta2=SAMPLES),
@@ -247,7 +248,7 @@ LACKING: dict[str, str] = {
     """,
     "inline-four": """
         best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
-        draw objective open_study pin_friction position_equation quantities regressor sample scene_at screen
+        draw grid objective open_study pin_friction position_equation quantities regressor sample scene_at screen
         sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights plot.balance
         plot.bearing plot.bearings plot.tornado
         plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed

@@ -116,7 +116,7 @@ class Screen(io.StringIO):
 
 def test_a_terminal_shows_progress(tmp_path, monkeypatch):
     screen = Screen()
-    monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
+    monkeypatch.setattr("linksweep.files.progress.SHOWN_AFTER", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(sys, "stderr", screen)
         ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=6)
@@ -137,7 +137,7 @@ def test_slow_designs_come_in_smaller_chunks(tmp_path, monkeypatch):
 
 
 def test_no_progress_without_a_terminal(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(study_module, "SHOWN_AFTER", 0.0)
+    monkeypatch.setattr("linksweep.files.progress.SHOWN_AFTER", 0.0)
     ls.study(many(), tmp_path / "study.nc", of=["F32"], chunk=6)
     assert capsys.readouterr() == ("", "")
 

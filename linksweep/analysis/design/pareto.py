@@ -11,7 +11,7 @@ import xarray as xr
 from linksweep.base.validate import name_problems, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested, require_dataset
-from linksweep.results.front import front, has_peaks
+from linksweep.results.front import front, has_peaks, objective_attributes
 
 FRONT = "front"
 """Dimension of a front whose designs lie along several dims."""
@@ -65,7 +65,10 @@ def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[s
     sound = np.isfinite(costs).all(axis=1) & sound_status.values.reshape(-1)
     designs = np.flatnonzero(sound)
     designs = designs[front(costs[designs])]
-    return _at(ds, {str(dim): at for dim, at in zip(dims, np.unravel_index(designs, shape), strict=True)})
+    chosen = _at(ds, {str(dim): at for dim, at in zip(dims, np.unravel_index(designs, shape), strict=True)})
+    others = {name: text for name, text in ds.attrs.items() if name not in ("minimize", "maximize")}
+    chosen.attrs = others | objective_attributes(requested("minimize", minimize), requested("maximize", maximize))
+    return chosen
 
 
 def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:

@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from linksweep.files.atomic import ending_of, whole
+from linksweep.files.progress import progress_bar
 from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.machine_parts import BAR, EDGE
 from linksweep.plot.kit.style import small_type
@@ -145,8 +146,12 @@ class Film:
     @cached_property
     def _pictures(self) -> list[Image.Image]:
         """All frames in one palette, so that nothing flickers."""
-        palette = _palette()
-        return [self.image(k).quantize(palette=palette, dither=Image.Dither.NONE) for k in range(len(self))]
+        palette, pictures = _palette(), []
+        with progress_bar(len(self), "frames") as bar:
+            for k in range(len(self)):
+                pictures.append(self.image(k).quantize(palette=palette, dither=Image.Dither.NONE))
+                bar.update()
+        return pictures
 
     def _repr_html_(self) -> str:
         """Return an HTML player that contains all frames."""

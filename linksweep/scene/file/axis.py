@@ -90,10 +90,10 @@ def _values(table: dict[str, Any], kind: str, problems: list[str]) -> Any:
         problems.append(f"num = {as_toml(num)}: must be a count, 1 or more")
     elif num > MOST:
         problems.append(f"num = {as_toml(num)}: must be at most {MOST}; for more designs use sample or a DataArray")
-    return None if problems else _evenly(start, stop, num)
+    return None if problems else evenly(start, stop, num)
 
 
-def _evenly(start: float, stop: float, num: int) -> Any:
+def evenly(start: float, stop: float, num: int) -> Any:
     """Return evenly spaced decimals: four from 0.06 to 0.09 have 0.07, where floats give 0.06999999999999999."""
     first, last = Fraction(repr(start)), Fraction(repr(stop))
     return np.array([float(first + (last - first) * Fraction(i, max(num - 1, 1))) for i in range(num)])
