@@ -55,10 +55,9 @@ def shank_beyond(
     line, which is spread evenly.
     """
     share = (length - near) / length
-    first, second = 0.5 * (length + near), (length * (length + near) + near * near) / 3.0  # mean s and s²
-    of_shank = _inertia_beyond(x, first, second, c, b_along, b_across, omega, alpha)
     beyond = mass * share
-    axial, shear, moment = (beyond * part for part in of_shank)
+    first, second = 0.5 * beyond * (length + near), beyond * (length * (length + near) + near * near) / 3.0
+    axial, shear, moment = _inertia_beyond(x, beyond, first, second, c, b_along, b_across, omega, alpha)
     return axial, shear, moment - spin * share * alpha
 
 
@@ -80,15 +79,12 @@ def eye_beyond(
     """
     first = mass * length + moment
     second = first * length + moment * length + inertia
-    centripetal = omega * omega
-    axial = mass * (b_along + alpha * c) + centripetal * first
-    shear = mass * (b_across + centripetal * c) - alpha * first
-    across_moment = (first - x * mass) * (b_across + centripetal * c) - alpha * (second - x * first)
-    return axial, shear, across_moment - c * axial
+    return _inertia_beyond(x, mass, first, second, c, b_along, b_across, omega, alpha)
 
 
 def _inertia_beyond(
     x: Number,
+    mass: Number,
     first: Number,
     second: Number,
     c: Number,
@@ -97,11 +93,13 @@ def _inertia_beyond(
     omega: Number,
     alpha: Number,
 ) -> Forces:
-    """Return the module's integrals per unit of mass, whose mean s and s² are `first` and `second`."""
+    """Return the module's integrals over a mass, of which the first and second moments about the first pin, ∫ s dm and
+    ∫ s² dm, are `first` and `second`."""
     centripetal = omega * omega
-    across = b_across + centripetal * c
-    axial, shear = b_along + alpha * c + centripetal * first, across - alpha * first
-    return axial, shear, (first - x) * across - alpha * (second - x * first) - c * axial
+    axial = mass * (b_along + alpha * c) + centripetal * first
+    shear = mass * (b_across + centripetal * c) - alpha * first
+    across_moment = (first - x * mass) * (b_across + centripetal * c) - alpha * (second - x * first)
+    return axial, shear, across_moment - c * axial
 
 
 def force_at(x: Number, s: Number, c: Number, along: Number, across: Number, torque: Number) -> Forces:

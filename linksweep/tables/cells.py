@@ -10,6 +10,8 @@ import xarray as xr
 
 PLAIN_UNITS = {"degree": "°", "1": ""}
 """Units as they follow a number, where that is not their own spelling."""
+HANDY = {"Pa": ("MPa", 1e6), "Pa m/s": ("MPa m/s", 1e6), "degree": ("°", 1.0)}
+"""Units of which the numbers are neither very large nor very small, and their number of SI units."""
 
 
 def digits(value: float) -> str:
@@ -27,6 +29,16 @@ def number(value: float) -> str:
         return f"{value:.3e}".replace("-", "−")
     digits = np.format_float_positional(value, precision=4, unique=False, fractional=False, trim="k")
     return digits.rstrip(".").replace("-", "−")
+
+
+def finite_or_inf(value: float) -> str:
+    """Return a number as figures show it, but infinity in letters that every terminal has; nothing for NaN."""
+    return "" if np.isnan(value) else f"{value:g}" if np.isinf(value) else number(value)
+
+
+def handy_unit(values: xr.DataArray) -> tuple[str, float]:
+    """Return the unit in which a table shows a variable, and its size in the variable's own unit."""
+    return HANDY.get(unit_of(values), (unit_of(values), 1.0))
 
 
 def unit_of(values: xr.DataArray) -> str:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from linksweep.analysis.pins.bearing_life import UNBOUNDED
 from linksweep.results.over_time import mean_over_time
-from linksweep.tables.cells import number, unit_of
+from linksweep.tables.cells import finite_or_inf, handy_unit, unit_of
 from linksweep.tables.table import Part, Row, Table
 
 BEARING = {  # column of a pin: variable, and the statistic over the cycle
@@ -21,8 +21,6 @@ BEARING = {  # column of a pin: variable, and the statistic over the cycle
     "PV": ("pv", "max"),
     "L10h": ("L10h", ""),
 }
-HANDY = {"Pa": ("MPa", 1e6), "Pa m/s": ("MPa m/s", 1e6), "degree": ("°", 1.0)}
-"""Units of which the numbers are neither very large nor very small, and their number of SI units."""
 
 
 def bearing_parts(ds: xr.Dataset) -> Iterator[Part]:
@@ -35,22 +33,17 @@ def bearing_parts(ds: xr.Dataset) -> Iterator[Part]:
     of_pins = np.broadcast_to(status.values, ds.sizes[dim])
     rows: list[Row] = []
     for k, pin in enumerate(ds[dim].values):
-        numbers = (_digits(float(column[k])) for column in columns.values())
+        numbers = (finite_or_inf(float(column[k])) for column in columns.values())
         rows.append((str(pin), *numbers, words[of_pins[k]] if of_pins[k] else ""))
     header = (dim, *columns, "status")
     cut = len(header) if of_pins.any() else len(header) - 1
     yield Table(header[:cut], [row[:cut] for row in rows], right=range(1, len(columns) + 1))
 
 
-def _digits(value: float) -> str:
-    """Return a number as figures show it, but infinity in letters that every terminal has; nothing for NaN."""
-    return "" if np.isnan(value) else f"{value:g}" if np.isinf(value) else number(value)
-
-
 def _column(ds: xr.Dataset, dim: str, title: str, name: str, how: str) -> tuple[str, np.ndarray]:
     """Return the title of a column with its unit, and a number for each pin."""
     values = ds[name]
-    unit, size = HANDY.get(unit_of(values), (unit_of(values), 1.0))
+    unit, size = handy_unit(values)
     if how:
         samples = values.broadcast_like(ds["theta2"])
         values = samples.max("theta2") if how == "max" else mean_over_time(samples, ds)

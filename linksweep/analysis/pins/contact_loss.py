@@ -29,10 +29,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.checked_number import checked_number
-from linksweep.base.validate import Number, Rule, name_problems, refuse
-from linksweep.chains.between_links import force_name, is_pin
-from linksweep.results.compute import require
+from linksweep.analysis.pins.by_pin import Numbers, links_of_pins, numbers_by_pin
+from linksweep.base.validate import Number, Rule
+from linksweep.chains.between_links import force_name
 from linksweep.results.dataset import by_command, joined, with_units
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.lazy import in_memory
@@ -47,7 +46,7 @@ STENCIL = {-2.0: 1.0 / 12.0, -1.0: -2.0 / 3.0, 1.0: 2.0 / 3.0, 2.0: -1.0 / 12.0}
 
 def contact_loss(
     scene: Scene,
-    clearance: Number | Mapping[str, Number] | None = None,
+    clearance: Numbers | None = None,
     *,
     theta2: Any = 720,
     threads: int | None = None,
@@ -96,10 +95,9 @@ def contact_loss(
     >>> bool((loss.turning_per_force > 5.0).any())  # by Earles and Wu
     False
     """
-    require(scene, "pins")
+    pins = links_of_pins(scene)
     scene = in_memory(scene)
-    pins = {pin: pair for pin, pair in scene.mechanism.pins.items() if is_pin(pin)}
-    gaps = _clearances(clearance, pins)
+    gaps = {} if clearance is None else numbers_by_pin("clearance", clearance, pins, CLEARANCE)
     names = [f"{force_name(*pair)}{axis}" for pair in pins.values() for axis in "xy"]
     cycle = sweep(scene, theta2, of=["omega2", *names], threads=threads)
     slopes = _slopes(scene, cycle, names, threads)
@@ -118,14 +116,6 @@ TEXTS = {
     "turning_per_force": ("rad/N/s", "magnitude of the turning rate over the pin force"),
     "knock": ("1", "force that keeps the journal on its circle over the pin force; above 1 contact is lost"),
 }
-
-
-def _clearances(clearance: Any, pins: Mapping[str, Any]) -> dict[str, Number]:
-    """Return the clearances that are stated, by pin."""
-    of_all = {} if clearance is None else dict.fromkeys(pins, clearance)
-    stated = clearance if isinstance(clearance, Mapping) else of_all
-    refuse([problem for pin in stated for problem in name_problems("clearance", pin, pins)])
-    return {pin: checked_number(f"clearance.{pin}", gap, CLEARANCE) for pin, gap in stated.items()}
 
 
 def _slopes(scene: Scene, cycle: xr.Dataset, names: list[str], threads: int | None) -> xr.Dataset:

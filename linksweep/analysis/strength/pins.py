@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.pins.by_pin import Numbers, links_of_pins, numbers_by_pin
 from linksweep.base.checked_number import checked_number
-from linksweep.base.validate import Number, Rule, choice_problems, name_problems, quote, refuse
-from linksweep.chains.between_links import force_name, is_pin
-from linksweep.results.compute import require
+from linksweep.base.validate import Number, Rule, choice_problems, quote, refuse
+from linksweep.chains.between_links import force_name
 from linksweep.results.dataset import by_command, flags, joined, with_units
 from linksweep.results.peaks import peaks
 from linksweep.scene.designs.lazy import in_memory
@@ -29,15 +29,14 @@ from linksweep.scene.scene import Scene
 
 CRITERIA = ("shear", "pressure", "bending")
 STRESS, WIDTH = Rule("pressure", above=0.0), Rule("length", above=0.0)
-Widths = Number | Mapping[str, Number]
 
 
 def size_pins(
     scene: Scene,
     *,
     allowable: Mapping[str, Number],
-    eye: Widths,
-    fork: Widths | None = None,
+    eye: Numbers,
+    fork: Numbers | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Compute the diameter that each pin needs for its largest force over the cycle.
@@ -82,9 +81,8 @@ def size_pins(
     >>> [round(1e3 * float(sizes.diameter.sel(pin=pin)), 1) for pin in "ABCD"]
     [5.4, 5.3, 5.5, 5.4]
     """
-    require(scene, "pins")
+    pins = links_of_pins(scene)
     scene = in_memory(scene)
-    pins = {pin: pair for pin, pair in scene.mechanism.pins.items() if is_pin(pin)}
     limits = _limits(allowable)
     eyes = _widths("eye", eye, pins)
     arms = {pin: 0.5 * width for pin, width in eyes.items()} if fork is None else _widths("fork", fork, pins)
@@ -127,10 +125,9 @@ def _limits(allowable: Any) -> dict[str, Number]:
     return {name: checked_number(f"allowable.{name}", stress, STRESS) for name, stress in allowable.items()}
 
 
-def _widths(path: str, widths: Any, pins: Mapping[str, Any]) -> dict[str, Number]:
+def _widths(path: str, widths: Numbers, pins: Mapping[str, Any]) -> dict[str, Number]:
     """Return the width of each pin's eye, or arm of its fork."""
-    by_pin = widths if isinstance(widths, Mapping) else dict.fromkeys(pins, widths)
-    refuse([problem for pin in by_pin for problem in name_problems(path, pin, pins)])
+    by_pin = numbers_by_pin(path, widths, pins, WIDTH)
     missing = [pin for pin in pins if pin not in by_pin]
     refuse([f"{path}: none for pin {', '.join(missing)}"] if missing else [])
-    return {pin: checked_number(f"{path}.{pin}", width, WIDTH) for pin, width in by_pin.items()}
+    return by_pin
