@@ -61,6 +61,12 @@ def test_a_level_bar_bends_under_its_weight_as_on_two_pins():
     assert float(moment[0]) > 0.0  # its lower side, on the right of its line of pins, is in tension
 
 
+def test_the_larger_stress_is_that_of_the_fibre_that_bears_more():
+    cycle = ls.sweep(beams(ls.example("press")), 24, of=["stress3", "stress3_left", "stress3_right"])
+    larger = np.maximum(abs(cycle.stress3_left), abs(cycle.stress3_right))
+    assert float(abs(cycle.stress3 / larger - 1.0).max()) < 1e-13
+
+
 @pytest.mark.parametrize("name", long_but(LINKAGES, "press", "watt-2", "crank-shaper", "whitworth", "excavator"))
 def test_the_other_part_of_each_link_exerts_the_opposite(name):
     scene = beams(ls.example(name))
@@ -126,6 +132,13 @@ def test_shank_and_eyes_have_the_mass_of_their_link(x, inertia):
         assert min(first, eye) > -0.25 * mass and max(abs(own), abs(left)) < 1e-17
     else:
         assert shank == 0.0 and left >= -1e-17 and own >= -1e-17
+
+
+@pytest.mark.parametrize("distance", [0.1, 0.3])
+def test_a_link_is_bent_by_its_mass_beside_its_line_and_beyond_its_pins(distance):
+    rod = ls.Link(0.25, 0.4, 1.5e-3, cg_distance=distance, cg_angle=20.0, section=ls.Tube(0.02))
+    machine = ls.FourBar(ls.Bar(0.08, **STEEL), rod, ls.Bar(0.2, **STEEL), ground=0.22)
+    compare(ls.Scene(machine, omega2=25.0, alpha2=40.0, gravity=(1.0, -9.81), section=SHARES), "coupler")
 
 
 def test_loads_act_where_they_stand():
@@ -266,16 +279,29 @@ def along(vector, line):
 
 
 def inertia_before(scene, role, count, x):
-    """Return the inertia and weight of a bar before each section."""
-    bar, k = scene.mechanism.parts[role], scene.mechanism.topology.number(role)
+    """Return the inertia and weight of a link before each section: of its first eye, and of its shank."""
+    link, k = scene.mechanism.parts[role], scene.mechanism.topology.number(role)
+    first, shank, spin, (at, beside) = masses_of(link)
     cycle = ls.sweep(scene, count, of=[f"aG{k}x", f"aG{k}y", f"omega{k}", f"alpha{k}"])
-    line, length = line_of(scene, role, count), bar.length
+    line, length = line_of(scene, role, count), link.length
     gx, gy = scene.gravity
     b, c = along((gx - cycle[f"aG{k}x"], gy - cycle[f"aG{k}y"]), line)
     end = np.minimum(np.maximum(x, 0.0), length)
     omega, alpha, axial, shear, moment = cycle[f"omega{k}"], cycle[f"alpha{k}"], 0.0, 0.0, 0.0
-    for node, weight in zip(*GAUSS, strict=True):
-        s, mass = 0.5 * end * (1.0 + node), bar.mass / length * 0.5 * end * weight
-        normal, across = b + omega**2 * (s - 0.5 * length), c - alpha * (s - 0.5 * length)
-        axial, shear, moment = axial + mass * normal, shear + mass * across, moment + mass * (s - x) * across
-    return axial, shear, moment - bar.mass * bar.width**2 / 12.0 * end / length * alpha
+    pieces = [(0.5 * end * (1.0 + node), shank / length * 0.5 * end * w) for node, w in zip(*GAUSS, strict=True)]
+    for s, mass in [(0.0, first), *pieces]:
+        normal, across = b + omega**2 * (s - at), c - alpha * (s - at)
+        axial, shear = axial + mass * normal, shear + mass * across
+        moment = moment + mass * ((s - x) * across - beside * normal)
+    return axial, shear, moment - spin * end / length * alpha
+
+
+def masses_of(link):
+    """Return the mass of a link's first eye and of its shank, that one's moment of inertia about its own line, and the
+    centre of gravity along and beside the line of pins, which lies between the pins."""
+    if isinstance(link, ls.Bar):
+        return 0.0, link.mass, link.mass * link.width**2 / 12.0, (0.5 * link.length, 0.0)
+    cos, sin = np.cos(np.radians(link.cg_angle)), np.sin(np.radians(link.cg_angle))
+    along_pins = link.cg_distance * cos
+    shank, second, *_ = shank_and_eyes(link.length, link.mass, link.inertia, along_pins)
+    return link.mass - shank - second, shank, 0.0, (along_pins, link.cg_distance * sin)

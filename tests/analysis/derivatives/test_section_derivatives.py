@@ -29,6 +29,7 @@ def test_a_bar_under_its_weight_has_the_derivatives_of_its_closed_form():
         theta2=[90.0],
     ).isel(theta2=0)
     assert float(ds.bending_moment3) == pytest.approx(7850.0 * 0.03 * 0.012 * 9.81 * 0.4**2 / 8.0, rel=1e-12)
+    assert float(ds.stress3_right) == pytest.approx(0.75 * 7850.0 * 9.81 * 0.4**2 / 0.03, rel=1e-12)  # in tension
     moment, stress = (ds[f"{name}_elasticity"].values for name in ("bending_moment3", "stress3_right"))
     np.testing.assert_allclose(moment, [2.0, 1.0, 1.0, 1.0, 1.0, 0.0], rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(stress[1:], [-1.0, 0.0, 1.0, 1.0, 0.0], rtol=1e-12, atol=1e-12)

@@ -73,6 +73,14 @@ def test_lives_of_designs_and_materials_are_those_of_each_alone():
     assert "life [cycles]" in str(ls.strength(bent(), STEEL, links="crank").linksweep)
 
 
+def test_a_crank_is_as_thick_as_its_closed_form_requires():
+    """σ_a = 2 F L/(t w²/6) = S_e/n, of the thickness t or the width w."""
+    for vary, start, power in (("thickness", THICKNESS, 1.0), ("width", WIDTH, 2.0)):
+        ds = ls.size_links(bent(), STEEL, safety=1.5, vary=vary, links="crank").sel(link="crank")
+        needed = start * (1.5 * 2.0 * NOMINAL / STEEL.endurance) ** (1.0 / power)
+        assert float(ds[vary]) == pytest.approx(needed, rel=1e-6) and float(ds.safety) == pytest.approx(1.5, rel=1e-6)
+
+
 def test_a_crank_that_does_not_turn_round_has_no_life():
     rocks = ls.FourBar(*(ls.Bar(length, WIDTH, THICKNESS, 7850.0) for length in (0.3, 0.2, 0.2)), ground=0.25)
     ds = ls.strength(ls.Scene(rocks, omega2=10.0, loads=[ls.Load("rocker", torque=5.0)]), STEEL)
