@@ -38,7 +38,8 @@ def with_derivatives(
 def _of_function(path: str, function: Any, rule: Rule, grid: Grid, period: float) -> tuple[Number, Number, Number]:
     middle = called(path, function, rule, grid.angles)
     at = np.mod(np.stack([grid.angles[:, None] + STEPS, grid.angles[:, None] - STEPS]), period)
-    after, before = called(path, function, rule, at.ravel()).values.reshape(at.shape)
+    different, place = np.unique(at, return_inverse=True)
+    after, before = called(path, function, rule, different).values[place.reshape(at.shape)]
     own, width, noise = middle.values[:, None], np.radians(STEPS), ROUNDING * np.max(abs(middle.values))
     slope = limit((after - before) / (2.0 * width), np.broadcast_to(noise / width, before.shape))
     curvature = limit((after - own + before - own) / width**2, np.broadcast_to(4.0 * noise / width**2, before.shape))

@@ -84,11 +84,14 @@ class Sloped(np.lib.mixins.NDArrayOperatorsMixin):
         return 0.0
 
     def cos_sin_low_words(self) -> tuple[Any, ...]:
-        """Return cosine and sine of an angle [degree], and low words, which have no slopes."""
+        """Return cosine and sine of an angle [degree], and low words, which have no slopes.
+
+        These, too, are numbers with slopes: a Variable refuses to be multiplied by such a one.
+        """
         cos, sin, *low_words = cos_sin_low_words(self.value)
         of_cos = {path: -RADIAN * sin * slope for path, slope in self.slopes.items()}
         of_sin = {path: RADIAN * cos * slope for path, slope in self.slopes.items()}
-        return Sloped(cos, of_cos), Sloped(sin, of_sin), *low_words
+        return Sloped(cos, of_cos), Sloped(sin, of_sin), *(Sloped(low, {}) for low in low_words)
 
     def through(self, curve: Callable[[Any], Any], slope: Callable[[Any], Any]) -> Sloped:
         """Return a function of the number, of which the slope is known, both functions of numpy's arrays."""

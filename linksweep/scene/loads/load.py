@@ -215,7 +215,7 @@ class Load(ChangingLoad):
 
     def _followed(self, kind: str, positions: Any, acts: Number, path: str, number: Any, rule: Rule) -> Any:
         """Return a force or torque over the angles; one that is 0 at every position stays a number."""
-        if number is None or (not hasattr(number, "dims") and not callable(number) and number == 0.0):
+        if number is None or (isinstance(number, float) and number == 0.0):
             return number
         followed: Any = at_positions(path, number, rule, positions, kind, self.interpolation) * acts
         # where it cannot be assembled there is no position; a plain number acts at every angle
