@@ -1,6 +1,6 @@
 """Parameters over the revolution: constants, DataArrays over theta2 and functions of theta2 give equal results."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -64,6 +64,25 @@ def test_a_constant_a_data_array_and_a_function_give_equal_arrays(parameter, num
         xr.DataArray(np.full(count, number), dims="theta2"),
     ):
         assert_equal_arrays(ls.sweep(scene(**{parameter: value}), count, of=EVERYTHING), constant)
+
+
+@dataclass
+class Wave:
+    """A function as a class of its own, whose fields are no parameters of the scene."""
+
+    size: float
+
+    def __call__(self, theta2):
+        return 7.0 + self.size * np.cos(np.radians(theta2))
+
+
+@pytest.mark.parametrize("parameter", ["omega2", "Fx"])
+def test_a_function_may_be_an_object_of_a_dataclass(parameter):
+    """It was taken for a part with fields, so that a speed of it had no acceleration."""
+    plain = ls.sweep(scene(**{parameter: lambda theta2: 7.0 + 2.0 * np.cos(np.radians(theta2))}), 4, of=EVERYTHING)
+    own = scene(**{parameter: Wave(2.0)})
+    assert_equal_arrays(ls.sweep(own, 4, of=EVERYTHING), plain)
+    assert {own: True}[own]
 
 
 @pytest.mark.parametrize("parameter", ["omega2", "alpha2", "Fx", "Fy", "torque"])
