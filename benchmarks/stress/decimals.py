@@ -72,9 +72,23 @@ class Vector(NamedTuple):
         return direction * self.x + direction.left * self.y
 
 
+def exact(values: Any, designs: int) -> Array:
+    """Return numbers, floats or decimals, one or an array over the designs, as decimals over the designs."""
+    array = np.asarray(values)
+    return exactly(np.broadcast_to(array if array.dtype == object else array.astype(float), designs))
+
+
 def directions(degrees: Array) -> Vector:
     """Return unit vectors at angles [degree]."""
     return Vector(*_direction(degrees))
+
+
+def angles(u: Vector) -> Array:
+    """Return the angles of vectors [degree], in (-180, 180]: those of floats, corrected by Taylor's series."""
+    near = exactly(np.degrees(np.arctan2(*(part.astype(float) for part in (u.y, u.x)))))
+    unit = directions(near)
+    tangent = unit.cross(u) / unit.dot(u)
+    return near + (tangent - tangent**3 / 3) / RADIAN
 
 
 @lru_cache(maxsize=10_000)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from benchmarks.stress.decimals import Array, Number, Vector, directions, exactly
+from benchmarks.stress.decimals import Array, Number, Vector, directions, exact
 from benchmarks.stress.linkages.constraints import GROUND, ORIGIN, Apart, Constraint, Frame, OnLine, Pin, Turned
 from benchmarks.stress.linkages.machine import Element, Linkages
 
@@ -32,10 +32,10 @@ class Assembly:
     linkages: Linkages
 
     def exact(self, values: Any) -> Array:
-        return exactly(np.broadcast_to(np.asarray(values, dtype=float), len(self.linkages)))
+        return exact(values, len(self.linkages))
 
     def direction(self, degrees: Any) -> Vector:
-        return directions(np.broadcast_to(np.asarray(degrees, dtype=float), len(self.linkages)))
+        return directions(self.exact(degrees))
 
     def polar(self, at: tuple[Any, Any]) -> Vector:
         return self.direction(at[1]) * self.exact(at[0])
@@ -110,6 +110,8 @@ class Assembly:
                 yield OnLine(*self._sliding_line(body), host, self.pin(host, body.past), self.line_friction(body))
 
     def line_friction(self, body: Element) -> Number:
+        if body.slides:  # a yoke's slot
+            return self.part(body.role, "slot_friction")
         return self.exact(self.linkages.guides.get(body.role, {}).get("friction", 0.0))
 
     def _sliding_line(self, body: Element) -> tuple[str, Vector, Vector]:
@@ -155,9 +157,12 @@ class Assembly:
         return Apart(i, self.pin(i, P), j, self.pin(j, Q), self.length(cylinder.role), cylinder.role)
 
     def length(self, role: str) -> tuple[Number, Number, Number]:
-        """Return a cylinder's length and its derivatives by the crank's angle; it may be a spline through some lengths
-        over a turn."""
-        lengths = np.asarray(self.linkages.parts.get(role, {}).get("length", 0.0))
+        """Return a cylinder's length and its derivatives by the crank's angle; it may be a function that returns them,
+        or a spline through some lengths over a turn."""
+        length = self.linkages.parts.get(role, {}).get("length", 0.0)
+        if callable(length):
+            return length(self.exact(self.linkages.theta2))
+        lengths = np.asarray(length)
         if lengths.ndim < 2:
             return self.exact(lengths), 0, 0
         spline = length_spline(lengths)

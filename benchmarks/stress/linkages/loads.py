@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from benchmarks.stress.decimals import Array, Number, Vector, root
+from benchmarks.stress.decimals import RADIAN, Array, Number, Vector, angles, root
 from benchmarks.stress.linkages.assembly import Assembly
 from benchmarks.stress.linkages.constraints import GROUND, Frames, Push, push
-from benchmarks.stress.linkages.machine import Damper, Load, Spring, TorsionDamper
+from benchmarks.stress.linkages.machine import Damper, Load, Spring, TorsionDamper, TorsionSpring
 
 
 def add(first: Push, second: Push) -> Push:
@@ -27,7 +27,8 @@ def loads_on(assembly: Assembly, frames: Frames) -> Push:
         mass = assembly.part(role, "mass")
         total[role] = gravity.x * mass, gravity.y * mass, zero
     for load in assembly.linkages.loads:
-        for part in WAYS[type(load)](assembly, frames, load):
+        pushes = load(assembly, frames) if callable(load) else WAYS[type(load)](assembly, frames, load)
+        for part in pushes:
             total = add(total, part)
     return total
 
@@ -66,10 +67,24 @@ def _tension(assembly: Assembly, load: Spring | Damper, length: Array, lengtheni
     return assembly.exact(load.rate) * (length - assembly.exact(load.free_length))
 
 
-def torsion_pushes(assembly: Assembly, frames: Frames, load: TorsionDamper) -> list[Push]:
-    torque = assembly.exact(load.coefficient) * (frames[load.to].omega - frames[load.from_].omega)
+def torsion_pushes(assembly: Assembly, frames: Frames, load: TorsionDamper | TorsionSpring) -> list[Push]:
+    torque = _resistance(assembly, frames, load)
     ends = {load.from_: (0, 0, torque), load.to: (0, 0, -torque)}
     return [{role: values} for role, values in ends.items() if role != GROUND]
 
 
-WAYS: dict[type, Any] = {Load: load_pushes, Spring: line_pushes, Damper: line_pushes, TorsionDamper: torsion_pushes}
+def _resistance(assembly: Assembly, frames: Frames, load: TorsionDamper | TorsionSpring) -> Number:
+    if isinstance(load, TorsionDamper):
+        return assembly.exact(load.coefficient) * (frames[load.to].omega - frames[load.from_].omega)
+    free = assembly.direction(load.free_angle).turned(frames[load.from_].u)
+    twist = angles(frames[load.to].u.turned(Vector(free.x, -free.y)))
+    return assembly.exact(load.rate) * twist * RADIAN
+
+
+WAYS: dict[type, Any] = {
+    Load: load_pushes,
+    Spring: line_pushes,
+    Damper: line_pushes,
+    TorsionSpring: torsion_pushes,
+    TorsionDamper: torsion_pushes,
+}

@@ -38,6 +38,15 @@ def element(text: str) -> Element:
     return Element(role, pins, after.get("on", ""), after.get("past", ""), gear=gear)
 
 
+class TorsionSpring(NamedTuple):
+    """A spring that turns one link from another, ground's line being x; its angles in degrees."""
+
+    from_: str
+    to: str
+    rate: Array
+    free_angle: Any = 0.0
+
+
 class Load(NamedTuple):
     """A force at a point of a link, and a torque on it; fields as those of linksweep's."""
 
@@ -76,18 +85,20 @@ class TorsionDamper(NamedTuple):
 
 @dataclass(frozen=True)
 class Linkages:
-    """Linkages of one topology at one crank angle; every number is an array over the designs, or one number.
+    """Linkages of one topology; every number, a float or a decimal, is an array over the designs, or one number.
 
     `parts` has the fields of each link and slider (length, mass, inertia, cg_distance, cg_angle; slot_angle of a yoke;
     length of a cylinder), `guides` those of each guide (through, angle, friction, of), `gears` ratio and phase. `pins`
-    is where the pins nearly are, x + jy [m]: the start of Newton's method.
+    is where the pins nearly are, x + jy [m]: the start of Newton's method. `drive` is a link or a cylinder, or, as
+    "along block", a force along the line on which a link slides. Of the loads, some may be functions of assembly and
+    frames that return pushes.
     """
 
     text: str
     ground: Mapping[str, tuple[Any, Any]]
     parts: Mapping[str, Mapping[str, Any]]
     pins: Mapping[str, Array]
-    theta2: float
+    theta2: Any
     points: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
     guides: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     gears: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)

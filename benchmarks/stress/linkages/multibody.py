@@ -174,7 +174,8 @@ def required(assembly: Assembly, frames: Frames, loads: Push) -> list[Array]:
 
 
 def drive_push(assembly: Assembly, frames: Frames) -> Push:
-    """Return the push of the drive's unit torque on a link, or of its unit force that lengthens a cylinder."""
+    """Return the push of the drive's unit torque on a link, or of its unit force that lengthens a cylinder, or that
+    pushes a link along the line on which it slides."""
     linkages = assembly.linkages
     drive = linkages.drive or linkages.crank
     for cylinder in linkages.cylinders:
@@ -183,6 +184,9 @@ def drive_push(assembly: Assembly, frames: Frames) -> Push:
             length, _ = between.lengthening(frames)
             (push,) = between.pushes(frames)
             return {role: tuple(value / length for value in values) for role, values in push.items()}
+    for line in assembly.constraints:
+        if isinstance(line, OnLine) and drive == f"along {line.j}":
+            return line.rubbing(frames)
     return {drive: (0, 0, 1)}
 
 

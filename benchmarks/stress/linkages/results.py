@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.stress.decimals import Array, Number, Vector, exactly, fifty_digits, root
+from benchmarks.stress.decimals import Array, Number, Vector, angles, fifty_digits, root
 from benchmarks.stress.linkages.constraints import GROUND, Apart, Constraint, OnLine, Pin, Turned
 from benchmarks.stress.linkages.multibody import Solution
 
@@ -14,7 +14,7 @@ Results = dict[str, Array]
 
 
 def named(solution: Solution) -> Results:
-    """Return kinematics, forces and the drive's torque or force by name; angles alone are rounded to floats."""
+    """Return kinematics, forces and the drive's torque or force by name."""
     with fifty_digits():
         return kinematics(solution) | forces(solution)
 
@@ -26,7 +26,7 @@ def kinematics(solution: Solution) -> Results:
     for body in linkages.bodies:
         k, frame = linkages.number[body.role], frames[body.role]
         if not body.slides:
-            results |= {f"theta{k}": _angle(frame.u), f"omega{k}": frame.omega, f"alpha{k}": frame.alpha}
+            results |= {f"theta{k}": angles(frame.u), f"omega{k}": frame.omega, f"alpha{k}": frame.alpha}
     for pin in linkages.pins:
         role = linkages.carriers(pin)[0]
         if role != GROUND:
@@ -141,10 +141,6 @@ WAYS_OF_FORCES = {Pin: _pin_force, OnLine: _line_force, Turned: _moment, Apart: 
 
 def _vector(name: str, vector: Vector) -> Results:
     return {f"{name}x": vector.x, f"{name}y": vector.y}
-
-
-def _angle(u: Vector) -> Array:
-    return exactly(np.degrees(np.arctan2(*(part.astype(float) for part in reversed(u)))))
 
 
 # ---- energy
