@@ -9,22 +9,32 @@ import numpy as np
 LEAST, MOST = 2**22, 2**28
 """Bytes from which memory is kept for the next result, and bytes that are kept in all."""
 
+LINE = 64
+"""Bytes of a line of the cache: kernels write whole ones past the caches."""
+
 _free: dict[int, np.ndarray] = {}
 """Memory that nobody holds, by identity, the oldest first."""
 
 
 def block(rows: int, columns: int) -> np.ndarray:
-    """Return an array of any numbers. While it, or a view of it, lives, its memory is nobody else's."""
+    """Return an array of any numbers that begins with a line of the cache. While it, or a view of it, lives, its memory
+    is nobody else's."""
     size = 8 * rows * columns
     if size > MOST:
         _free.clear()  # a result this large may need it
     if not LEAST <= size <= MOST:
-        return np.empty((rows, columns))
-    memory = _taken(size)
+        return _on_a_line(np.empty(size + LINE, dtype=np.uint8), size).reshape(rows, columns)
+    memory = _taken(size + LINE)
     # numpy lets a view of a view hold the owner of the memory; of a buffer's array it holds that array itself
-    leased = np.frombuffer(memory.data, dtype=np.float64, count=rows * columns)
+    leased = np.frombuffer(_on_a_line(memory, size).data, dtype=np.float64)
     weakref.finalize(leased, _give_back, memory).atexit = False
     return leased.reshape(rows, columns)
+
+
+def _on_a_line(memory: np.ndarray, size: int) -> np.ndarray:
+    """Return the numbers in some bytes of memory, from the first that begins a line of the cache."""
+    before = -memory.ctypes.data % LINE
+    return memory[before : before + size].view(np.float64)
 
 
 def _taken(size: int) -> np.ndarray:

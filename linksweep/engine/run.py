@@ -31,6 +31,10 @@ from linksweep.engine.trace.plan import Plan
 COMPILE_AFTER = 1_000_000
 """Samples (angles × designs) of a plan interpreted before its kernel is compiled: about 20 ms of the interpreter."""
 
+STREAMED_FROM = 20_000_000
+"""Bytes from which results are written past the caches, which would not hold them until somebody reads them: below,
+that took twice as long, above two thirds (measured with caches of 32 MB)."""
+
 SAMPLES_PER_THREAD = 300_000
 """Samples that pay for another thread: about a millisecond of kernel."""
 
@@ -198,28 +202,33 @@ def _execute(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
     plan, fused, layout = ready.plan, ready.fused, ready.layout(sizes)
-    kernel = compiled(fused.source, REDUCTIONS_SOURCE if ready.reductions else "")
-    samples, room = len(grid.angles), max(len(grid.angles), LANES)
+    (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
+    samples = len(grid.angles)
+    room = max(samples, LANES)
+    streamed = 8 * block_rows * room >= STREAMED_FROM
+    if streamed:  # whole vectors, each of whole lines of the caches
+        samples = room = -(-room // LANES) * LANES
+    kernel = compiled(fused.source, REDUCTIONS_SOURCE if ready.reductions else "", "block" if streamed else "")
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
-    profiles = np.pad(profiles, ((0, 0), (0, room - samples))) if samples < room else profiles
-    (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
+    missing = room - len(grid.angles)
+    profiles = np.pad(profiles, ((0, 0), (0, missing)), mode="edge") if missing else profiles
     numbers = block_rows * room + single_size
     require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
     block, single = new_block(block_rows, room), np.empty(single_size)
+    unit, length = (1, int(layout.sizes[0])) if plan.loops else (LANES, samples)
 
     def work(first: int, last: int) -> None:
         apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
         scratch, values = np.empty((fused.scratch_rows, apart)), np.empty(fused.value_count)
         kernel(
-            first, last, samples, layout.sizes, parameters, parameter_at, profiles, profile_at,
-            block, block_at, single, single_at, scratch, values, grid.angles, np.empty(reduce.WORK),
+            first * unit, min(last * unit, length), samples, layout.sizes, parameters, parameter_at, profiles,
+            profile_at, block, block_at, single, single_at, scratch, values, grid.angles, np.empty(reduce.WORK),
         )  # fmt: skip
 
-    length = int(layout.sizes[0]) if plan.loops else samples
     workers = 1 + _samples(plan, grid, sizes) // SAMPLES_PER_THREAD
-    over_threads(work, length, 1 if ready.reductions and not plan.loops else workers, threads)
-    return block[:, :samples], single
+    over_threads(work, -(-length // unit), 1 if ready.reductions and not plan.loops else workers, threads)
+    return block[:, : len(grid.angles)], single
 
 
 def over_threads(work: Callable[[int, int], None], length: int, workers: int, threads: int | None = None) -> None:

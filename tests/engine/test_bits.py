@@ -130,6 +130,19 @@ def test_one_thread_and_two_agree(sweep, monkeypatch):
         assert_same_bits(one, three)
 
 
+@pytest.mark.parametrize("count", [5, 37, 720])
+def test_results_written_past_the_caches_agree(sweep, monkeypatch, count):
+    """Rows are then filled up to whole vectors, and threads share whole vectors."""
+    monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)
+    for scene in (designs(), loaded()):
+        through, past = [], []
+        for least, results in ((np.inf, through), (0, past)):
+            monkeypatch.setattr(run, "STREAMED_FROM", least)
+            results += [sweep("compiled", scene, count, threads=n) for n in (1, 2)]
+        for result in (through[1], *past):
+            assert_same_bits(result, through[0])
+
+
 def test_threads_share_the_work(sweep, monkeypatch):
     """The test above relies on this."""
     monkeypatch.setattr(run, "SAMPLES_PER_THREAD", 100)

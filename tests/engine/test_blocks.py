@@ -106,3 +106,9 @@ def test_memory_much_larger_than_needed_stays_free():
     large = address(blocks.block(2 * ROWS, COLUMNS))
     assert address(blocks.block(ROWS, COLUMNS)) != large
     assert address(blocks.block(2 * ROWS, COLUMNS - 100)) == large
+
+
+@pytest.mark.parametrize("rows", [1, 7, 4000, 70_000])
+def test_blocks_begin_with_a_line_of_the_cache(rows):
+    """Else a kernel that writes past the caches would end the process."""
+    assert blocks.block(rows, 500).ctypes.data % blocks.LINE == 0

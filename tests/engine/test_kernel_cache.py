@@ -30,7 +30,7 @@ def folder(tmp_path, monkeypatch):
 def root_of_two() -> float:
     """Compile a kernel, or fetch it from the cache, and run it."""
     x = np.array([2.0])
-    kernels.compiled(SOURCE, "", "void(f8[::1])")(x)
+    kernels.compiled(SOURCE, signature="void(f8[::1])")(x)
     return float(x[0])
 
 

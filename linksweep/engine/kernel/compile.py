@@ -13,7 +13,7 @@ import hashlib
 import pickle
 import sys
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -36,10 +36,14 @@ SEARCH_SIGNATURE = (
 
 
 @cache
-def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE) -> Callable:
-    """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now."""
-    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.width()}"
-    kernel = _jitted(kernel_source, compiled_functions(helpers_source), context)["kernel"]
+def compiled(kernel_source: str, helpers_source: str = "", streamed: str = "", signature: str = SIGNATURE) -> Callable:
+    """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now.
+
+    It writes the array that is `streamed` past the caches.
+    """
+    context = f"{signature} {helpers_source} {vectors.SOURCE} {vectors.width()} {streamed}"
+    vectorised = {"vectorised": partial(vectors.intrinsic, streamed=streamed)}
+    kernel = _jitted(kernel_source, {**vectorised, **compiled_functions(helpers_source)}, context)["kernel"]
     kernel.compile(signature)
     kernel.disable_compile()
     return kernel
@@ -105,13 +109,13 @@ def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
 
 
 def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "", entry: str = "") -> dict[str, Any]:
-    """Run a module's text and hand its functions to numba, `@vectorised` ones as instructions; its name covers all that
-    enters their machine code. If there is an entry, Python calls no other function."""
+    """Run a module's text with its helpers, and hand its functions to numba; its name covers all that enters their
+    machine code. If there is an entry, Python calls no other function."""
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
     module = sys.modules[name] = ModuleType(name)  # where a cached kernel looks for it
-    vars(module).update({"vectorised": vectors.intrinsic, **helpers})
+    vars(module).update(helpers)
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
     jitted = {key: _dispatcher(function, internal=entry not in ("", key)) for key, function in functions.items()}

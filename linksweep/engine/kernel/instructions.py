@@ -110,6 +110,11 @@ class Instructions:
         """Store a vector, or a number repeated, from a position of an array on."""
         self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=8)
 
+    def stream(self, value: Any, start: Any, at: Any) -> None:
+        """Store a vector past the caches, which would first read what it replaces; it begins with a line of them."""
+        stored = self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=64)
+        stored.set_metadata("nontemporal", self.builder.module.add_metadata([self.ir.IntType(32)(1)]))
+
     def as_number(self, value: Any) -> Any:
         """Return 1 and 0 for a condition; of numbers themselves."""
         value = self.value(value)

@@ -45,14 +45,17 @@ def width() -> int:
     return 16 if "+avx512f" in features else 8 if "+avx" in features else 4
 
 
-def intrinsic(function: FunctionType) -> Callable:
-    """Return a function as instructions that numba puts in place of its calls."""
+def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
+    """Return a function as instructions that numba puts in place of its calls; rows of the array that is `streamed` are
+    stored past the caches."""
+    names = list(inspect.signature(function).parameters)
 
     def emit(builder: Any, *arguments: Any) -> None:
         writer = _Writer(builder)
-        FunctionType(function.__code__, writer.names())(*map(writer.argument, arguments))
+        passed = [writer.argument(x, name == streamed) for name, x in zip(names, arguments, strict=True)]
+        FunctionType(function.__code__, writer.names())(*passed)
 
-    return instructions.intrinsic(emit, inspect.signature(function).parameters)
+    return instructions.intrinsic(emit, names)
 
 
 def _operation(name: str, reflected: bool = False) -> Callable[..., _Value]:
@@ -79,15 +82,15 @@ class _Value:
 class _Array:
     """An array in machine code: elements are loaded and stored, or, within a loop, vectors of rows."""
 
-    def __init__(self, writer: _Writer, struct: Any) -> None:
-        self.writer, self.struct = writer, struct
+    def __init__(self, writer: _Writer, struct: Any, streamed: bool) -> None:
+        self.writer, self.struct, self.streamed = writer, struct, streamed
 
     def __getitem__(self, index: Any) -> _Value:
         start, at = self._place(index)
         return _Value(self.writer, self.writer.load(start, at))
 
     def __setitem__(self, index: Any, value: _Value | float) -> None:
-        self.writer.store(value, *self._place(index))
+        self.writer.store(value, *self._place(index), self.streamed)
 
     def _place(self, index: Any) -> tuple[Any, Any]:
         """Return a pointer to an element, or to the start of a row and the sample of it where a vector begins."""
@@ -115,8 +118,8 @@ class _Writer:
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
         return {"math": math, "in_vectors": self.in_vectors, "number": self.number} | operations
 
-    def argument(self, llvm: Any) -> _Value | _Array:
-        return _Array(self, llvm) if hasattr(llvm, "data") else _Value(self, llvm)
+    def argument(self, llvm: Any, streamed: bool) -> _Value | _Array:
+        return _Array(self, llvm, streamed) if hasattr(llvm, "data") else _Value(self, llvm)
 
     # ------------------------------------------------------------------------------------------ loops
 
@@ -165,9 +168,10 @@ class _Writer:
         with self.before_loop():
             return self.builder.load(pointer)
 
-    def store(self, value: _Value | float, pointer: Any, sample: Any) -> None:
+    def store(self, value: _Value | float, pointer: Any, sample: Any, streamed: bool) -> None:
         llvm = value.llvm if isinstance(value, _Value) else value
         if sample is not None:
-            self.instructions.store(llvm, pointer, sample)
+            write = self.instructions.stream if streamed else self.instructions.store
+            write(llvm, pointer, sample)
         else:
             self.builder.store(self.instructions.as_number(llvm), pointer)
