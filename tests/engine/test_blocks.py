@@ -92,10 +92,11 @@ def test_threads_never_share_memory():
 
 
 def test_no_more_is_kept_than_allowed_and_small_or_huge_blocks_are_not(monkeypatch):
-    monkeypatch.setattr(blocks, "MOST", 3 * blocks.LEAST)
+    each = blocks.LEAST + blocks.LINE
+    monkeypatch.setattr(blocks, "MOST", 3 * each)
     held = [blocks.block(ROWS, COLUMNS) for _ in range(5)]
     del held
-    assert sum(memory.nbytes for memory in blocks._free.values()) == 3 * blocks.LEAST
+    assert sum(memory.nbytes for memory in blocks._free.values()) == 3 * each
     blocks.block(1, 100)
     assert len(blocks._free) == 3
     blocks.block(ROWS, 4 * COLUMNS)
