@@ -118,16 +118,16 @@ class Beam:
         for name, form in named(self.loads):
             for force, torque, at, other in form.applied(name, self.body.role):
                 if other:
-                    at = (self._along(self._joint_with(other)), 0.0)
+                    at = self._place(self._joint_with(other))
                 yield Point(force, torque or 0.0, *at)
         if self.driven == self.body.role:
-            yield Point("", self.unknown, self._along(self._joint_with(GROUND)))
+            yield Point("", self.unknown, *self._place(self._joint_with(GROUND)))
 
     def _pin_forces(self) -> Iterator[Point]:
         for joint, (i, j) in self.topology.pins.items():
             pin = joint.partition(":")[0]
             if self.k in (i, j) and pin in self._bearing:
-                yield Point(force_name(i + j - self.k, self.k), 0.0, self._along(pin), 0.0, self._is_last(pin))
+                yield Point(force_name(i + j - self.k, self.k), 0.0, *self._place(pin), self._is_last(pin))
 
     def _slides(self) -> Iterator[Point]:
         """Yield the forces and moments in slides: at the slider's pin, which moves along the link or is its own."""
@@ -141,7 +141,7 @@ class Beam:
             pin = slide.partition(" past ")[2]
             if pin in self.pins:
                 if pin in self._bearing:
-                    yield Point(force, torque or 0.0, self._along(pin), 0.0, self._is_last(pin))
+                    yield Point(force, torque or 0.0, *self._place(pin), self._is_last(pin))
             else:
                 arm, at = xy(f"beam{self.k}_{force}_"), (f"beam{self.k}_{force}_s", f"beam{self.k}_{force}_c")
                 self.rows.append(Row(planar.difference, arm, (*self.slider_pins[i, j], *self.body.pin_position)))
@@ -158,7 +158,7 @@ class Beam:
                     signed, force = f"{push}_signed", f"force_{role}"
                     self.rows.append(Row(planar.product, (signed,), (force, way)))
                     self.rows.append(Row(planar.along, xy(push), (signed, *xy(f"axis_{role}"))))
-                    yield Point(push, 0.0, self._along(pin), 0.0, self._is_last(pin))
+                    yield Point(push, 0.0, *self._place(pin), self._is_last(pin))
 
     def _pushes(self, cylinder: str) -> bool:
         return cylinder in self.topology.struts or cylinder == self.driven
@@ -171,9 +171,11 @@ class Beam:
     def _is_last(self, pin: str) -> bool:
         return not self._overhangs and pin == self.pins[1]
 
-    def _along(self, pin: str) -> Source:
-        """Return the position of a pin along the link."""
-        return (0.0, self.length)[self.pins.index(pin)] if pin in self.pins[:2] else f"{pin}_along"
+    def _place(self, pin: str) -> tuple[Source, Source]:
+        """Return the position of a pin along the link, and beside its line of pins: 0, but with slopes of its own."""
+        if pin in self.pins[:2]:
+            return (0.0, self.length)[self.pins.index(pin)], 0.0
+        return f"{pin}_along", f"{pin}_across"
 
     def _joint_with(self, other: str) -> str:
         """Return the pin at which another link, or the ground, is joined to this one; else its first pin."""

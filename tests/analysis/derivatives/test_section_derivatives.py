@@ -93,6 +93,22 @@ def test_derivatives_of_stresses_are_differences_of_sweeps(made):
             assert float(error.max()) <= near, (path, name)
 
 
+@pytest.mark.long
+def test_a_third_pin_that_leaves_the_line_of_pins_bends_its_link(monkeypatch):
+    """Such a link is refused as a beam: for differences alone it is taken for one."""
+    scene, names, angles = with_third_pins(), ["axial_force4", "shear_force4", "bending_moment4"], [20.0, 130.0]
+    paths = ["points.E[2]", "points.H[2]"]
+    ds = ls.sensitivities(scene, of=names, to=paths, theta2=angles)
+    monkeypatch.setattr(type(scene.mechanism), "beam_problem", lambda machine, role: "")
+    for path in paths:
+        value, step = free(scene)[path][0], 1e-3
+        moved = [ls.sweep(replaced(scene, {path: value + k * step}), angles, of=names) for k in (-2, -1, 1, 2)]
+        for name in names:
+            expected = sum(w * one[name] for w, one in zip((1.0, -8.0, 8.0, -1.0), moved, strict=True)) / (12.0 * step)
+            error = abs(ds[f"{name}_derivative"].sel(parameter=path) - expected)
+            assert float(error.max()) <= 1e-8 * float(abs(ds[name]).max()), (path, name)
+
+
 def test_peaks_tolerances_and_optima_take_the_worst_section():
     scene = replace(with_shapes(), section=None)
     made = {"coupler.section.outer": ls.Tolerance("-50 um", "50 um")}

@@ -20,6 +20,7 @@ def test_the_connecting_rod_of_a_textbook_whips():
     section = ls.IBeam(height=5 * t, width=4 * t, web=t, flange=t)
     assert section.area * length * 8000.0 == pytest.approx(1.64, rel=2e-3)
     assert section.modulus == pytest.approx(4792e-9, rel=5e-4)
+    assert section.second_moment_across == pytest.approx(131.0 / 12.0 * t**4, rel=1e-14)
     mass = 1.64 * length
     rod = ls.Link(length, mass, mass * length**2 / 12.0, cg_distance=0.5 * length, section=section)
     machine = ls.SliderCrank(ls.Link(r, 0.0, 0.0), rod, slider_mass=0.0)
