@@ -11,7 +11,7 @@ from panel.custom import JSComponent
 from linksweep.explorer.model.session import Session
 from linksweep.scene.scene import Scene
 
-SCRIPTS = ("drawing.js", "machine.js", "charts.js", "controls.js", "page.js")
+SCRIPTS = ("drawing.js", "loads.js", "machine.js", "charts.js", "controls.js", "page.js")
 """Files of the page's one module, in order."""
 
 

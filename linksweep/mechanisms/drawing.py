@@ -133,8 +133,14 @@ class Drawing:
 
     def with_point_on(self, role: str, number: int) -> Drawing:
         """Copy with the curve drawn by a point of another link."""
-        first = {block.number: block.pin for block in self.blocks} | {k: pins[0] for k, pins in self.bars.items()}
-        return self if number == self.carrier.number else replace(self, carrier=Carrier(role, number, first[number]))
+        own = number == self.carrier.number
+        return self if own else replace(self, carrier=Carrier(role, number, self.pins_of(number)[0]))
+
+    def pins_of(self, number: int) -> tuple[str, ...]:
+        """Return the pins of a link, the first of which is the origin of its axes."""
+        pins: dict[int | None, tuple[str, ...]] = {block.number: (block.pin,) for block in self.blocks}
+        hosts = {block.on[0]: (block.on[1],) for block in self.blocks if block.on}
+        return (pins | hosts | {**self.bars})[number]
 
     def start_of(self, force: str) -> str:
         """Return the pin where the arrow of a force starts."""

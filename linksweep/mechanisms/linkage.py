@@ -252,6 +252,11 @@ class Linkage(Machine):
         return with_sound(self, parts=record(PART, {**self.parts, **sampled})) if sampled else self
 
     @property
+    def branches(self) -> dict[str, str]:
+        names = [step.name for step in self.topology.steps if isinstance(step, WITH_BRANCHES)]
+        return {f"branch.{name}": self.branch.get(name, "open") for name in names}
+
+    @property
     def both_branches(self) -> dict[str, str]:
         return {f"branch_{name}": f"branch.{name}" for name, branch in self.branch.items() if branch == "both"}
 
@@ -298,9 +303,8 @@ class Linkage(Machine):
             numbers |= point_on_link(pin, *self.points[pin])
         for name, host in self.topology.hosts.items():
             numbers |= guide_numbers(name, self.guides.get(name, Guide()), pivot if host == GROUND else ORIGIN)
-        for step in self.topology.steps:
-            if isinstance(step, WITH_BRANCHES):
-                numbers |= branch_sign(step.name, self.branch.get(step.name, "open"))
+        for path, branch in self.branches.items():
+            numbers |= branch_sign(path.removeprefix("branch."), branch)
         return numbers
 
 

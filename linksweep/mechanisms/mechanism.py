@@ -261,6 +261,12 @@ class Mechanism(ByContent, ABC):
         return BRANCH_SIGN.get(self.branch, Field(("branch",), np.array(list(BRANCH_SIGN.values()))))
 
     @property
+    def branches(self) -> dict[str, str]:
+        """Branch by its path, of each assembly that can be chosen: "open", "crossed" or "both"."""
+        own = any(field.name == "branch" for field in fields(self))
+        return {"branch": self.branch} if own else {}
+
+    @property
     def both_branches(self) -> dict[str, str]:
         """Path of each branch that is "both", by the dim that it adds to results."""
         return {"branch": "branch"} if self.branch == "both" else {}

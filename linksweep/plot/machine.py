@@ -13,9 +13,11 @@ from linksweep.base.validate import choice_problems, refuse
 from linksweep.files.netcdf import scene_of
 from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
-from linksweep.plot.kit.colors import BLACK, GREY, SKY, force_color
+from linksweep.plot.kit.colors import BLACK, GREY, LOAD, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
 from linksweep.plot.kit.lengths import show_lengths
+from linksweep.plot.kit.load_parts import draw_loads
+from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
 from linksweep.plot.kit.shape import Shape, Slide, half_side, positions, shape_of
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.sweep import sweep
@@ -37,7 +39,7 @@ def mechanism(
     link: str | None = None,
     forces: bool = False,
 ) -> Axes:
-    """Draw the machine in the position of one crank angle, to scale [m].
+    """Draw the machine in the position of one crank angle, to scale [m], with its loads and centres of gravity.
 
     Parameters
     ----------
@@ -53,12 +55,14 @@ def mechanism(
     link : str, default None
         Role of that link; None for the coupler or rod, of an inverted slider-crank the rocker.
     forces : bool, default False
-        True for arrows of the force in each joint, to one scale.
+        True for arrows of the force in each joint, to one scale with those of the loads.
 
     Returns
     -------
     matplotlib Axes
-        Axes with equal scales.
+        Axes with equal scales. The arrow of a load ends where the force acts, that of gas at its piston; an arc with
+        an arrowhead is a torque, a zigzag a spring, a pot a damper. Circles in black and white quarters are the
+        centres of gravity of links that have a mass.
 
     Raises
     ------
@@ -74,18 +78,21 @@ def mechanism(
     scene = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     drawing = drawing_with_point(scene, link)
     angle = _angle(theta2)
-    places = positions(scene, drawing, [angle])
-    _require_assembled(places, angle, scene.period_of_motion)
-    shape = shape_of(scene, drawing, places, point)
+    cycle = positions(scene, drawing, [angle])
+    _require_assembled(cycle, angle, scene.period_of_motion)
+    shape = shape_of(scene, drawing, cycle, point)
     acting = _joint_forces(scene, drawing, angle) if forces else {}
+    (loads,) = loads_at(scene, drawing, cycle, [angle])
     ax = axes_or_new(ax)
     draw_ground(ax, scene, drawing, shape)
     system = shown_units(scene.units)
     _offsets(ax, scene, drawing, system)
-    draw_links(ax, drawing, shape)
+    ends = draw_links(ax, drawing, shape)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.2)
-    _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting}, system)
+    scale = _scale(ax, [*acting.values(), *(load.force for load in loads if load.force is not None)])
+    _loads(ax, draw_loads(ax, loads, ends, half_side(drawing, shape), scale), system)
+    _forces(ax, acting, {name: shape.pins[drawing.start_of(name)] for name in acting}, scale, system)
     _names(ax, shape)
     if point or not drawing.carrier.end:
         _name(ax, shape.point, "P" if point else f"$G_{drawing.carrier.number}$")
@@ -185,12 +192,13 @@ def _offsets(ax: Axes, scene: Scene, drawing: Drawing, system: UnitSystem) -> No
             label(ax, *(0.5 * guide.point), (f"offset {system.value(distance, 'm'):.4g} {system.unit('m')}", GREY))
 
 
-def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
+def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> dict[int, np.ndarray]:
     """Draw all that moves: blocks, links from pin to pin with their numbers, cylinders, the point tied to its link, the
-    pins on top."""
+    pins and centres of gravity on top. Return the ends of each link as drawn."""
     ends = {number: np.array([shape.pins[pin] for pin in pins]) for number, pins in drawing.bars.items()}
     half, bars = half_side(drawing, shape), list(ends.values())
-    covered = np.array([shape.point, *(shape.pins[block.pin] for block in drawing.blocks)])
+    blocks = (shape.pins[block.pin] for block in drawing.blocks)
+    covered = np.array([shape.point, *shape.centres.values(), *blocks])
     for block, slide in zip(drawing.blocks, shape.slides, strict=True):
         if block.on is not None:
             number = block.on[0]
@@ -205,7 +213,14 @@ def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> None:
     for (barrel, rod), shortest in zip(drawing.telescopes, shape.shortest, strict=True):
         machine_parts.telescope(ax, shape.pins[barrel], shape.pins[rod], shortest)
     machine_parts.pins(ax, np.array(list(shape.lettered.values())))
-    machine_parts.point(ax, shape.point)
+    for number, place in shape.centres.items():
+        if number in ends and number != drawing.carrier.number:
+            machine_parts.stay(ax, place, ends[number])
+    centres = np.array([*shape.centres.values()]).reshape(-1, 2)
+    machine_parts.centres(ax, centres)
+    if not (centres == shape.point).all(axis=1).any():
+        machine_parts.point(ax, shape.point)
+    return ends
 
 
 def _block(ax: Axes, block: Block, centre: np.ndarray, slide: Slide, half: float, bars: list[np.ndarray]) -> None:
@@ -245,17 +260,44 @@ def _name(ax: Axes, position: np.ndarray, name: str, **style: Any) -> None:
     label(ax, *position, (name, BLACK), **style)
 
 
-def _forces(ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray], system: UnitSystem) -> None:
+def _scale(ax: Axes, forces: list[np.ndarray]) -> float:
+    """Return the length of a unit of force [m/N] with which the largest of forces has the longest arrow."""
+    extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))
+    largest = max((float(np.hypot(*vector)) for vector in forces), default=0.0)
+    return float(ARROW * extent / largest) if largest > 0.0 else 0.0
+
+
+def _forces(
+    ax: Axes, forces: dict[str, np.ndarray], starts: dict[str, np.ndarray], scale: float, system: UnitSystem
+) -> None:
     """Draw an arrow from each joint, to one scale, with its value."""
     from linksweep.plot.kit.labels import arrow, label
 
-    extent = max(np.ptp(ax.dataLim.intervalx), np.ptp(ax.dataLim.intervaly))
-    largest = max((float(np.hypot(*vector)) for vector in forces.values()), default=0.0)
     for name, vector in forces.items():
         size = float(np.hypot(*vector))
         if size > 0.0:
-            start = starts[name]
-            tip = start + vector * (ARROW * extent / largest)
-            arrow(ax, start, tip, force_color(name))
-            text = f"{signals.number(system.value(size, 'N'))} {system.unit('N')}"
-            label(ax, *tip, (f"{signals.symbol(name)} {text}", force_color(name)))
+            tip = starts[name] + vector * scale
+            arrow(ax, starts[name], tip, force_color(name))
+            label(ax, *tip, (f"{signals.symbol(name)} {_measure(size, 'N', system)}", force_color(name)))
+
+
+def _loads(ax: Axes, drawn: list[tuple[LoadSymbol, np.ndarray]], system: UnitSystem) -> None:
+    """Write the name of each load at its place, of a force or a torque with the value."""
+    from linksweep.plot.kit.labels import label
+
+    for load, place in drawn:
+        label(ax, *place, (_load_text(load, system), LOAD))
+
+
+def _load_text(load: LoadSymbol, system: UnitSystem) -> str:
+    """Return the text of a load: "load 1: 80 N", "load 2: −12 N m", "load 3: spring"."""
+    if load.torque is not None:
+        return f"{load.name}: {_measure(float(load.torque), 'N m', system)}"
+    if load.force is None:
+        return f"{load.name}: {load.kind}"
+    words = f"{load.name}: gas" if load.kind == "gas" else f"{load.name}:"
+    return f"{words} {_measure(float(np.hypot(*load.force)), 'N', system)}"
+
+
+def _measure(value: float, unit: str, system: UnitSystem) -> str:
+    return f"{signals.number(system.value(value, unit))} {system.unit(unit)}"

@@ -77,14 +77,14 @@ def _peaks(machine: MultiCylinder, worst: xr.Dataset) -> Markup:
     rows: list[tuple[Any, ...]] = []
     for name in SIGNALS:
         quantity, bound = machine.quantity[name], float(worst[f"{name}_bound"])
-        shown = partial(measure, unit=quantity.units, system=_system(machine))
+        in_unit = partial(measure, unit=quantity.units, system=_system(machine))
         ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
         what = quantity.long_name.split(",")[0].split(" of all")[0].split(" of the drive")[0]
         for end, words in ends.items():
             value, at = float(worst[name + end]), float(worst[f"{name}{end}_at"])
             known = abs(value) > CANCELLED * bound
             rounding = tiny(float(_system(machine).value(bound, quantity.units)))
-            cells = (shown(value if known else 0.0), angle(at) if known else NONE, rounding)
+            cells = (in_unit(value if known else 0.0), angle(at) if known else NONE, rounding)
             rows.append((symbol(name), tag("span", what + words, title=quantity.long_name), *cells))
     return table(("", "", "peak", "at θ₂", "bound"), rows, class_="peaks")
 
@@ -117,8 +117,8 @@ def _figures(machine: MultiCylinder, mains: xr.Dataset | None, threads: int | No
     torque = in_shown_units(cycle[["T12"]], system)["T12"]
     yield Picture("Torque of all cylinders", SIZE, partial(_over_angle, [torque], f"torque [{system.unit('N m')}]"))
     if mains is not None:
-        shown = in_shown_units(mains, system)["F"]
-        loads = [shown.sel(main=name) for name in mains["main"].values]
+        forces = in_shown_units(mains, system)["F"]
+        loads = [forces.sel(main=name) for name in mains["main"].values]
         yield Picture("Loads of the main bearings", SIZE, partial(_over_angle, loads, f"force [{system.unit('N')}]"))
     yield from of_shaking(cycle)
 

@@ -40,22 +40,22 @@ def peaks(results: Results) -> Markup:
 def _peak(results: Results, name: str, more: list[str]) -> Iterator[tuple[Any, ...]]:
     """Yield a row for a magnitude; for a signed quantity one for its largest and one for its least value."""
     worst, quantity = results.peaks, results.scene.table.quantity[name]
-    size, shown = float(worst[f"{name}_peak"]), partial(_of, unit=quantity.units, system=results.system)
+    size, in_unit = float(worst[f"{name}_peak"]), partial(_of, unit=quantity.units, system=results.system)
     bound = partial(results.system.value, si=quantity.units)
-    rest = [_summary(size, kind, float(worst[f"{name}_{kind}"]), shown, bound) for kind in more]
+    rest = [_summary(size, kind, float(worst[f"{name}_{kind}"]), in_unit, bound) for kind in more]
     ends = {"_max": ", largest", "_min": ", least"} if f"{name}_max" in worst else {"_peak": ""}
     for ending, suffix in ends.items():
         value, spot = float(worst[name + ending]), float(worst[f"{name}{ending}_at"])
         what = tag("span", _where(results.scene, name) + suffix, title=quantity.long_name)
-        yield symbol(name), what, shown(size, value), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
+        yield symbol(name), what, in_unit(size, value), angle(spot), *(rest if ending != "_min" else [""] * len(rest))
 
 
 def _summary(
-    size: float, kind: str, value: float, shown: Callable[[float, float], Markup], bound: Callable[[float], float]
+    size: float, kind: str, value: float, in_unit: Callable[[float, float], Markup], bound: Callable[[float], float]
 ) -> str:
     if kind == "bound":
         return tiny(bound(value)) if np.isfinite(size) else NONE
-    return shown(size, value)
+    return in_unit(size, value)
 
 
 def _where(scene: Scene, name: str) -> str:

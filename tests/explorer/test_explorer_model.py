@@ -134,7 +134,9 @@ def test_loads_act_at_their_points_with_their_forces():
         ls.Load("coupler", force=(1.0, 0.0), origin="cg"),
     ]
     scene = replace(ls.example("press"), loads=loads)
-    first, third, fourth = ask(Session(scene, ""), "start")["cycle"]["loads"]
+    first, turn, third, fourth = ask(Session(scene, ""), "start")["cycle"]["loads"]
+    assert (turn["kind"], "force" in turn) == ("torque", False) and np.all(turn["torque"] == 2.0)
+    assert np.all(turn["place"] == np.float32([[0.20], [0.0]]))  # the rocker's bearing D
     curve = ls.coupler_curve(scene, (0.1, 15.0), theta2=720)
     assert first["name"] == "load 1" and third["name"] == "load 3"
     assert first["place"] == pytest.approx(np.array([curve.Px, curve.Py]), abs=1e-7)
@@ -144,6 +146,44 @@ def test_loads_act_at_their_points_with_their_forces():
     assert third["force"] == pytest.approx(size * np.array([np.cos(along), np.sin(along)]), abs=1e-6)
     middle = ls.coupler_curve(scene, (0.11, 0.0), theta2=720)  # of a bar of 0.22 m
     assert fourth["place"] == pytest.approx(np.array([middle.Px, middle.Py]), abs=1e-7)
+
+
+def test_springs_and_gas_are_shown_with_their_numbers():
+    loads = [
+        ls.Spring(("ground", 0.1, -0.05), ("coupler", 0.1, 20.0), rate=2000.0, free_length=0.05),
+        ls.TorsionDamper("crank", "coupler", coefficient=0.2),
+    ]
+    scene = replace(ls.example("press"), loads=loads)
+    start = ask(Session(scene, ""), "start")
+    names = {control["name"] for control in start["controls"] if control["group"] == "load 1"}
+    assert names == {"from x", "from y", "to distance", "to angle", "rate", "free length"}
+    spring, damper = start["cycle"]["loads"]
+    length = np.hypot(*(spring["end"] - spring["place"]))
+    assert length == pytest.approx(ls.sweep(scene, 720, of=["load1_length"]).load1_length.values, rel=1e-6)
+    assert (spring["kind"], damper["kind"]) == ("spring", "torsion damper")
+    engine = ls.example("engine")
+    (gas,) = ask(Session(engine, ""), "start")["cycle"]["loads"]
+    piston = ls.sweep(engine, 1440, of=["F14x", "F14y", "F43x", "F43y", "aG4y", "x_slider"])
+    force = 0.45 * (piston.aG4y + 9.81) - piston.F14y + piston.F43y  # of the piston of 0.45 kg, along the guide
+    assert gas["kind"] == "gas" and gas["force"][1] == pytest.approx(force.values, rel=1e-5, abs=0.1)
+    assert gas["place"][1] == pytest.approx(piston.x_slider.values[:720], rel=1e-6)
+    bridles = ask(Session(ls.example("pump-jack"), ""), "start")["cycle"]
+    assert len(bridles["centres"]) == 5
+
+
+@pytest.mark.parametrize(("name", "path"), [("press", "branch"), ("watt-2", "branch.F")])
+def test_another_assembly_is_chosen_and_undone(name, path):
+    scene = ls.example(name)
+    session = Session(scene, "")
+    before = ask(session, "start")["branches"][path]
+    other = {"open": "crossed", "crossed": "open"}[before]
+    reply = ask(session, "assemble", path=path, branch=other)
+    assert reply["branches"][path] == other and reply["undo"]
+    chosen = session.scene.mechanism.branch
+    assert (chosen if path == "branch" else chosen["F"]) == other
+    assert "branch" in session.scene.to_toml()
+    assert ask(session, "undo")["branches"][path] == before and session.scene == scene
+    assert "refusal" in ask(session, "assemble", path=path, branch="upright")
 
 
 def test_a_machine_with_a_table_of_its_own_is_shown_without_handles():

@@ -8,6 +8,7 @@ import re
 import statistics
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -140,6 +141,28 @@ def test_the_crank_turns_with_its_pin_and_keeps_its_length(screen):
     angle = screen.page.locator(".transport output").text_content()
     assert float(re.search(r"[\d.]+(?=°)", angle)[0]) < 40.0
     assert screen.pin("C") != c
+
+
+def test_another_assembly_is_chosen(screen):
+    choice = screen.page.locator(".row[data-path=branch] select")
+    choice.select_option("crossed")
+    screen.settle()
+    crossed = replace(scene(), mechanism=replace(scene().mechanism, branch="crossed"))
+    assert screen.peak("F₃₂") == pytest.approx(float(ls.peaks(crossed).F32_peak), rel=1e-4)
+    screen.press("Undo")
+    screen.settle()
+    assert choice.input_value() == "open"
+
+
+def test_loads_and_centres_of_gravity_have_their_signs(screen):
+    paths = [made.get_attribute("d") for made in screen.page.locator(".machine path.sign").all()]
+    assert [bool(d) for d in paths] == [False, True]  # of a force an arrow, of a torque an arc
+    push = screen.page.locator(".machine .arrow.load").first
+    assert float(push.get_attribute("y2")) > float(push.get_attribute("y1"))  # a force downwards, as y does on a screen
+    assert screen.page.locator(".centre-of-gravity").count() == 3
+    _, y = screen.pin("D")
+    box = screen.page.locator(".machine path.sign").nth(1).bounding_box()
+    assert box["y"] < y < box["y"] + box["height"]
 
 
 def test_numbers_are_typed_with_units_and_refused_in_words(screen):

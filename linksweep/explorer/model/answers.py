@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from linksweep.explorer.model.controls import written
-from linksweep.explorer.model.load_arrows import load_arrows
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import force_color
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.shape import axes_of, curve_of, places_of, positions
+from linksweep.plot.kit.load_symbols import LoadSymbol, load_symbols
+from linksweep.plot.kit.shape import axes_of, centres_of, curve_of, places_of, positions
 from linksweep.results.check import check
 from linksweep.results.origin.in_shown_units import in_shown_units
 from linksweep.results.peaks import peaks
@@ -56,10 +56,8 @@ def cycle(scene: Scene, system: UnitSystem = SI) -> dict[str, Any]:
         "rails": [_rail(scene, block.guide, metre) for block in drawing.blocks],
         "wheels": [[pin, float(radius) / metre] for pin, radius in drawing.wheels(scene.mechanism)],
         "forces": {force: _packed(_force(effort, force, count) / newton) for force in drawing.forces},
-        "loads": [
-            {"name": name, "place": _packed(place / metre), "force": _packed(force / newton)}
-            for name, place, force in load_arrows(scene, drawing, motion, places, count)
-        ],
+        "centres": [_packed(place / metre) for place in centres_of(scene, drawing, motion, places).values()],
+        "loads": [_load(load, metre, newton) for load in load_symbols(scene, drawing, motion, places, count)],
         "drive": _packed(signals.spread(effort[drive], count) / of_drive),
         "rate": float(np.nanmean(scene.omega2)) if not callable(scene.omega2) else 1.0,
         "problem": _gaps(effort),
@@ -100,6 +98,14 @@ def _rail(scene: Scene, guide: Any, metre: float) -> list[list[float]] | None:
         return None
     rail = guide(scene.mechanism)
     return [[float(number) for number in part] for part in (rail.point / metre, rail.along)]
+
+
+def _load(load: LoadSymbol, metre: float, newton: float) -> dict[str, Any]:
+    """Return the symbol of a load: its kind, place, and what else it has; of a torque only the sense matters."""
+    parts = {"place": (load.place, metre), "force": (load.force, newton), "end": (load.end, metre)}
+    arrays = {name: _packed(row / size) for name, (row, size) in parts.items() if row is not None}
+    sense = {} if load.torque is None else {"torque": _packed(load.torque)}
+    return {"name": load.name, "kind": load.kind, **arrays, **sense}
 
 
 def _force(cycle: xr.Dataset, force: str, count: int) -> np.ndarray:

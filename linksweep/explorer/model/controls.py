@@ -48,6 +48,13 @@ def values(scene: Scene, system: UnitSystem = SI) -> dict[str, float]:
     return {path: float(system.value(value, UNITS[kind])) for path, (value, kind) in plain.items()}
 
 
+def with_branch(scene: Scene, path: str, branch: str) -> Scene:
+    """Return the scene with another assembly, of a linkage at one of its pins; refused ones raise ValueError."""
+    name, _, pin = path.partition(".")
+    others: Any = scene.mechanism.branch
+    return replaced(scene, {name: {**others, pin: branch} if pin else branch})
+
+
 def read(number: float | str, kind: str, system: UnitSystem = SI) -> float:
     """Return a number in SI units, of one in the units of the page, or of a text with a unit of its own, "80 mm".
 
@@ -114,8 +121,11 @@ def _words(path: str, kinds: Mapping[str, str]) -> Iterator[str]:
     *owners, last = path.split(".")
     yield from owners
     name, bracket, index = last.partition("[")
-    name = name.replace("_", " ")
+    name = name.replace("_", " ").strip()
     if bracket:
-        polar = kinds.get(f"{path.removesuffix(bracket + index)}[2]") == "angle"
-        name = f"{name} {PARTS[polar][int(index[:-1]) - 1]}"
+        stem = path.removesuffix(index)
+        pair = [
+            own for own in (f"{stem}{k}]" for k in (1, 2, 3)) if own in kinds
+        ]  # the end of a spring begins with a link
+        name = f"{name} {PARTS[kinds[pair[-1]] == 'angle'][pair.index(path)]}"
     yield name

@@ -7,7 +7,7 @@ from typing import Any
 
 from linksweep.base.validate import refuse
 from linksweep.explorer.model import answers
-from linksweep.explorer.model.controls import controls, read, values
+from linksweep.explorer.model.controls import controls, read, values, with_branch
 from linksweep.explorer.model.dragging import dragged, handles
 from linksweep.explorer.model.exports import EXPORTS
 from linksweep.scene.designs.choose import design_labels
@@ -47,6 +47,8 @@ class Session:
                 return self._start()
             case "set":
                 return self._set(**details)
+            case "assemble":
+                return self._changed(with_branch(self.scene, **details))
             case "drag":
                 return self._drag(**details)
             case "exact":
@@ -113,7 +115,8 @@ class Session:
         return {"pinned": None}
 
     def _view(self, scene: Scene) -> Reply:
-        return {"cycle": answers.cycle(scene, self.system), "values": values(scene, self.system)}
+        numbers = values(scene, self.system)
+        return {"cycle": answers.cycle(scene, self.system), "values": numbers, "branches": scene.mechanism.branches}
 
     def _compared(self, scene: Scene) -> Reply:
         return {**self._view(scene), **answers.exact(scene, self.system)}

@@ -1,21 +1,35 @@
-// A slider and a field for each number of the scene, in groups that fold.
+// A slider and a field for each number of the scene, in groups that fold, and a choice for each assembly.
+
+const ASSEMBLIES = ["open", "crossed"];
 
 class Controls {
-  // change(numbers, gesture) asks for other numbers; gesture() starts a new movement
-  constructor(controls, change, gesture) {
+  // change(numbers, gesture) asks for other numbers; gesture() starts a new movement; assemble(path, branch) asks for
+  // another assembly of those in `branches`
+  constructor(controls, branches, change, gesture, assemble) {
     this.change = change;
+    this.assemble = assemble;
     this.gesture = gesture;
     this.rows = {};
     this.body = html("div", {class: "groups"});
     const find = html("input", {type: "search", placeholder: "Find a number", "aria-label": "Find a number",
       oninput: () => this.filter(find.value)});
     this.root = html("section", {class: "controls", "aria-label": "Numbers of the scene"}, find, this.body);
-    [...grouped(controls)].forEach(([name, members], k) => this.body.append(this.group(name, members, k < 3)));
+    [...grouped(controls)].forEach(([name, members], k) => this.body.append(this.group(name, members.map(one => this.row(one)), k < 3)));
+    this.choices = {};
+    const rows = Object.keys(branches).map(path => this.choice(path));
+    if (rows.length) this.body.prepend(this.group("Assembly", rows, true));
   }
 
-  group(name, members, open) {
-    const rows = members.map(control => this.row(control));
-    return html("details", {open}, html("summary", {}, name), ...rows);
+  group(name, rows, open) { return html("details", {open}, html("summary", {}, name), ...rows); }
+
+  choice(path) {
+    const id = `number-${path.replace(/\W/g, "-")}`, pin = path.split(".")[1];
+    const field = html("select", {id, onchange: () => this.assemble(path, field.value)},
+      ...ASSEMBLIES.map(word => html("option", {value: word}, word)));
+    const label = html("label", {for: id, title: path}, pin ? `branch of ${pin}` : "branch");
+    const row = html("div", {class: "row", "data-path": path}, label, field);
+    this.choices[path] = {row, field, name: label.textContent};
+    return row;
   }
 
   row(control) {
@@ -40,7 +54,8 @@ class Controls {
   }
 
   // Write the values of a scene, but for what is being typed.
-  show(values, pinned) {
+  show(values, branches, pinned) {
+    for (const [path, {field}] of Object.entries(this.choices)) field.value = branches[path];
     const active = this.root.getRootNode().activeElement;
     for (const [path, {row, range, field, control}] of Object.entries(this.rows)) {
       const value = values[path];
@@ -55,8 +70,10 @@ class Controls {
 
   filter(text) {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);
-    for (const {row, control} of Object.values(this.rows)) {
-      const all = `${control.group} ${control.name} ${control.path}`.toLowerCase();
+    const choices = Object.values(this.choices).map(({row, name}) => [row, `assembly ${name}`]);
+    const numbers = Object.values(this.rows).map(({row, control}) => [row, `${control.group} ${control.name} ${control.path}`]);
+    for (const [row, text] of [...choices, ...numbers]) {
+      const all = text.toLowerCase();
       row.hidden = !words.every(word => all.includes(word));
     }
     for (const group of this.body.children) {

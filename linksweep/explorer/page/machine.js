@@ -7,8 +7,6 @@ const ROOM = 34;        // pixels about the machine and its arrows
 const EVERY = 6;        // of the angles are looked at for the scale
 const STICKY = 9;       // pixels about the crank's circle on which its pin stays
 
-const LOAD = {name: "load", color: "#5a5148"};
-
 class Machine {
   constructor(picture, handles, dragging) {
     this.picture = picture;
@@ -20,7 +18,7 @@ class Machine {
     const defs = svg("defs");
     for (const force of [...picture.forces, LOAD]) defs.append(this.head(force));
     this.root.append(defs);
-    for (const name of ["grid", "ghost", "ground", "links", "pins", "arrows", "names", "handles"])
+    for (const name of ["grid", "ghost", "ground", "links", "centres", "pins", "arrows", "names", "handles"])
       this.root.append(this.layers[name] = svg("g", {class: name}));
     this.make(handles);
     sized(this.root, (width, height) => { this.width = width; this.height = height; this.frame(); });
@@ -48,7 +46,7 @@ class Machine {
       svg("line", {class: "arrow", stroke: force.color, "marker-end": `url(#head-${force.name})`})));
     this.labels = picture.forces.map(force => names.appendChild(
       svg("text", {class: "force", fill: force.color}, symbol(force.name))));
-    this.dots = {}; this.letters = {}; this.handles = {};
+    this.centres = []; this.dots = {}; this.letters = {}; this.handles = {};
     for (const pin of this.pinNames()) {
       this.dots[pin] = pins.appendChild(svg("circle", {class: "pin", r: 3.6}));
       this.letters[pin] = names.appendChild(svg("text", {class: "letter"}, pin));
@@ -56,13 +54,10 @@ class Machine {
     for (const pin of handles) this.handles[pin] = this.layers.handles.appendChild(this.handle(pin));
   }
 
-  // The arrow of a load points at the place where it acts.
-  makeLoads(loads) {
-    this.pushes?.forEach(parts => parts.forEach(part => part.remove()));
-    this.pushes = loads.map(load => [
-      this.layers.arrows.appendChild(svg("line", {class: "arrow load", "marker-end": "url(#head-load)"})),
-      this.layers.names.appendChild(svg("text", {class: "force", fill: LOAD.color}, load.name)),
-      this.layers.arrows.appendChild(svg("circle", {class: "acts", r: 2.4}))]);
+  // The sign of a centre of gravity.
+  centre() {
+    return svg("g", {class: "centre-of-gravity"}, svg("title", {}, "Centre of gravity"), svg("circle", {r: 4.5}),
+      svg("path", {d: "M0 0V-4.5A4.5 4.5 0 0 1 4.5 0ZM0 0V4.5A4.5 4.5 0 0 1 -4.5 0Z"}));
   }
 
   pinNames() {
@@ -123,7 +118,10 @@ class Machine {
   show(cycle, pinned) {
     this.cycle = cycle;
     this.pinned = pinned;
-    if (this.pushes?.length !== cycle.loads.length) this.makeLoads(cycle.loads);
+    this.loads?.remove();
+    this.loads = new Loads(cycle.loads, this.layers.arrows, this.layers.names);
+    while (this.centres.length < cycle.centres.length) this.centres.push(this.layers.centres.appendChild(this.centre()));
+    this.centres.splice(cycle.centres.length).forEach(made => made.remove());
     const [a, b] = this.picture.links[0].pins.map(pin => at(cycle.pins[pin], 0));
     if (this.held !== this.picture.links[0].pins[1]) this.crank = Math.hypot(...less(b, a));
     this.frame();
@@ -148,9 +146,11 @@ class Machine {
     for (const {name, pin} of this.picture.forces)
       for (let k = 0; k < count(this.cycle.forces[name]); k += EVERY)
         points.push([at(this.cycle.pins[pin], k), this.arrow(at(this.cycle.forces[name], k)) ?? [0, 0]]);
-    for (const {place, force} of this.cycle.loads)
-      for (let k = 0; k < count(force); k += EVERY)
+    for (const {place, force, end} of this.cycle.loads) {
+      for (let k = 0; force && k < count(force); k += EVERY)
         points.push([at(place, k), (this.arrow(at(force, k)) ?? [0, 0]).map(x => -x)]);
+      for (const still of end ? [place, end] : []) for (let k = 0; k < count(still); k += EVERY) points.push([at(still, k), [0, 0]]);
+    }
     const extent = scale => {
       const xs = points.map(([[x], [dx]]) => scale * x + dx), ys = points.map(([[, y], [, dy]]) => dy - scale * y);
       return [least(xs), most(xs), least(ys), most(ys)];
@@ -254,7 +254,11 @@ class Machine {
       if (this.handles[pin]) set(this.handles[pin], shown ? {cx: x, cy: y, display} : {display});
     }
     picture.forces.forEach((force, j) => this.drawForce(j, places[force.pin], at(cycle.forces[force.name], k)));
-    cycle.loads.forEach((load, j) => this.drawLoad(this.pushes[j], this.screen(at(load.place, k)), at(load.force, k)));
+    this.loads.draw(k, point => this.screen(point), force => this.arrow(force), HALF);
+    this.centres.forEach((made, j) => {
+      const [x, y] = this.screen(at(cycle.centres[j], k)), shown = known([x, y]);
+      set(made, shown ? {transform: `translate(${x} ${y})`, display: ""} : {display: "none"});
+    });
     if (this.pinned) {
       const k = this.index(this.pinned);
       const lines = picture.links.map(link => path(link.pins.length, j => this.screen(at(this.pinned.pins[link.pins[j]], k))));
@@ -306,20 +310,14 @@ class Machine {
 
   drawForce(j, start, force) {
     const arrow = known(start) && this.arrow(force);
-    this.drawArrow(this.arrows[j], this.labels[j], start, arrow && add(start, arrow), 1);
+    this.drawArrow(this.arrows[j], this.labels[j], start, arrow && add(start, arrow));
   }
 
-  drawLoad([line, label, dot], place, force) {
-    const arrow = known(place) && this.arrow(force);
-    this.drawArrow(line, label, arrow && less(place, arrow), place, 0);
-    set(dot, arrow ? {cx: place[0], cy: place[1], display: ""} : {display: "none"});
-  }
-
-  // The name stands beyond the tip, or behind the start.
-  drawArrow(line, label, start, tip, end) {
+  // The name stands beyond the tip.
+  drawArrow(line, label, start, tip) {
     const length = start && tip ? Math.hypot(...less(tip, start)) : 0;
     set(line, length ? {x1: start[0], y1: start[1], x2: tip[0], y2: tip[1], display: ""} : {display: "none"});
-    const u = length > 14 && less(tip, start).map(x => x / length), name = u && (end ? add(tip, u, 13) : add(start, u, -14));
+    const u = length > 14 && less(tip, start).map(x => x / length), name = u && add(tip, u, 13);
     set(label, name ? {x: name[0], y: name[1] + 4, display: ""} : {display: "none"});
   }
 }

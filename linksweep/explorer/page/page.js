@@ -37,10 +37,10 @@ class Page {
 
   take(reply) {
     this.say(reply.refusal ?? reply.cycle?.problem ?? (reply.ask === "exact" ? null : ""), "refusal" in reply);
-    if ("refusal" in reply && this.cycle) this.controls.show(this.values, this.pinned?.values);
+    if ("refusal" in reply && this.cycle) this.controls.show(this.values, this.branches, this.pinned?.values);
     if ("pinned" in reply) this.pinned = reply.pinned;
     if (reply.cycle) {
-      Object.assign(this, {cycle: reply.cycle, values: reply.values, exact: true});
+      Object.assign(this, {cycle: reply.cycle, values: reply.values, branches: reply.branches, exact: true});
       this.undo.disabled = !reply.undo;
       this.redo.disabled = !reply.redo;
     }
@@ -52,9 +52,10 @@ class Page {
   }
 
   build(start) {
-    const {title, picture, handles, controls} = start;
+    const {title, picture, handles, controls, branches} = start;
     this.picture = picture;
-    this.controls = new Controls(controls, (numbers, gesture) => this.change({ask: "set", numbers, gesture}), () => ++this.gestures);
+    this.controls = new Controls(controls, branches, (numbers, gesture) => this.change({ask: "set", numbers, gesture}),
+      () => ++this.gestures, (path, branch) => this.ask({ask: "assemble", path, branch}));
     this.machine = new Machine(picture, handles, {
       start: () => { this.gesture = ++this.gestures; this.resume = this.playing; this.play(false); },
       move: (pin, place, angle) => this.change({ask: "drag", pin, place, angle, gesture: this.gesture}),
@@ -118,7 +119,7 @@ class Page {
   show() {
     const {cycle, pinned} = this;
     this.dial.max = cycle.turn;
-    this.controls.show(this.values, pinned?.values);
+    this.controls.show(this.values, this.branches, pinned?.values);
     this.keep.textContent = pinned ? "Unpin" : "Pin design";
     this.back.hidden = !pinned;
     this.root.classList.toggle("compares", !!pinned);
@@ -191,7 +192,7 @@ class Page {
     const control = event.ctrlKey || event.metaKey;
     if (control && event.key.toLowerCase() === "z") this.ask({ask: event.shiftKey ? "redo" : "undo"});
     else if (control && event.key.toLowerCase() === "y") this.ask({ask: "redo"});
-    else if (event.composedPath()[0].matches?.("input, button, summary")) return;
+    else if (event.composedPath()[0].matches?.("input, select, button, summary")) return;
     else if (event.key === " ") this.play(!this.playing);
     else if (event.key === "ArrowLeft" || event.key === "ArrowRight") { this.play(false); this.turnTo(this.angle + (event.key === "ArrowLeft" ? -1 : 1) * (event.shiftKey ? 10 : 1)); }
     else return;

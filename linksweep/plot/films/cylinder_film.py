@@ -50,15 +50,14 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     top = max(float(np.hypot(*force)) for own in shots for shot in own for force in shot.forces.values())
     for ax, scene, own in zip(panels, cylinders, shots, strict=True):
         draw_ground(ax, scene, drawing, own[0].shape)
-    longest = ARROW * max(np.ptp(ax.dataLim.intervaly) for ax in panels)
-    arrows = [[film_frames.arrows_of(shot, drawing, top, longest) for shot in own] for own in shots]
+    scale = film_frames.Scale(top, ARROW * max(np.ptp(ax.dataLim.intervaly) for ax in panels))
     for ax in dict.fromkeys(panels):
         there = [k for k, other in enumerate(panels) if other is ax]
         every: list[film_frames.Frame] = [shot for k in there for shot in shots[k]]
-        film_frames.fit(ax, drawing, every, [ends for k in there for ends in arrows[k]], system)
+        film_frames.fit(ax, drawing, every, scale, system)
         ax.set_title(", ".join(str(k + 1) for k in there), loc="right", fontsize="small")
         ax.label_outer()
-    film_frames.scale(panels[0], system.value(top, "N"), longest, system.unit("N"))
+    film_frames.draw_scale(panels[0], scale, system)
     curve.plot(cycle["theta2"], cycle["T12"])
     unit = system.unit("N m")
     curve.set(xlabel="crank angle $\\theta_2$ [°]", ylabel=f"torque $T_{{12}}$ [{unit}]", xlim=(0.0, machine.period))
@@ -68,8 +67,8 @@ def film_of_cylinders(machine: MultiCylinder, frames: int, title: str) -> Film:
     moving: list[list[Artist]] = [[] for _ in panels]
 
     def draw(k: int) -> list[Artist]:
-        for ax, own, ends, there in zip(panels, shots, arrows, moving, strict=True):
-            film_frames.renewed(ax, there, partial(film_frames.draw_frame, ax, drawing, own[k].shape, ends[k], longest))
+        for ax, own, there in zip(panels, shots, moving, strict=True):
+            film_frames.renewed(ax, there, partial(film_frames.draw_frame, ax, drawing, own[k], scale))
         now = float(torque[k])
         texts = write(float(angles[k]), {"T12": f"{signals.number(now)} {unit}"})
         return [*(artist for there in moving for artist in there), *texts, *follow(float(angles[k]), {"T12": now})]

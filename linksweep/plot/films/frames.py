@@ -16,9 +16,11 @@ import xarray as xr
 from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.colors import BLACK, BLUE, GREY, force_color
+from linksweep.plot.kit.colors import BLACK, BLUE, GREY, LOAD, force_color
 from linksweep.plot.kit.lengths import show_lengths
-from linksweep.plot.kit.shape import Shape, positions, shape_of
+from linksweep.plot.kit.load_parts import draw_loads, tail
+from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
+from linksweep.plot.kit.shape import Shape, half_side, positions, shape_of
 from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -34,6 +36,7 @@ SIZE, DPI = (6.0, 6.4), 90  # inches, and pixels to an inch
 ENDS = ("cannot_assemble", "toggle", "no_cycle", "left_track", "stalled")  # statuses beyond which nothing moves
 KNOWN = 24  # frames that the limits of the axes are made for
 OFF_SCALE = 1.2  # of the longest arrow on the scale: arrows of forces beyond it
+IN_A_ROW, LINE = 5, 13.0  # readings in a row, and points from row to row
 NAMED = 0.08  # of the longest arrow: shorter ones have no name
 TINY = 1e-9  # of the largest force: less than that is rounding
 NOTHING = "there are not two angles with a result, side by side: see the status of ls.sweep, and ls.check"
@@ -41,11 +44,30 @@ ROUND = (5.0, 2.0, 1.0)  # first digits of a scale's number
 
 
 class Frame(NamedTuple):
-    """A position of a machine: crank angle [degree], the places of its parts, the force in each joint (x, y) [N]."""
+    """A position of a machine: crank angle [degree], the places of its parts, the force in each joint (x, y) [N], and
+    the loads."""
 
     angle: float
     shape: Shape
     forces: dict[str, np.ndarray]
+    loads: list[LoadSymbol]
+
+
+class Scale(NamedTuple):
+    """Scale of arrows: the largest force on it [N], and the length of that force's arrow [m]."""
+
+    top: float
+    longest: float
+
+    @property
+    def length(self) -> float:
+        """Length of a unit of force [m/N]."""
+        return self.longest / self.top
+
+    def drawn(self, force: np.ndarray) -> np.ndarray:
+        """Return a force (x, y) [N], shortened where it is beyond the scale."""
+        size = float(np.hypot(*force))
+        return force * (min(size, OFF_SCALE * self.top) / (size or 1.0))
 
 
 def way(cycle: xr.Dataset, rate: xr.DataArray, frames: int, to_and_fro: bool = True) -> np.ndarray:
@@ -112,11 +134,12 @@ def frames_of(scene: Scene, drawing: Drawing, angles: np.ndarray, point: Any) ->
     refuse([] if len(good) > 1 else [NOTHING])
     places = positions(scene, drawing, angles.tolist())
     parts = {force: _rows(cycle, force) for force in drawing.forces}
+    loads = loads_at(scene, drawing, places, angles.tolist())
     curve = places.sizes[signals.INDEX] - len(angles)
     frames = []
     for k in good:
         shape = shape_of(scene, drawing, places.isel({signals.INDEX: [*range(curve), curve + k]}), point)
-        frames.append(Frame(float(angles[k]), shape, {force: rows[:, k] for force, rows in parts.items()}))
+        frames.append(Frame(float(angles[k]), shape, {force: rows[:, k] for force, rows in parts.items()}, loads[k]))
     return frames
 
 
@@ -125,24 +148,38 @@ def _rows(cycle: xr.Dataset, force: str) -> np.ndarray:
     return np.array([signals.spread(part, cycle.sizes[signals.INDEX]) for part in signals.components(cycle, force)])
 
 
-def arrows_of(shot: Frame, drawing: Drawing, top: float, longest: float) -> dict[str, np.ndarray]:
+def _arrows(shot: Frame, drawing: Drawing, scale: Scale) -> dict[str, np.ndarray]:
     """Return start and end of the arrow of each force, (2, xy) [m]."""
-    arrows = {}
-    for name, force in shot.forces.items():
-        size = float(np.hypot(*force))
-        drawn = min(size, OFF_SCALE * top)
-        start = shot.shape.pins[drawing.start_of(name)]
-        arrows[name] = np.array([start, start + force * (longest / top * drawn / (size or 1.0))])
-    return arrows
+    starts = {name: shot.shape.pins[drawing.start_of(name)] for name in shot.forces}
+    tips = {name: starts[name] + scale.length * scale.drawn(force) for name, force in shot.forces.items()}
+    return {name: np.array([starts[name], tips[name]]) for name in starts}
 
 
-def draw_frame(ax: Axes, drawing: Drawing, shape: Shape, arrows: dict[str, np.ndarray], longest: float) -> None:
+def _loads(shot: Frame, scale: Scale) -> list[LoadSymbol]:
+    """Return the loads with their forces as they are drawn."""
+    forces = [None if load.force is None else scale.drawn(load.force) for load in shot.loads]
+    return [load._replace(force=force) for load, force in zip(shot.loads, forces, strict=True)]
+
+
+def draw_frame(ax: Axes, drawing: Drawing, shot: Frame, scale: Scale) -> None:
     """Draw all that moves."""
-    draw_links(ax, drawing, shape)
-    for name, ends in arrows.items():
-        _arrow(ax, name, ends, NAMED * longest)
-    for name, pin in shape.lettered.items():
+    links = draw_links(ax, drawing, shot.shape)
+    for load, place in draw_loads(ax, _loads(shot, scale), links, half_side(drawing, shot.shape), scale.length):
+        _name_load(ax, load, place)
+    for name, ends in _arrows(shot, drawing, scale).items():
+        _arrow(ax, name, ends, NAMED * scale.longest)
+    for name, pin in shot.shape.lettered.items():
         ax.annotate(name, tuple(pin), (6.0, 6.0), **_beside(BLACK), fontweight="bold")
+
+
+def _name_load(ax: Axes, load: LoadSymbol, place: np.ndarray) -> None:
+    """Write the name of a load behind its arrow, or beside it."""
+    style = _beside(LOAD) | {"va": "center"}
+    if load.force is None:
+        ax.annotate(load.name, tuple(place), (16.0, -16.0), **style)
+        return
+    behind = -14.0 * load.force / np.hypot(*load.force)
+    ax.annotate(load.name, tuple(place), tuple(behind), **style | {"ha": "center"})
 
 
 def _arrow(ax: Axes, name: str, ends: np.ndarray, named: float) -> None:
@@ -165,15 +202,15 @@ def _beside(color: str) -> dict[str, Any]:
     return {"textcoords": "offset points", "color": color, "path_effects": halo, "zorder": 3.0, "fontsize": "small"}
 
 
-def fit(
-    ax: Axes, drawing: Drawing, shots: list[Frame], arrows: list[dict[str, np.ndarray]], system: UnitSystem
-) -> None:
+def fit(ax: Axes, drawing: Drawing, shots: list[Frame], scale: Scale, system: UnitSystem) -> None:
     """Set axes of equal scales that hold every frame, with room for names, and for the scale at the lower edge."""
     moving: list[Artist] = []
     for shot in shots[:: max(1, len(shots) // KNOWN)]:
         renewed(ax, moving, partial(draw_links, ax, drawing, shot.shape))
     renewed(ax, moving, lambda: None)
-    ax.update_datalim(np.concatenate([ends for shot in arrows for ends in shot.values()]))
+    for shot in shots:
+        pushes = (tail(load, half_side(drawing, shot.shape), scale.length) for load in _loads(shot, scale) if load.acts)
+        ax.update_datalim(np.concatenate([*_arrows(shot, drawing, scale).values(), *pushes]))
     (x0, y0), (x1, y1) = ax.dataLim.get_points()
     room = 0.06 * max(x1 - x0, y1 - y0)
     ax.update_datalim([(x0 - room, y0 - 2.5 * room), (x1 + room, y1 + room)])
@@ -182,14 +219,17 @@ def fit(
     show_lengths(ax, system)
 
 
-def scale(ax: Axes, top: float, longest: float, unit: str) -> None:
+def draw_scale(ax: Axes, scale: Scale, system: UnitSystem) -> None:
     """Draw the length of a round force in the lower left corner."""
     from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
+    top, unit = system.value(scale.top, "N"), system.unit("N")
     decade = 10.0 ** np.floor(np.log10(0.7 * top))
     force = next(digit * decade for digit in ROUND if digit * decade <= 0.7 * top)
     style: dict[str, Any] = {"frameon": False, "color": GREY, "borderpad": 0.8}
-    ax.add_artist(AnchoredSizeBar(ax.transData, longest * force / top, f"{force:g} {unit}", "lower left", **style))
+    ax.add_artist(
+        AnchoredSizeBar(ax.transData, scale.longest * force / top, f"{force:g} {unit}", "lower left", **style)
+    )
 
 
 def panels(*curves: float) -> tuple[Figure, Axes, list[Axes]]:
@@ -203,14 +243,17 @@ def panels(*curves: float) -> tuple[Figure, Axes, list[Axes]]:
 
 
 def readings(ax: Axes, angle: str, words: dict[str, str]) -> Callable[[float, dict[str, str]], list[Artist]]:
-    """Write a line above the axes, the angle and the word of each value; return the function that writes the values."""
+    """Write the angle and the word of each value above the axes; return the function that writes the values."""
     style: dict[str, Any] = {"textcoords": "offset points", "va": "baseline"}
-    places = np.linspace(0.0, 1.0, len(words) + 1, endpoint=False)
+    rows = -(-(len(words) + 1) // IN_A_ROW)
+    columns = -(-(len(words) + 1) // rows)
     texts = {}
-    for place, (name, word) in zip(places, {"": angle, **words}.items(), strict=True):
+    for k, (name, word) in enumerate({"": angle, **words}.items()):
+        row, column = divmod(k, columns)
         style["color"] = force_color(name) if name.startswith("F") else BLACK
-        title = ax.annotate(word, (place, 1.0), (0.0, 5.0), xycoords="axes fraction", **style)
-        texts[name] = ax.annotate("", (1.0, 1.0), (4.0, 5.0), xycoords=(title, "axes fraction"), **style)
+        above = 5.0 + LINE * (rows - 1 - row)
+        title = ax.annotate(word, (column / columns, 1.0), (0.0, above), xycoords="axes fraction", **style)
+        texts[name] = ax.annotate("", (1.0, 1.0), (4.0, above), xycoords=(title, "axes fraction"), **style)
 
     def say(angle: float, values: dict[str, str]) -> list[Artist]:
         for name, text in {"": f"{angle:.1f}°".replace("-", "−"), **values}.items():
@@ -234,7 +277,7 @@ def follower(ax: Axes, names: list[str]) -> Callable[[float, dict[str, float]], 
     return follow
 
 
-def renewed(ax: Axes, moving: list[Artist], draw: Callable[[], None]) -> None:
+def renewed(ax: Axes, moving: list[Artist], draw: Callable[[], Any]) -> None:
     """Draw again all that moves, after removing the artists of the last frame."""
     for artist in moving:
         artist.remove()

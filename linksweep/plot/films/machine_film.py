@@ -12,15 +12,15 @@ from linksweep.plot import track as track_plot
 from linksweep.plot.curves import forces, headroom, torque
 from linksweep.plot.films.frames import (
     TINY,
-    arrows_of,
+    Scale,
     draw_frame,
+    draw_scale,
     fit,
     follower,
     frames_of,
     panels,
     readings,
     renewed,
-    scale,
     way,
 )
 from linksweep.plot.kit import signals
@@ -59,16 +59,16 @@ def film_of_crank(scene: Scene, drawing: Drawing, angles: Any, frames: int, poin
     top = curves.get_ylim()[1] / headroom(len(drawing.forces)) * system.size("N")
     draw_ground(machine, scene, drawing, shots[0].shape)
     longest = ARROW * max(np.ptp(machine.dataLim.intervalx), np.ptp(machine.dataLim.intervaly))
-    arrows = [arrows_of(shot, drawing, top, longest) for shot in shots]
-    fit(machine, drawing, shots, arrows, system)
-    scale(machine, system.value(top, "N"), longest, system.unit("N"))
+    scale = Scale(top, longest)
+    fit(machine, drawing, shots, scale, system)
+    draw_scale(machine, scale, system)
     say = readings(machine, "$\\theta_2$ =", {name: signals.symbol(name) for name in drawing.forces})
     follow, follow_drive = follower(curves, list(drawing.forces)), follower(effort, [drive])
     moving: list[Artist] = []
 
     def draw(k: int) -> list[Artist]:
         shot, sizes = shots[k], {name: float(np.hypot(*force)) for name, force in shots[k].forces.items()}
-        renewed(machine, moving, partial(draw_frame, machine, drawing, shot.shape, arrows[k], longest))
+        renewed(machine, moving, partial(draw_frame, machine, drawing, shot, scale))
         sizes = {name: system.value(size if size > TINY * top else 0.0, "N") for name, size in sizes.items()}
         texts = {name: f"{signals.number(size)} {system.unit('N')}" for name, size in sizes.items()}
         marks = [*follow(shot.angle, sizes), *follow_drive(shot.angle, {drive: efforts[k]})]

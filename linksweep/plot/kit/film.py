@@ -22,13 +22,13 @@ from PIL import Image
 
 from linksweep.files.atomic import ending_of, whole
 from linksweep.files.progress import progress_bar
-from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SHADE, SKY, VERMILION
+from linksweep.plot.kit.colors import BLACK, BLUE, GREEN, GREY, LOAD, ORANGE, PURPLE, SHADE, SKY, VERMILION
 from linksweep.plot.kit.machine_parts import BAR, EDGE
 from linksweep.plot.kit.style import small_type
 
 PAUSE = 40  # milliseconds between frames: a GIF counts in hundredths of a second
-INKS = (BLACK, GREY, EDGE, BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE)
-TINTS = (0.2, 0.4, 0.6, 0.8, 1.0)  # of an ink on white paper
+INKS = (BLACK, GREY, EDGE, LOAD, BLUE, SKY, GREEN, ORANGE, VERMILION, PURPLE)
+TINTS = (0.25, 0.5, 0.75, 1.0)  # of an ink on white paper
 PLAIN = ("#FFFFFF", SHADE, BAR)
 ENDINGS = (".gif", ".html")
 COMPRESSION = 8  # of zlib: a tenth smaller than usual, for 20 milliseconds a frame

@@ -53,12 +53,15 @@ def _placer(axes: Axes) -> Placer:
     return placer
 
 
-def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, color: str) -> None:
-    """Draw an arrow in the data's coordinates; its shaft counts as a curve."""
+def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, color: str, head: float = 11.0, gap: float = 0.0) -> None:
+    """Draw an arrow in the data's coordinates; its shaft counts as a curve.
+
+    The head has this size [points], and ends this far before the end [points].
+    """
     shaft = np.array([start, end])
     axes.plot(*shaft.T, color=color, linewidth=1.6, zorder=CURVES + 0.4, solid_capstyle="butt")
-    head = {"arrowstyle": "-|>", "color": color, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 11.0}
-    note = axes.annotate("", tuple(end), tuple(start), arrowprops=head | {"linewidth": 0.0}, annotation_clip=False)
+    look = {"arrowstyle": "-|>", "color": color, "shrinkA": 0.0, "shrinkB": gap, "mutation_scale": head}
+    note = axes.annotate("", tuple(end), tuple(start), arrowprops=look | {"linewidth": 0.0}, annotation_clip=False)
     note.set_in_layout(False)
 
 

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
 
 BAR, EDGE = "#DCE6EE", "#3F4B55"
 CENTRE_LINE = (0.0, (8.0, 3.0, 1.0, 3.0))
+CENTRE = 7.5  # points: size of a centre of gravity
 STROKES = 0.35  # of the block's half side: length of the hatching
 
 
-def supports(ax: Axes, at: np.ndarray) -> None:
-    """Draw a hatched support under each ground pin, the rows of `at`."""
+def supports(ax: Axes, at: np.ndarray, size: float = 30.0) -> None:
+    """Draw a hatched support of this size [points] under each ground pin, the rows of `at`."""
     from matplotlib.path import Path
 
     strokes = [[(x, -1.0), (x - 0.25, -1.3)] for x in np.linspace(-0.7, 0.9, 6)]
@@ -25,7 +26,7 @@ def supports(ax: Axes, at: np.ndarray) -> None:
     lines = [outline, [(-0.9, -1.0), (0.9, -1.0)], *strokes]
     codes = [Path.MOVETO if k == 0 else Path.LINETO for line in lines for k in range(len(line))]
     support = Path([vertex for line in lines for vertex in line], codes)
-    style: dict[str, Any] = {"markersize": 30.0, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
+    style: dict[str, Any] = {"markersize": size, "markerfacecolor": "white", "markeredgecolor": EDGE, "zorder": 2.1}
     ax.plot(*at.T, linestyle="none", marker=support, label="_ground", **style)
 
 
@@ -98,6 +99,16 @@ def telescope(ax: Axes, barrel: np.ndarray, rod: np.ndarray, shortest: float) ->
         ax.plot(*np.array([barrel, end]).T, zorder=2.19, label="_barrel", **style)
 
 
+def stay(ax: Axes, place: np.ndarray, corners: np.ndarray) -> None:
+    """Draw a thin line from a point of a link to the nearest place between the link's pins, which may lie apart."""
+    around = corners if len(corners) < 3 else np.append(corners, corners[:1], axis=0)
+    start, side = around[:-1], np.diff(around, axis=0)
+    share = np.sum((place - start) * side, axis=1) / np.sum(side * side, axis=1)
+    feet = start + np.clip(share, 0.0, 1.0)[:, None] * side
+    foot = feet[np.argmin(np.linalg.norm(feet - place, axis=1))]
+    ax.plot(*np.array([foot, place]).T, color=EDGE, linewidth=0.8, zorder=2.11, label="_stay")
+
+
 def tie(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
     """Draw the triangle that ties a point to its link."""
     style: dict[str, Any] = {"facecolor": BAR, "edgecolor": EDGE, "linewidth": 0.8, "alpha": 0.6}
@@ -107,6 +118,16 @@ def tie(ax: Axes, corners: np.ndarray, behind: bool = False) -> None:
 def pins(ax: Axes, at: np.ndarray) -> None:
     circles: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": EDGE, "markersize": 6.0, "zorder": 2.45}
     ax.plot(*at.T, "o", label="_pins", **circles)
+
+
+def centres(ax: Axes, at: np.ndarray) -> None:
+    """Draw the sign of a centre of gravity, a circle in black and white quarters, at each row of `at`."""
+    from matplotlib.path import Path
+
+    style: dict[str, Any] = {"linestyle": "none", "markersize": CENTRE, "markeredgecolor": "black", "zorder": 2.44}
+    ax.plot(*at.T, marker="o", markerfacecolor="white", markeredgewidth=0.8, label="_centres", **style)
+    quarters = Path.make_compound_path(Path.wedge(0.0, 90.0), Path.wedge(180.0, 270.0))
+    ax.plot(*at.T, marker=quarters, markerfacecolor="black", markeredgewidth=0.0, label="_quarters", **style)
 
 
 def point(ax: Axes, at: np.ndarray) -> None:

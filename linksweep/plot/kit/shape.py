@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -36,9 +36,11 @@ class Slide(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A machine in a position, lengths in [m]: pins, the curve of a point, blocks, shortest lengths of cylinders."""
+    """A machine in a position, lengths in [m]: pins, centres of gravity, the curve of a point, blocks, shortest lengths
+    of cylinders."""
 
     pins: dict[str, np.ndarray]
+    centres: dict[int, np.ndarray]  # of links that have a mass, by number
     curve: np.ndarray  # (2, angles), closed
     point: np.ndarray
     slides: tuple[Slide, ...]
@@ -73,6 +75,7 @@ def shape_of(scene: Scene, drawing: Drawing, cycle: xr.Dataset, point: Any) -> S
     lengths = (np.hypot(*(places[end] - places[start])) for start, end in drawing.telescopes)
     return Shape(
         pins={pin: places[pin][:, -1] for pin in sorted(places)},
+        centres={number: place[:, -1] for number, place in centres_of(scene, drawing, cycle, places).items()},
         curve=np.append(path[:, :-1], path[:, :1], axis=1),
         point=path[:, -1],
         slides=tuple(slides),
@@ -98,10 +101,37 @@ def curve_of(
     if carrier.end and point is None:
         return places[carrier.end]
     cg = scene.mechanism.masses()[carrier.role]
-    distance, turned = point or (cg.cg_distance, cg.cg_angle)
-    x, y = axes_of(scene, cycle, drawing.frames[carrier.number])
-    along, across = (one(distance) * one(part) for part in cos_sin(turned))
-    return places[carrier.pin] + along * np.array([x, y]) + across * np.array([-y, x])
+    at = _polar(*(point or (cg.cg_distance, cg.cg_angle)))
+    return point_of(scene, drawing, cycle, places, carrier.number, *at)
+
+
+def centres_of(
+    scene: Scene, drawing: Drawing, cycle: xr.Dataset, places: Mapping[str, np.ndarray]
+) -> dict[int, np.ndarray]:
+    """Return the places [m] of the centres of gravity, (2, angles), of links that have a mass."""
+    masses = scene.mechanism.masses()
+    heavy = {body.number: masses[body.role] for body in scene.mechanism.bodies if one(masses[body.role].mass) > 0.0}
+    points = {number: _polar(link.cg_distance, link.cg_angle) for number, link in heavy.items()}
+    return {number: point_of(scene, drawing, cycle, places, number, *at) for number, at in points.items()}
+
+
+def point_of(
+    scene: Scene,
+    drawing: Drawing,
+    cycle: xr.Dataset,
+    places: Mapping[str, np.ndarray],
+    number: int,
+    along: Any,
+    across: Any,
+) -> np.ndarray:
+    """Return the places [m] of a point of a link, by its coordinates in the link's axes, (2, angles)."""
+    x, y = axes_of(scene, cycle, drawing.frames[number])
+    return places[drawing.pins_of(number)[0]] + along * np.array([x, y]) + across * np.array([-y, x])
+
+
+def _polar(distance: Any, angle: Any) -> tuple[float, float]:
+    cos, sin = cos_sin(angle)
+    return one(distance) * one(cos), one(distance) * one(sin)
 
 
 def axes_of(scene: Scene, cycle: xr.Dataset, frame: Frame) -> np.ndarray:
