@@ -171,17 +171,11 @@ def strength(results: Results) -> Markup:
     for link in map(str, ds["link"].values):
         one = {str(name): float(ds[name].sel(link=link)) for name in ds.data_vars if ds[name].dims == ("link",)}
         place = joined(f"{100.0 * one['stress_section']:.0f} % of its length, ", angle(one["stress_at"]))
-        safeties = (one[f"{name}_safety"] for name in ("yield", "goodman", "soderberg"))
-        rows.append(
-            (
-                link,
-                stress(one["stress"], results.system),
-                place,
-                *map(number, safeties),
-                number(float(least.sel(link=link))),
-            )
-        )
-    of_links = table(("link", "stress", "at", "yield", "Goodman", "Soderberg", "buckling"), rows)
+        numbers = [one[f"{name}_safety"] for name in ("yield", "goodman", "soderberg")]
+        numbers += [float(least.sel(link=link)), *([one["life"]] if "life" in one else [])]
+        rows.append((link, stress(one["stress"], results.system), place, *map(number, numbers)))
+    header = ("link", "stress", "at", "yield", "Goodman", "Soderberg", "buckling", "life in cycles")
+    of_links = table(header[: len(rows[0])], rows)
     return joined(of_links, tag("p", FIBRES, class_="note"))
 
 
