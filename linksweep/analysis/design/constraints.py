@@ -44,12 +44,16 @@ class ResultFunction:
         rows = map(float, x) if x.ndim == 1 else (xr.DataArray(row, dims=CANDIDATES) for row in x)
         return replaced(self.base, dict(zip(self.paths, rows, strict=True)))
 
+    def designs(self, x: np.ndarray) -> Scene:
+        """Return the scene of designs over a dim, also of one: one that cannot be assembled is no error then."""
+        return self.scene(x.reshape(len(x), -1))
+
     def value(self, name: str, x: np.ndarray, worst: str) -> Any:
         """Return the worst ("max" or "min") of a result at x: a number, or one for each column of x."""
-        values = result_value(self.scene(x), name)
+        values = result_value(self.designs(x), name)
         others = [dim for dim in values.dims if dim != CANDIDATES]
         numbers = getattr(values, worst)(others, skipna=False).values
-        return float(numbers) if x.ndim == 1 else np.broadcast_to(numbers, x.shape[1:]).copy()
+        return float(numbers.reshape(-1)[0]) if x.ndim == 1 else np.broadcast_to(numbers, x.shape[1:]).copy()
 
     def gradient(self, name: str, x: np.ndarray, worst: str) -> np.ndarray:
         """Return the derivatives of the worst of a result to the parameters at x, of shape (parameters,)."""
@@ -57,7 +61,7 @@ class ResultFunction:
         if key not in self._kept:
             while len(self._kept) >= KEPT:
                 self._kept.pop(next(iter(self._kept)))
-            self._kept[key] = derived(self.scene(x), name, self.paths)
+            self._kept[key] = derived(self.designs(x), name, self.paths)
         result = self._kept[key]
         arrays = xr.broadcast(result.value, *(slope.drop_attrs() for slope in result.slopes.values()))
         values, *slopes = (array.values.ravel() for array in arrays)

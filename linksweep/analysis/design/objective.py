@@ -18,7 +18,7 @@ from linksweep.analysis.design.constraints import (
     nonlinear_constraints,
 )
 from linksweep.analysis.design.result_derivatives import result_names
-from linksweep.analysis.design.searches import local_optimum, starts_of
+from linksweep.analysis.design.searches import local_optimum
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import require_scene
@@ -133,7 +133,7 @@ class Objective:
     def __call__(self, x: Any) -> Any:
         """Return the objective at x: one number, or one for each column of x."""
         x = self._numbers(x)
-        columns = x.reshape(len(x), -1)
+        columns = x.reshape(len(x), -1)  # also of one: one that cannot be assembled is no error then
         worst_cases = self.peaks(columns)
         sound = _alone(worst_cases["status"] == 0)
         if self.constraint is not None:
@@ -186,24 +186,27 @@ class Objective:
         Parameters
         ----------
         method : str, default "SLSQP"
-            Method of ``scipy.optimize.minimize`` that takes constraints: "SLSQP" or "trust-constr".
+            Method of ``scipy.optimize.minimize``: "SLSQP", or "trust-constr", which takes more calls.
         multistart : int or Dataset, default None
-            Further starts besides the scene's own values: a number of points within the ranges, or the designs of a
-            Dataset, such as the front of a study of these parameters.
+            Further starts besides the scene's own values, a search for each: a number of points within the ranges, or
+            the designs of a Dataset, such as the front of a study of these parameters.
         minimax : int, default 0
-            Angles at which the quantity is held below the bound that is minimized, so that two equal peaks do not stop
-            the search; 0 for the peak alone.
+            Number of equal sectors of the cycle, such as 24, in each of which the largest value is held below a bound
+            that is minimized: two equal peaks do not stop this search. 0 for the peak alone.
 
         Returns
         -------
         OptimizeResult
-            That of scipy, in the parameters' units: `x`, `fun`; `allowed` states whether all constraints hold, `calls`
-            how many values and gradients the search took.
+            The best of all starts: `x`, in the parameters' units, and `fun`, the exact result there, of a maximum the
+            negative; `allowed`, whether all constraints hold and, where the scene itself has status ok, the status is;
+            `success`, `message` and `nit`, the iterations, as scipy returns them; `calls`, the values and gradients
+            computed for all starts; `start` and `method`.
 
         Raises
         ------
         ValueError
-            If the objective is a function and not a name, or a Dataset lacks a parameter.
+            If the objective is a function and not a name, a Dataset lacks a parameter, a method is unknown, or minimax
+            is asked for a result without rises, such as "T12_rms".
 
         Examples
         --------
@@ -215,7 +218,7 @@ class Objective:
         True
         """
         self._require_name()
-        return local_optimum(self, starts_of(self, multistart), method, minimax)
+        return local_optimum(self, method, multistart, minimax)
 
     def _require_name(self) -> None:
         advice = 'a search by gradients needs the name of a result, as minimize="F32_peak"'

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,15 +26,18 @@ from linksweep.engine.run import Field
 from linksweep.results.compute import quantity_problems
 from linksweep.results.derivatives.of_means import mean_derivatives, moving_unknown
 from linksweep.results.derivatives.of_peaks import (
+    EQUAL,
     JUMP,
     NONE,
     OK,
     TIE,
     peak_derivatives,
     turning_point_derivatives,
+    unlike,
 )
 from linksweep.results.peaks import peaks
 from linksweep.scene.at_sections import with_sections
+from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
 
 ENDS = ("peak", "max", "min", "mean", "rms")
@@ -43,23 +46,27 @@ OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
 TRAVEL = "_travel"
 FLYWHEEL = "flywheel_inertia"
 OF_MOTION = "transmission_angle"
-EQUAL = 1e-12
-"""Difference of the largest and minus the least value that tie for a signed quantity's peak, relative to it."""
 
 
 class Derived(NamedTuple):
     """A result with its derivatives by parameter, and the status of these, each over the design dims.
 
     Derivatives of a peak whose status is not ok are those of one rise, or of one side of a jump: enough for a search.
+    `corners` states to which parameters those of two equal rises differ.
     """
 
     value: xr.DataArray
     slopes: Mapping[str, xr.DataArray]
     status: xr.DataArray
+    corners: Mapping[str, xr.DataArray] = MappingProxyType({})
 
     def only_ok(self) -> Derived:
-        """Return the result, its derivatives NaN where their status is not ok."""
-        return self._replace(slopes={path: slope.where(self.status == OK) for path, slope in self.slopes.items()})
+        """Return the result, its derivatives NaN where they do not exist; in a tie those that differ."""
+        ok = self.status == OK
+        tie = {path: (self.status == TIE) & ~corner for path, corner in self.corners.items()}
+        return self._replace(
+            slopes={path: slope.where(ok | tie.get(path, False)) for path, slope in self.slopes.items()}
+        )
 
 
 def derived(
@@ -142,40 +149,47 @@ def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     ds, quantity = peaks(scene, of=[stem], threads=threads), scene.table.quantity[stem]
     value = ds[f"{stem}_{end}"]
     if quantity.squared:
-        own = partial(_extreme, scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to)
-        slopes, status = own(True)
-        status = xr.where(value == 0.0, NONE, status)  # a magnitude that is 0 has a corner there
-        return Derived(value, {path: slope / (2.0 * value) for path, slope in slopes.items()}, status)
-    sides = {word: (ds[f"{stem}_{word}_at"], ds[f"{stem}_{word}"], word == "max") for word in ("max", "min")}
+        square = _extreme(scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to, True)
+        status = xr.where(value == 0.0, NONE, square.status)  # a magnitude that is 0 has a corner there
+        slopes = {path: slope / (2.0 * value) for path, slope in square.slopes.items()}
+        return Derived(value, slopes, status, square.corners)
+    above, below = (
+        _extreme(scene, stem, ds[f"{stem}_{word}_at"], ds[f"{stem}_{word}"], to, word == "max")
+        for word in ("max", "min")
+    )
     if end != "peak":
-        at, extreme, largest = sides[end]
-        return Derived(value, *_extreme(scene, stem, at, extreme, to, largest))
-    (above, above_status), (below, below_status) = (
-        _extreme(scene, stem, at, extreme, to, largest) for at, extreme, largest in sides.values()
-    )
-    highest, lowest = sides["max"][1], sides["min"][1]
-    upper = abs(highest) >= abs(lowest)
-    tie = (abs(abs(highest) - abs(lowest)) <= EQUAL * value) & (sides["max"][0] != sides["min"][0])
-    signs = np.sign(highest), np.sign(lowest)
-    slopes = {path: xr.where(upper, signs[0] * above[path], signs[1] * below[path]) for path in to}
-    unlike = sum(abs(signs[0] * above[path] - signs[1] * below[path]) for path in to) > 1e-8 * sum(
-        abs(slope) for slope in slopes.values()
-    )
-    status = xr.where(upper, above_status, below_status)
-    status = xr.where(tie & unlike, TIE, status)
-    return Derived(value, slopes, status)
+        return above if end == "max" else below
+    return _of_both(scene, value, above, below)
+
+
+def _of_both(scene: Scene, value: xr.DataArray, above: Derived, below: Derived) -> Derived:
+    """Return the largest magnitude of a signed quantity, from its largest and its least value."""
+    upper = abs(above.value) >= abs(below.value)
+    equal = abs(abs(above.value) - abs(below.value)) <= EQUAL * value
+    slopes, corners = {}, {}
+    for path in above.slopes:
+        one, other = (np.sign(side.value) * side.slopes[path] for side in (above, below))
+        slopes[path] = xr.where(upper, one, other)
+        number = free(scene)[path][0]
+        apart = unlike(one, other, value, 0.0 if number is None else number)
+        corners[path] = equal & apart | xr.where(upper, above.corners[path], below.corners[path])
+    status = xr.where(upper, above.status, below.status)
+    tie = (status == OK) & (sum(corners.values()) > 0)
+    return Derived(value, slopes, xr.where(tie, TIE, status), corners)
 
 
 def _extreme(
     scene: Scene, name: str, at: xr.DataArray, value: xr.DataArray, to: tuple[str, ...], largest: bool
-) -> tuple[dict[str, xr.DataArray], xr.DataArray]:
-    """Return the derivatives of the largest (or least) value of a quantity, and their status."""
+) -> Derived:
+    """Return the largest (or least) value of a quantity with its derivatives."""
     angle, height = (Field(tuple(map(str, array.dims)), array.values) for array in (at, value))
-    of_extreme = peak_derivatives(scene, name, angle, height, to, largest)
-    dims = of_extreme.pairs.dims
-    arrays = (xr.DataArray(of_extreme.pairs.field(row).values, dims=dims) for row in of_extreme.slopes)
-    status = xr.DataArray(of_extreme.pairs.field(of_extreme.status).values, dims=dims)
-    return dict(zip(to, arrays, strict=True)), status
+    pairs, *tables, status = peak_derivatives(scene, name, angle, height, to, largest)
+
+    def array(numbers: Any) -> xr.DataArray:
+        return xr.DataArray(pairs.field(numbers).values, dims=pairs.dims)
+
+    slopes, corners = (dict(zip(to, map(array, table), strict=True)) for table in tables)
+    return Derived(value, slopes, array(status), corners)
 
 
 def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:

@@ -64,9 +64,10 @@ def sensitivities(
         Over the design dims, and the dim `section` of what is inside links, for each result such as F32_peak: its
         value, and over the dim `parameter` `F32_peak_derivative`, per unit of the parameter as `parameter_unit` states
         it, and `F32_peak_elasticity` [1], the percent by which the result grows for one percent of the parameter.
-        `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises that change
-        differently; "moving_jump", at a jump, a kink or an end of the motion whose way is not known; "unbounded";
-        "no_peak". Where it is not ok they are NaN. With angles there is the `status` of a sweep.
+        `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises of which some
+        derivatives differ; "moving_jump", at a jump or a kink whose way is not known; "unbounded", at infinity;
+        "arc_end", at an end of the motion; "no_peak". Where it is not ok they are NaN, in a tie those that differ. With
+        angles there is the `status` of a sweep.
 
     Raises
     ------

@@ -11,8 +11,11 @@ closed form, as a dead centre, the derivative is one-sided:
 
     d(max q)/dp = ∂q/∂p + ∂q/∂θ·dθ*/dp
 
-It is not known at other jumps that move and at an end of the motion, and there is none of one of two equal rises that
-change differently. A status says which.
+It is not known at other jumps that move, and there is none at the end of an arc, a toggle, where slopes are infinite,
+nor of two equal rises that change differently. A status says which.
+
+Two rises are equal where they differ by less than the search may err. Those as high as the peak are found by the search
+itself (`linksweep.results.peak_search.rises`).
 """
 
 from __future__ import annotations
@@ -20,19 +23,22 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
+from linksweep.engine.quantity import opposite_of
 from linksweep.engine.run import Field
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.derivatives.samples import Pairs, pairs_over
+from linksweep.results.peak_search.rises import at_arc_ends, equal_rises
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated
 from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
 from linksweep.scene.inputs import as_field
 from linksweep.scene.pairs import Array, in_period
 from linksweep.scene.scene import Scene
 
-MEANINGS = ("ok", "tie", "moving_jump", "unbounded", "no_peak")
+MEANINGS = ("ok", "tie", "moving_jump", "unbounded", "no_peak", "arc_end")
 """Status of the derivatives of a peak."""
-OK, TIE, JUMP, UNBOUNDED, NONE = range(len(MEANINGS))
+OK, TIE, JUMP, UNBOUNDED, NONE, ARC_END = range(len(MEANINGS))
 STEP = 1e-7
 """First step of the secants [rad]."""
 SECANTS = 4
@@ -42,21 +48,23 @@ SETTLED = 1e-9
 """Step of the last secant [rad] below which a peak counts as smooth."""
 BESIDE = 1e-6
 """Distance from a jump [degree] at which one-sided derivatives are taken."""
-EVEN = 720
-"""Even samples of a turn among which rivals of a peak are looked for."""
+APART = 1e-3
+"""Least distance of two rises [degree]: those on the two sides of a kink are one."""
 EQUAL = 1e-10
 """Difference of two rises that are equal, relative to the peak."""
 ALIKE = 1e-8
-"""Difference of two derivatives that are alike, relative to the largest of all."""
+"""Difference of two derivatives that are alike, relative to the larger one."""
+ROUNDING = 1e-12
+"""Rounding of a derivative, relative to the peak over the parameter."""
 
 
 class PeakDerivatives(NamedTuple):
-    """Derivatives of a signal's peaks: (parameter, design) over the designs' dims, and the status of each design; where
-    that is not ok they are those of one rise, or of one side."""
+    """Derivatives of a signal's peaks: (parameter, design) over the designs' dims, which of them differ between equal
+    rises, and the status of each design. Where that is not ok they are those of one rise, or of one side."""
 
     pairs: Pairs
-    angle: Array
     slopes: Array
+    corners: Array
     status: Array
 
 
@@ -77,20 +85,29 @@ def peak_derivatives(
     own = differentiated(scene, (name,), (*to, ANGLE))
     pairs = pairs_over(own, angle.dims)
     at, peak = pairs.numbers(angle), pairs.numbers(value)
-    sign = 1.0 if largest else -1.0
-    polished, smooth = _polished(pairs, name, at)
-    held, jumps, moves = _at_jumps(pairs, at, to)
-    smooth &= ~jumps
-    place = np.where(smooth, polished, _side(pairs, name, at, peak))
-    slopes = pairs.at(tuple(derivative_of(name, path) for path in to), place)
-    (steep,) = pairs.at((derivative_of(name, ANGLE),), place)
-    slopes = np.where(smooth, slopes, slopes + steep * moves)
-    status = np.where(smooth | held, OK, JUMP)
-    tied = _tied(pairs, name, to, place, peak, sign, slopes)
-    status = np.where(tied, TIE, status)
+    slopes, known = rise_derivatives(pairs, name, to, at, peak)
+    status = np.where(known, OK, JUMP)
+    corners = _corners(pairs, name, to, at, peak, largest, slopes)
+    status = np.where(corners.any(axis=0), TIE, status)
+    status = np.where(at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE), ARC_END, status)
     status = np.where(np.isinf(peak), UNBOUNDED, status)
     status = np.where(np.isnan(peak) | np.isnan(at), NONE, status)
-    return PeakDerivatives(pairs, place, slopes, status)
+    return PeakDerivatives(pairs, slopes, corners, status)
+
+
+def rise_derivatives(
+    pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, heights: Array
+) -> tuple[Array, Array]:
+    """Return the derivatives (parameter, design) of a quantity's extremes at these angles [degree], and whether each is
+    known; where it is not, as at an angle that stays, they are those at the angle itself."""
+    polished, smooth = _polished(pairs, name, angles)
+    held, jumps, moves = _at_jumps(pairs, angles, to)
+    smooth &= ~jumps
+    place = np.where(smooth, polished, _side(pairs, name, angles, heights))
+    values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
+    slopes, steep = values[:-1], values[-1]
+    with np.errstate(invalid="ignore"):
+        return np.where(smooth, slopes, slopes + steep * moves), smooth | held
 
 
 def turning_point_derivatives(scene: Scene, name: str, angle: Field, to: tuple[str, ...]) -> tuple[Pairs, Array, Array]:
@@ -145,8 +162,12 @@ def _over(pairs: Pairs, number: Any) -> Array:
 
 
 def _near(angles: Array, place: Any, period: float) -> Array:
-    away = in_period(angles - place + 0.5 * period, period) - 0.5 * period
-    return np.abs(away) < 10.0 * BESIDE
+    return np.abs(_away(angles, place, period)) < 10.0 * BESIDE
+
+
+def _away(angles: Array, place: Any, period: float) -> Array:
+    """Return angles less a place, the nearest way round [degree]."""
+    return in_period(angles - place + 0.5 * period, period) - 0.5 * period
 
 
 def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
@@ -157,61 +178,33 @@ def _side(pairs: Pairs, name: str, angles: Array, peak: Array) -> Array:
     return np.take_along_axis(places, np.argmin(away, axis=0)[None], axis=0)[0]
 
 
-def _tied(pairs: Pairs, name: str, to: tuple[str, ...], place: Array, peak: Array, sign: float, slopes: Array) -> Array:
-    """Return where another rise is as high, and changes differently."""
-    rival = _rivals(pairs, name, place, sign)
-    rows = np.flatnonzero(np.isfinite(rival))
-    tied = np.zeros(len(place), dtype=bool)
-    if not len(rows):
-        return tied
-    some = pairs._replace(designs=pairs.designs[rows])
-    at, smooth = _settled(some, name, rival[rows])
-    (height,) = some.at((name,), at)
-    equal = smooth & (np.abs(height - peak[rows]) <= EQUAL * np.abs(peak[rows]))
-    other = some.at(tuple(derivative_of(name, path) for path in to), at)
-    scale = np.fmax(np.abs(other), np.abs(slopes[:, rows]))
-    apart = np.abs(other - slopes[:, rows]) > ALIKE * np.fmax(scale, 1e-300)
-    tied[rows] = equal & apart.any(axis=0)
-    return tied
+def unlike(one: Any, other: Any, peak: Any, number: Any) -> Any:
+    """Return whether the derivatives of two equal rises to a parameter differ by more than their errors."""
+    rounding = ROUNDING * abs(peak) / abs(xr.where(number == 0.0, np.inf, number))
+    return abs(one - other) > ALIKE * np.maximum(abs(one), abs(other)) + rounding
 
 
-def _settled(pairs: Pairs, name: str, angles: Array) -> tuple[Array, Array]:
-    """Return the angles of rises from those of a coarse search, by golden steps of polishing."""
-    smooth = np.zeros(len(angles), dtype=bool)
-    for _ in range(2):
-        for _ in range(8):
-            angles = _newton(pairs, name, angles)
-        polished, smooth = _polished(pairs, name, angles)
-        angles = np.where(smooth, polished, angles)
-    return angles, smooth
+def _corners(
+    pairs: Pairs, name: str, to: tuple[str, ...], angles: Array, peak: Array, largest: bool, slopes: Array
+) -> Array:
+    """Return for which parameters (parameter, design) another rise is as high, and changes differently or in a way that
+    is not known."""
+    height = peak if largest else -peak
+    level = np.where(np.isfinite(peak), height, np.nan)
+    level = np.nan_to_num(level - EQUAL * np.abs(level), nan=np.inf)
+    signal = name if largest else opposite_of(name)
+    row, angle, top = equal_rises(pairs.scene.plain, signal, pairs.designs, level)
+    other = np.abs(_away(angle, angles[row], pairs.scene.period)) > APART
+    row, angle, top = row[other], angle[other], top[other]
+    corners = np.zeros(slopes.shape, dtype=bool)
+    if len(row):
+        rivals, known = rise_derivatives(pairs.some(row), name, to, angle, top if largest else -top)
+        for k, path in enumerate(to):
+            apart = unlike(rivals[k], slopes[k, row], peak[row], _over(pairs, _number(pairs, path))[row])
+            corners[k, row[apart | ~known]] = True
+    return corners
 
 
-def _newton(pairs: Pairs, name: str, angles: Array) -> Array:
-    """Return the angles one step nearer to where ∂q/∂θ is zero, by at most half a sample."""
-    slope, step = (derivative_of(name, ANGLE),), 1e-4
-    g, after = (pairs.at(slope, some)[0] for some in (angles, angles + step))
-    with np.errstate(all="ignore"):
-        move = np.clip(-g * step / (after - g), -180.0 / EVEN, 180.0 / EVEN)
-    return angles + np.where(np.isfinite(move), move, 0.0)
-
-
-def _rivals(pairs: Pairs, name: str, place: Array, sign: float) -> Array:
-    """Return the angle [degree] of the highest rise beside the peak's own among even samples; NaN for none."""
-    scene, count = pairs.scene, len(pairs.designs)
-    turns = round(scene.period / scene.mechanism.period)
-    samples = (np.arange(EVEN * turns) + 0.5) * (scene.period / (EVEN * turns))
-    designs = np.repeat(np.arange(count), len(samples))
-    values = sign * pairs.at((name,), np.tile(samples, count), designs)[0].reshape(count, -1)
-    low = np.where(np.isnan(values), -np.inf, values)
-    before, after = np.roll(low, 1, axis=1), np.roll(low, -1, axis=1)
-    step = scene.period / len(samples)
-    away = np.abs(in_period(samples - place[:, None] + 0.5 * scene.period, scene.period) - 0.5 * scene.period)
-    rises = (low >= before) & (low >= after) & (away > 1.5 * step) & np.isfinite(low)
-    with np.errstate(invalid="ignore", divide="ignore"):  # of two samples that are alike
-        bend = np.where(np.isfinite(before + after), 2.0 * low - before - after, np.inf)
-        height = np.where(rises, low + 0.125 * np.where(bend > 0.0, (after - before) ** 2 / bend, 0.0), -np.inf)
-    k = np.argmax(height, axis=1)
-    top = np.take_along_axis(height, k[:, None], axis=1)[:, 0]
-    (own,) = pairs.at((name,), place)
-    close = top >= sign * own - 1e-3 * np.abs(own)
-    return np.where(close & np.isfinite(top), samples[k], np.nan)
+def _number(pairs: Pairs, path: str) -> Any:
+    value, _ = pairs.scene.numbers[path]
+    return 0.0 if value is None else value_of(value)

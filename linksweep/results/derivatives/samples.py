@@ -37,25 +37,29 @@ def sample_derivatives(
 
 
 class Pairs(NamedTuple):
-    """Designs of a scene over some of its dims, row-major: `designs` are their numbers in the whole scene."""
+    """Designs of a scene over some of its dims, row-major: `designs` are their numbers in the whole scene, `places`
+    those over these dims."""
 
     scene: Differentiated
     dims: tuple[str, ...]
     shape: tuple[int, ...]
     designs: Array
+    places: Array
+
+    def some(self, rows: Array) -> Pairs:
+        """Return the designs in these rows, each as often as it is named."""
+        return self._replace(designs=self.designs[rows], places=self.places[rows])
 
     def numbers(self, field: Field) -> Array:
         """Return a number for each design, of a field over some of the dims."""
-        return np.broadcast_to(aligned(field, self.dims), self.shape).ravel().astype(float)
+        return np.broadcast_to(aligned(field, self.dims), self.shape).ravel()[self.places].astype(float)
 
-    def at(self, names: tuple[str, ...], angles: Array, rows: Array | None = None) -> Array:
-        """Return values (names, designs) of quantities at an angle [degree] of each design, or of those in some rows;
-        NaN where the angle is."""
-        rows = np.arange(len(self.designs)) if rows is None else rows
+    def at(self, names: tuple[str, ...], angles: Array) -> Array:
+        """Return values (names, designs) of quantities at an angle [degree] of each design; NaN where the angle is."""
         known = np.isfinite(angles)
         values = np.full((len(names), len(angles)), np.nan)
         if names:
-            values[:, known] = quantities_at(self.scene, names, self.designs[rows[known]], angles[known])
+            values[:, known] = quantities_at(self.scene, names, self.designs[known], angles[known])
         return values
 
     def field(self, values: Array) -> Field:
@@ -69,4 +73,4 @@ def pairs_over(scene: Differentiated, dims: tuple[str, ...]) -> Pairs:
     ordered = tuple(dim for dim in sizes if dim in dims)
     every = np.arange(int(np.prod(tuple(sizes.values()), dtype=int))).reshape(tuple(sizes.values()))
     some = every[tuple(slice(None) if dim in dims else 0 for dim in sizes)]
-    return Pairs(scene, ordered, some.shape, some.ravel())
+    return Pairs(scene, ordered, some.shape, some.ravel(), np.arange(some.size))

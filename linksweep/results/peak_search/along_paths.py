@@ -69,8 +69,7 @@ def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, .
         places = group.some(paths.row).places
         at = [_flat_index(peak.value, places, len(paths.row)) for peak in peaks.values()]
         current = [peak.value.values.reshape(-1)[index] for peak, index in zip(peaks.values(), at, strict=True)]
-        best = _search(group, tuple(peaks), paths, np.stack(current, axis=1), threads)
-        best = best if paths.steps is None else _with_limits(group, tuple(peaks), paths, best, threads)
+        best = highest(group, tuple(peaks), paths, np.stack(current, axis=1), threads)
         for k, (peak, index) in enumerate(zip(peaks.values(), at, strict=True)):
             _raise(peak, index, *(numbers[:, k] for numbers in best))
 
@@ -116,15 +115,18 @@ def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bou
 # ------------------------------------------------------------------------------------- lanes about summits
 
 
-def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+def highest(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
     """Return the highest of each signal on each path; lanes that cannot exceed `current` (path, signal) are dropped."""
+    best = _search(group, signals, paths, current, threads)
+    return best if paths.steps is None else _with_limits(group, signals, paths, best, threads)
+
+
+def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+    """Return the highest of each signal on each path, without the limits at its ends."""
     count_of_paths, per_path = paths.x.shape
-    every = np.repeat(np.arange(count_of_paths), per_path)
-    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
-    rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
-    lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
-    best, samples = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals))), np.full(count_of_paths, per_path)
-    run = search_functions(rows.size)
+    samples = np.full(count_of_paths, per_path)
+    lanes, count, best = _opened(group, signals, paths, threads)
+    run = search_functions(paths.x.size * len(signals))
 
     def values_at(tag: Array, x: Array) -> Array:
         path = tag // len(signals)
@@ -133,15 +135,61 @@ def _search(group: Group, signals: tuple[str, ...], paths: Paths, current: Array
         return values[tag % len(signals), np.arange(len(tag))]
 
     with np.errstate(all="ignore"):
-        where = paths.x, paths.before, paths.after, paths.ends == "meet"
-        count = run["open_on_paths"](rows, *where, lanes, best, np.zeros(brackets.in_blocks(per_path), dtype=np.int64))
         best[brackets.PEAK] = np.fmax(best[brackets.PEAK], current.ravel())
-        kept = np.flatnonzero(_promising(lanes[:, :count], best[brackets.PEAK], paths, len(signals)))
-        lanes[:, : len(kept)] = lanes[:, kept]
-        refine(run, lanes, len(kept), best, values_at)
+        count = _keep_promising(lanes, count, best[brackets.PEAK], paths, len(signals))
+        refine(run, lanes, count, best, values_at)
     value, x, bound = (best[row].reshape(-1, len(signals)) for row in (brackets.PEAK, brackets.PEAK_X, brackets.BEYOND))
     angle = angle_in_period(paths.angles(np.arange(count_of_paths)[:, None], x), group.scene.period)
     return value, angle, bound, np.broadcast_to(samples[:, None], value.shape)
+
+
+class Rises(NamedTuple):
+    """Rises of a signal, each about one summit: path, angle [degree] and height."""
+
+    path: Array
+    angle: Array
+    height: Array
+
+
+def rises(group: Group, signal: str, paths: Paths, level: Array, threads: int | None = None) -> Rises:
+    """Return all rises of a signal on paths that may reach the level of their path, each refined on its own."""
+    lanes, count, _ = _opened(group, (signal,), paths, threads)
+    count = _keep_promising(lanes, count, level, paths, 1)
+    path = lanes[brackets.TAG, :count].astype(int)
+    lanes[brackets.TAG, :count] = np.arange(count)
+    best = np.zeros((brackets.BEST_ROWS, count))
+    best[brackets.PEAK], best[brackets.PEAK_X] = lanes[brackets.FB, :count], lanes[brackets.XB, :count]
+
+    def values_at(tag: Array, x: Array) -> Array:
+        return group.values((signal,), paths.row[path[tag]], paths.angles(path[tag], x), threads)[0]
+
+    with np.errstate(all="ignore"):
+        refine(search_functions(paths.x.size), lanes, count, best, values_at)
+    angle = angle_in_period(paths.angles(path, best[brackets.PEAK_X]), group.scene.period)
+    return Rises(path, angle, best[brackets.PEAK])
+
+
+def _opened(group: Group, signals: tuple[str, ...], paths: Paths, threads: int | None) -> tuple[Array, int, Array]:
+    """Return the lanes about all samples that may lead to a peak, their number, and each signal's highest sample."""
+    count_of_paths, per_path = paths.x.shape
+    every = np.repeat(np.arange(count_of_paths), per_path)
+    values = group.values(signals, paths.row[every], paths.angles(every, paths.x.ravel()), threads)
+    rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
+    lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
+    best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
+    where, flags = (paths.x, paths.before, paths.after, paths.ends == "meet"), brackets.in_blocks(per_path)
+    with np.errstate(all="ignore"):
+        run = search_functions(rows.size)["open_on_paths"]
+        count = run(rows, *where, lanes, best, np.zeros(flags, dtype=np.int64))
+    return lanes, count, best
+
+
+def _keep_promising(lanes: Array, count: int, peak: Array, paths: Paths, signals: int) -> int:
+    """Move the lanes that can exceed the current peak of their signal to the front, and return their number."""
+    with np.errstate(all="ignore"):
+        kept = np.flatnonzero(_promising(lanes[:, :count], peak, paths, signals))
+    lanes[:, : len(kept)] = lanes[:, kept]
+    return len(kept)
 
 
 def _promising(lanes: Array, peak: Array, paths: Paths, signals: int) -> Array:

@@ -60,11 +60,11 @@ def arcs(group: Group) -> Paths:
     return _along(group, arc_ends(group), arc_ends(group))
 
 
-def arcs_within(part: Part, group: Group) -> Paths:
-    """Return the arcs or turns of each design between two angles [degree], in pieces."""
+def arcs_within(part: Part, group: Group, pieces: int = 1) -> Paths:
+    """Return the arcs or turns of each design between two angles [degree], in this number of equal pieces at least."""
     toggles = arc_ends(group)
     none = (np.full((len(group.designs), 1), np.nan),) * 2
-    return _along(group, _pieces(group, part, toggles), toggles or none, closely=True)
+    return _along(group, _pieces(group, part, toggles, pieces), toggles or none, closely=True)
 
 
 def about_approaches_on_arcs(group: Group) -> Paths:
@@ -100,9 +100,10 @@ def _along(group: Group, ends: tuple[Array, ...], toggles: tuple[Array, ...], cl
     return paths.some(_ok_somewhere(group, paths))
 
 
-def _pieces(group: Group, part: Part, toggles: tuple[Array, ...]) -> tuple[Array, ...]:
+def _pieces(group: Group, part: Part, toggles: tuple[Array, ...], pieces: int) -> tuple[Array, ...]:
     """Return starts and ends (design, piece) of a part, where a design can be assembled [degree]; NaN for no piece."""
-    edges = np.linspace(*part, 1 + math.ceil((part[1] - part[0]) / LONGEST_PIECE))[:, None]
+    pieces *= math.ceil((part[1] - part[0]) / (pieces * LONGEST_PIECE))
+    edges = np.linspace(*part, 1 + pieces)[:, None]
     kind = group.assembly()
     whole = (kind[:, None] == EVERYWHERE) | (not toggles)
     period = group.scene.period_of_motion

@@ -77,7 +77,7 @@ def _by_paths(
     """Return peaks from a search along these paths, or along those for each design's kind of assembly."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     for kind, group in assembled_groups(scene, signals):
-        follow(group, peaks, paths or _paths(scene, kind), threads)
+        follow(group, peaks, paths or paths_of(scene, kind), threads)
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if _is_over_angle(scene, signal)}
@@ -108,11 +108,11 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
         for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_approaches,), threads)
     for group in groups(scene, names, partly):
-        follow(group, peaks, _paths(scene, PARTLY), threads)
+        follow(group, peaks, paths_of(scene, PARTLY), threads)
     return peaks
 
 
-def _paths(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
+def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
     """Return all paths along which designs of one kind of assembly are searched."""
     along, windows = (turns, about_approaches) if kind == EVERYWHERE else (arcs, about_approaches_on_arcs)
     return (along, windows) if scene.approaches() else (along,)

@@ -254,7 +254,47 @@ def test_two_equal_rises_that_change_differently_have_no_derivative():
     assert 1.0 < at % 180.0 < 179.0
     ds = ls.sensitivities(scene, of=["F12_peak"], to=["offset"])
     assert int(ds.F12_peak_status) == 1 and np.isnan(ds.F12_peak_derivative).all()
-    assert int(ls.sensitivities(scene, of=["F12_peak"], to=["rod.mass", "omega2"]).F12_peak_status) == 0
+    paths = ["rod.mass", "omega2"]
+    alike = ls.sensitivities(scene, of=["F12_peak"], to=paths)
+    assert int(alike.F12_peak_status) == 0
+    both = ls.sensitivities(
+        scene, of=["F12_peak"], to=[*paths, "offset"]
+    ).F12_peak_derivative  # those alike still exist
+    assert both.values[:2].tolist() == alike.F12_peak_derivative.values.tolist() and np.isnan(both[2])
+
+
+@pytest.mark.parametrize(("offset", "status"), [(0.0, 1), (1e-9, 0), (-1e-9, 0)])
+def test_rises_that_differ_by_more_than_the_search_errs_do_not_tie(offset, status):
+    """T12 of a centric slider-crank without load is T(-θ2) = -T(θ2): its largest and its least value are opposite."""
+    links = {name: ls.Link(length, 1.0, 0.01, 0.4 * length) for name, length in (("crank", 0.08), ("rod", 0.22))}
+    scene = ls.Scene(ls.SliderCrank(**links, slider_mass=2.0, offset=offset), omega2=30.0)
+    ds = ls.sensitivities(scene, of=["T12_peak", "F14_peak"], to=["offset"])
+    assert int(ds.T12_peak_status) == int(ds.F14_peak_status) == status
+
+
+def test_two_narrow_rises_beside_each_other_tie():
+    """Two torques of one height, 0.4 degrees from each other and a tenth as wide, on a machine without other forces;
+    the slope of the torque to gravity is that of virtual work, which differs between them."""
+    theta = np.union1d(np.arange(0.0, 360.0), np.arange(9950, 10100) / 100.0)
+    torque = sum(np.exp(-0.5 * ((theta - at) / 0.04) ** 2) for at in (100.0, 100.4))
+    scene = ls.Scene(FOUR, 0.0, loads=[ls.Load("crank", torque=xr.DataArray(torque, {"theta2": theta}, "theta2"))])
+    at = float(ls.peaks(scene, of=["T12"]).T12_min_at)
+    assert min(abs(at - 100.0), abs(at - 100.4)) < 1e-3
+    ds = ls.sensitivities(scene, of=["T12_min"], to=["gravity[2]", "crank.length"])
+    assert int(ds.T12_min_status) == 1
+    assert np.isnan(ds.T12_min_derivative).values.tolist() == [True, False]
+
+
+def test_a_peak_at_the_end_of_an_arc_has_no_derivative():
+    """The transmission angle is least, 0, in a toggle, where it changes infinitely fast; forces are at infinity."""
+    links = {
+        name: ls.Link(length, 1.0, 0.01, 0.1) for name, length in (("crank", 0.3), ("coupler", 0.2), ("rocker", 0.25))
+    }
+    scene = ls.Scene(ls.FourBar(**links, ground=0.4), omega2=1.0)
+    ds = ls.sensitivities(scene, of=["transmission_angle_min", "F32_peak"], to=["ground", "coupler.length"])
+    assert float(ds.transmission_angle_min) == pytest.approx(0.0, abs=1e-9) and np.isinf(ds.F32_peak)
+    assert int(ds.transmission_angle_min_status) == 5 and np.isnan(ds.transmission_angle_min_derivative).all()
+    assert int(ds.F32_peak_status) == 3 and np.isnan(ds.F32_peak_derivative).all()
 
 
 def test_a_peak_at_a_dead_centre_moves_with_it():
