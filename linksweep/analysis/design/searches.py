@@ -73,18 +73,18 @@ def _from_start(
     searched = Bounded(problem, minimax) if minimax else problem
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "delta_grad == 0.0")  # of a constraint that is linear
-        found = minimize(
+        answer = minimize(
             searched.value, searched.first(start), jac=searched.gradient, bounds=searched.bounds,
             constraints=searched.constraints(), method=method, options=OPTIONS[method],
         )  # fmt: skip
-    x = searched.own(found.x)
+    x = searched.own(answer.x)
     return OptimizeResult(
         x=x,
         fun=objective.plain_value(x),
         allowed=problem.allowed(x, ALLOWED),
-        success=bool(found.success),
-        message=str(found.message),
-        nit=int(found.nit),
+        success=bool(answer.success),
+        message=str(answer.message),
+        nit=int(answer.nit),
         calls=calls,
         method=method,
         start=start,

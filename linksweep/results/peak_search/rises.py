@@ -34,14 +34,14 @@ class Equals(NamedTuple):
 def equal_rises(scene: Scene, signal: str, designs: Array, level: Array) -> Equals:
     """Return all rises of a signal of these designs that reach a level, one for each design."""
     signal = _known(scene, (signal,))[0]
-    found = [Equals(np.empty(0, dtype=int), np.empty(0), np.empty(0))]
+    parts = [Equals(np.empty(0, dtype=int), np.empty(0), np.empty(0))]
     for rows, kind, group in _by_assembly(scene, (signal,), designs):
         for paths in (paths_of_group(group) for paths_of_group in paths_of(scene, kind)):
             if len(paths.row):
                 path, angle, height = rises(group, signal, paths, level[rows[paths.row]])
                 high = height >= level[rows[paths.row[path]]]
-                found.append(Equals(rows[paths.row[path]][high], angle[high], height[high]))
-    return Equals(*map(np.concatenate, zip(*found, strict=True)))
+                parts.append(Equals(rows[paths.row[path]][high], angle[high], height[high]))
+    return Equals(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def at_arc_ends(scene: Scene, designs: Array, angles: Array, near: float) -> Array:
