@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pint
 import pytest
 import xarray as xr
 from long import long_but
@@ -153,6 +154,20 @@ def test_pins_reach_their_allowable_stresses():
     for name, limit in limits.items():
         assert float(reached[name]) == pytest.approx(limit, rel=1e-12)
     assert str(ds.criterion.values[int(ds.governing.sel(pin="B"))]) == "bending"
+
+
+def test_measures_may_have_units():
+    unit, press = pint.UnitRegistry(), ls.example("press")
+    plain = ls.size_pins(
+        press, allowable={"shear": 60e6, "pressure": 15e6}, eye=0.02, fork=dict.fromkeys("ABCD", 0.0127)
+    )
+    limits = {"shear": "60 MPa", "pressure": 15.0 * unit.MPa}
+    sized = ls.size_pins(press, allowable=limits, eye=20.0 * unit.mm, fork=dict.fromkeys("ABCD", "0.5 in"))
+    xr.testing.assert_allclose(sized, plain, rtol=1e-15)
+    gap = ls.contact_loss(press, {"B": 50.0 * unit.um}, theta2=4).knock
+    xr.testing.assert_allclose(gap, ls.contact_loss(press, {"B": "0.05 mm"}, theta2=4).knock, rtol=1e-15)
+    steel = ls.Material(210.0 * unit.GPa, "235 MPa", 360.0 * unit.MPa, "180 MPa")
+    assert steel == STEEL
 
 
 def test_what_governs_a_pin_is_a_word_in_any_units():
