@@ -22,6 +22,7 @@ from linksweep.analysis.drive.motors.induction import InductionMotor
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
+from linksweep.analysis.pins.choose_bearings import choose_bearings
 from linksweep.analysis.pins.contact_loss import contact_loss
 from linksweep.analysis.pins.pin_friction import pin_friction
 from linksweep.analysis.pins.speed_limit import speed_limit, speed_separation
@@ -102,6 +103,7 @@ __all__ = [
     "best_counterweights",
     "breakdown",
     "check",
+    "choose_bearings",
     "compare",
     "contact_loss",
     "counterweights",

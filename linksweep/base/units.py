@@ -66,6 +66,7 @@ KINDS = {
         ("voltage", "24 V", "V, mV, kV"),
         ("resistance", "0.6 ohm", "ohm, mohm, kohm"),
         ("torque_constant", "0.05 N m/A", "N m/A, N cm/A, mN m/A, lbf in/A, lbf ft/A"),
+        ("life", "10000 h", "h, min, s"),
         ("dimensionless", "10 %", "%"),
     )
 }

@@ -34,6 +34,7 @@ UNITS = {
     "damping_coefficient": "N s/m",
     "torsional_rate": "N m/rad",
     "torsional_damping": "N m s/rad",
+    "life": "h",
     "voltage": "V",
     "resistance": "ohm",
     "torque_constant": "N m/A",

@@ -19,6 +19,7 @@ from linksweep.cli.options import (
     add_names,
     add_part,
     add_plot,
+    number_or_text,
 )
 from linksweep.cli.running import one_design, print_answer, show
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 SAMPLES = 720
 SHAKING = ["Fsx", "Fsy"]
+SERIES = ["60", "62", "63"]
 BALANCED = ("Fs_peak", "Fs_rms", "Ms_peak", "{drive}_peak", "{drive}_ripple")
 
 
@@ -64,6 +66,17 @@ def _add_pins_and_links(add: Callable[..., argparse.ArgumentParser]) -> None:
     pins.add_argument("--frame", choices=FRAMES, default="ground", metavar="AXES", help=frames)
     add_plot(pins)
 
+    chosen = add("choose-bearings", _choose_bearings, "the smallest ball bearing of each pin for a life")
+    life = 'running time that they reach, such as "10000 h"'
+    chosen.add_argument("--life", type=number_or_text, required=True, metavar="TIME", help=life)
+    safety = "least static rating over the largest load (1)"
+    chosen.add_argument("--safety", type=float, default=1.0, dest="static_safety", metavar="S0", help=safety)
+    chosen.add_argument("--kind", choices=KINDS, default="ball", metavar="KIND", help="%(choices)s (ball)")
+    add_names(chosen, "--series", default=SERIES, text="series to choose from (60 62 63)")
+    chosen.add_argument("--bore", type=a_number("length"), help='least bore of all, such as "20 mm"')
+    chosen.add_argument("--outside", type=a_number("length"), help='largest outside diameter of all, such as "60 mm"')
+    add_part(chosen, "crank angles [degree] of a machine that moves over part of a turn")
+
     links = add("strength", _strength, "stress of each link, and its safety against yield, fatigue and buckling")
     links.add_argument("--material", choices=STRENGTHS, required=True, metavar="NAME", help="%(choices)s")
     eyes = "factor on the stress at eyes of pins (1)"
@@ -83,6 +96,12 @@ def _bearings(options: argparse.Namespace) -> None:
     theta2 = np.linspace(options.theta2[0], options.theta2[1], SAMPLES) if options.theta2 else SAMPLES
     print_answer(ls.bearings(scene, dict.fromkeys(scene.mechanism.pins, bearing), theta2=theta2))
     show(options, lambda: ls.plot.bearings(ls.sweep(scene, theta2), frame=options.frame))
+
+
+def _choose_bearings(options: argparse.Namespace) -> None:
+    limits = {"series": options.series, "bore": options.bore, "outside": options.outside, "kind": options.kind}
+    scene, life = one_design(options.scene), {"life": options.life, "static_safety": options.static_safety}
+    print_answer(ls.choose_bearings(scene, **life, **limits, theta2=options.theta2))
 
 
 def _strength(options: argparse.Namespace) -> None:

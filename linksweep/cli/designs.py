@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import linksweep as ls
-from linksweep.cli.options import TABLES, Commands, a_file, add_names, add_of, add_plot
+from linksweep.cli.options import TABLES, Commands, a_file, add_names, add_of, add_plot, number_or_text
 from linksweep.cli.running import one_design, print_answer, scene_named, show
 
 
@@ -65,11 +65,4 @@ def _tolerance(options: argparse.Namespace) -> None:
 
 def _limits(words: list[str]) -> str | ls.Tolerance:
     """Return a class by its name, or limits as numbers or with units."""
-    return words[0] if len(words) == 1 else ls.Tolerance(*(_number(word) for word in words))
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    return words[0] if len(words) == 1 else ls.Tolerance(*(number_or_text(word) for word in words))

@@ -139,3 +139,11 @@ def a_number(kind: str) -> Callable[[str], float]:
             raise argparse.ArgumentTypeError(str(error)) from None
 
     return read
+
+
+def number_or_text(text: str) -> float | str:
+    """Return an argument as a number if it is one, else as it is, with a unit for the library to read."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -16,7 +16,7 @@ from linksweep.tables.of_balance import balance_table, order_table
 from linksweep.tables.of_check import check_table
 from linksweep.tables.of_drive import drive_table, wheel_table
 from linksweep.tables.of_peaks import study_parts
-from linksweep.tables.of_pins import bearing_parts, share_parts
+from linksweep.tables.of_pins import bearing_parts, choice_parts, share_parts
 from linksweep.tables.of_sensitivity import sensitivity_parts, tolerance_parts
 from linksweep.tables.of_strength import strength_parts
 from linksweep.tables.of_system import system_parts
@@ -42,6 +42,7 @@ def _peaks(ds: xr.Dataset) -> Iterator[Part]:
 KINDS: Mapping[str, Kind] = {
     "bearings": _kind(bearing_parts, "life_status F L10h", "pin main frame theta2"),
     "breakdown": _kind(share_parts, "status", "source theta2"),
+    "choose_bearings": _kind(choice_parts, "required_capacity required_static_capacity F_peak", "pin"),
     "compare": _kind(lambda ds: iter([balance_table(ds)]), "", "balance"),
     "duty": _kind(lambda ds: iter([drive_table(ds)]), "effort_peak power_max work_fed", ""),
     "flywheel": _kind(lambda ds: iter([wheel_table(ds)]), "speed flywheel_inertia fluctuation drive_torque", "theta2"),

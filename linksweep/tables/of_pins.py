@@ -40,6 +40,29 @@ def bearing_parts(ds: xr.Dataset) -> Iterator[Part]:
     yield Table(header[:cut], [row[:cut] for row in rows], right=range(1, len(columns) + 1))
 
 
+def choice_parts(ds: xr.Dataset) -> Iterator[Part]:
+    """Yield the table of chosen bearings, a line for each pin: its loads, the ratings that it needs, the bearing."""
+    columns = {"largest": "F_peak", "equivalent": "equivalent_load", "C ≥": "required_capacity"}
+    columns |= {"C0 ≥": "required_static_capacity"}
+    loads = {f"{title} [{unit_of(ds[name])}]": ds[name].values for title, name in columns.items()}
+    numbers = [[finite_or_inf(float(load[k])) for load in loads.values()] for k in range(ds.sizes["pin"])]
+    header: Row = ("pin", *loads)
+    rows = [(str(pin), *cells) for pin, cells in zip(ds["pin"].values, numbers, strict=True)]
+    if "choice" in ds:  # of rollers there is no catalogue
+        unit, size = ("mm", 1e-3) if unit_of(ds["bore"]) == "m" else (unit_of(ds["bore"]), 1.0)
+        header += ("bearing", f"size [{unit}]", "L10h [h]", "s0")
+        rows = [(*row, *_chosen(ds, k, size)) for k, row in enumerate(rows)]
+    yield Table(header, rows, right=(1, 2, 3, 4, 7, 8))
+
+
+def _chosen(ds: xr.Dataset, k: int, unit: float) -> Row:
+    """Return designation, size, life and static safety of the bearing in a pin."""
+    name = str(ds["choice"].attrs["flag_meanings"]).split()[int(ds["choice"].values[k])]
+    size = [float(ds[each].values[k]) / unit for each in ("bore", "outside", "width")]
+    text = "" if np.isnan(size).any() else " × ".join(f"{each:.4g}" for each in size)
+    return name, text, *(finite_or_inf(float(ds[each].values[k])) for each in ("L10h", "static_safety"))
+
+
 def _column(ds: xr.Dataset, dim: str, title: str, name: str, how: str) -> tuple[str, np.ndarray]:
     """Return the title of a column with its unit, and a number for each pin."""
     values = ds[name]

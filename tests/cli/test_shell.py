@@ -215,6 +215,7 @@ ARGUMENTS = {
     "sweep": ["-o", "c.nc", "--plot", "c.png"],
     "report": ["-o", "page.html"],
     "animate": ["-o", "film.gif"],
+    "choose-bearings": ["--life", "10000 h"],
     "strength": ["--material", "S355"],
     "breakdown": ["F32"],
     "balance": ["--radius", "6 cm"],

@@ -104,6 +104,7 @@ CALLS = {
     ),
     "breakdown": lambda s, path: s.breakdown,
     "check": lambda s, path: ls.check(s.machine),
+    "choose_bearings": lambda s, path: ls.choose_bearings(s.machine, life="10000 h"),
     "compare": lambda s, path: ls.compare(s.machine, s.machine, of=[f"{s.force}_peak"], theta2=SAMPLES),
     "contact_loss": lambda s, path: ls.contact_loss(s.machine, 5e-5, theta2=SAMPLES),
     "counterweights": lambda s, path: ls.counterweights(s.machine, radius=0.06),
@@ -189,6 +190,7 @@ COMMANDS = {
     "report": lambda s, path: ["report", written(s, path), "-o", path / "page.html"],
     "animate": lambda s, path: ["animate", written(s, path), "-o", path / "film.gif", "--frames", 2],
     "bearings": lambda s, path: ["bearings", written(s, path), "--diameter", "2 cm", "--length", "3 cm"],
+    "choose-bearings": lambda s, path: ["choose-bearings", written(s, path), "--life", "10000 h"],
     "strength": lambda s, path: ["strength", written(s, path), "--material", "S355"],
     "breakdown": lambda s, path: ["breakdown", written(s, path), s.force],
     "balance": lambda s, path: ["balance", written(s, path), "--radius", "6 cm"],
@@ -205,20 +207,20 @@ COMMANDS = {
 LACKING: dict[str, str] = {
     "press": "plot.loop",
     "engine": """
-        best_counterweights position_equation regressor speed_limit speed_separation plot.loop
-        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+        best_counterweights position_equation regressor speed_limit speed_separation plot.loop size_links strength
+        plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "quick-return": """
         position_equation plot.loop size_links strength plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "loop": """
-        bearings best_counterweights breakdown counterweights coupler_curve duty explore flywheel geometry load_spectrum
-        motor_load orders pin_friction position_equation regressor shaking_moment speed_limit speed_separation
-        with_counterweights plot.balance plot.bearing plot.bearings plot.breakdown plot.flywheel plot.forces
-        plot.hodograph plot.mechanism plot.motor_load plot.orders plot.over_speed plot.torque
-        plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown command.balance
-        command.orders command.explore command.flywheel contact_loss size_pins
-        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+        bearings best_counterweights breakdown choose_bearings command.choose-bearings counterweights coupler_curve
+        duty explore flywheel geometry load_spectrum motor_load orders pin_friction position_equation regressor
+        shaking_moment speed_limit speed_separation with_counterweights plot.balance plot.bearing plot.bearings
+        plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders
+        plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
+        command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
+        plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": """
@@ -226,13 +228,12 @@ LACKING: dict[str, str] = {
         command.balance
     """,
     "scotch-yoke": """
-        counterweights position_equation plot.loop command.balance
-        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+        counterweights position_equation plot.loop command.balance size_links strength plot.moment_diagram
+        plot.moment_diagrams command.strength
     """,
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
-        command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength
-        plot.tornado
+        command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
     """,
     "whitworth": """
         best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
@@ -243,17 +244,16 @@ LACKING: dict[str, str] = {
         command.balance
     """,
     "yoke": """
-        counterweights position_equation plot.heat_map plot.loop command.balance
-        size_links strength plot.moment_diagram plot.moment_diagrams command.strength
+        counterweights position_equation plot.heat_map plot.loop command.balance size_links strength
+        plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "inline-four": """
-        best_counterweights breakdown check compare counterweights coupler_curve explore geometry load_scene motor_load
-        draw grid objective open_study pin_friction position_equation quantities regressor sample scene_at screen
-        sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights plot.balance
-        plot.bearing plot.bearings plot.tornado
-        plot.breakdown plot.cycle plot.forces plot.loop plot.mechanism plot.motor_load plot.over_speed
-        plot.torque_with_flywheel accessor.mechanism accessor.scene contact_loss size_links size_pins strength
-        plot.moment_diagram plot.moment_diagrams
+        best_counterweights breakdown check choose_bearings compare counterweights coupler_curve explore geometry
+        load_scene motor_load draw grid objective open_study pin_friction position_equation quantities regressor sample
+        scene_at screen sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights
+        plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
+        plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
+        contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams
     """,
 }
 """The pairs that give a sentence, by machine."""

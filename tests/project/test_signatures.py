@@ -30,9 +30,9 @@ SUBJECTS = {
     r"Mapping\[str, Bearing\]": {"pins"},
 }
 WORK = {
-    "bearings", "best_counterweights", "breakdown", "compare", "coupler_curve", "duty", "flywheel", "geometry",
-    "motor_load", "peaks", "pin_friction", "position_equation", "regressor", "report", "screen", "sensitivities",
-    "speed_limit", "speed_separation", "study", "sweep", "system", "tolerance", "MultiCylinder.sweep",
+    "bearings", "best_counterweights", "breakdown", "choose_bearings", "compare", "coupler_curve", "duty", "flywheel",
+    "geometry", "motor_load", "peaks", "pin_friction", "position_equation", "regressor", "report", "screen",
+    "sensitivities", "speed_limit", "speed_separation", "study", "sweep", "system", "tolerance", "MultiCylinder.sweep",
 }  # fmt: skip
 """Functions that compute cycles or peaks, and therefore take `threads`."""
 
