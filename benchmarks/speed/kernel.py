@@ -15,7 +15,7 @@ import linksweep as ls
 from benchmarks.timing import Call
 from linksweep.engine import run
 from linksweep.engine.linear.solve import unknowns
-from linksweep.engine.peaks import find_peaks
+from linksweep.engine.peaks import laid_out
 from linksweep.results.system import sampled_systems
 
 
@@ -30,7 +30,7 @@ class Kernel(NamedTuple):
 def way(name: str) -> Iterator[None]:
     """Run all requests "compiled" from their first sample, or "interpreted" always."""
     most = {"compiled": -1, "interpreted": math.inf}[name]
-    with mock.patch.object(run, "COMPILE_AFTER", most), mock.patch.object(find_peaks, "INTERPRETED_DESIGNS", most):
+    with mock.patch.object(run, "COMPILE_AFTER", most), mock.patch.object(laid_out, "INTERPRETED_DESIGNS", most):
         yield
 
 

@@ -298,6 +298,10 @@ class Mechanism(ByContent, ABC):
         """Return the crank angles [degree] at which a force may jump."""
         return ()
 
+    def directions(self) -> tuple[str, ...]:
+        """Return the directions of sliding that change at all jumps; where they are known, forces are smooth."""
+        return ()
+
     def kinks(self) -> tuple[str, ...]:
         """Return the quantities at whose change of sign others have a kink."""
         return ()

@@ -86,6 +86,9 @@ class SingleDyad(Machine):
             numbers |= link_parameters(role, self.parts.get(role, mass))
         return {name: numbers[name] for name in (*self.first, *numbers)}
 
+    def directions(self) -> tuple[str, ...]:
+        return ("direction",) if self.rubs else ()
+
     def own(self, drive: str, loads: tuple[Form, ...]) -> Own:
         return _own(type(self), drive)
 

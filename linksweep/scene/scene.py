@@ -348,6 +348,10 @@ class Scene(ByContent):
             Angles [degree]: of friction where a slider turns round, of pressure at dead centres, of a torsion spring at
             180. NaN in designs that have none.
         """
+        return self._jumps
+
+    @cached_property
+    def _jumps(self) -> tuple[Number, ...]:
         with np.errstate(invalid="ignore"):  # designs that do not turn fully
             of_loads = (angle for load in self.loads for angle in load.jumps(self.mechanism))
             along_strokes = (angle for load in self.loads for angle in load.jumps_along(partial(stroke_of, self)))

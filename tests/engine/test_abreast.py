@@ -10,7 +10,7 @@ import linksweep as ls
 from linksweep.engine.peaks import abreast, brackets, search
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_FAR, PEAK_X
 from linksweep.engine.peaks.evaluators import Evaluators
-from linksweep.engine.peaks.find_peaks import grades
+from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.lanewise import Around, Lanewise
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.plan import plan
@@ -144,7 +144,7 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         abreast.search(
-            0, len(phase), len(phase), 1, True, np.array([len(phase)]), phase, one, one[:, None] + 1, grades(),
+            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, one[:, None] + 1, grades(),
             prepare, sample, evaluate, one[:, None].copy(), np.zeros(1), np.zeros((abreast.BLOCKS, 3)),
             np.zeros(2 * PLACED), np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)),
             np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,

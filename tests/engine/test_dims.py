@@ -13,7 +13,7 @@ import xarray as xr
 import linksweep as ls
 from linksweep.engine import run
 from linksweep.engine.kernel import reduce, writer
-from linksweep.engine.peaks import find_peaks
+from linksweep.engine.peaks import laid_out
 from linksweep.engine.trace.operators import OPERATORS
 
 PRESS = ls.example("press")
@@ -32,11 +32,11 @@ def in_python(monkeypatch):
 
     monkeypatch.setattr(run, "compiled", kernel)
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
-    monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", math.inf)
-    for made in (run.runner, find_peaks.searcher):
+    monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", math.inf)
+    for made in (run.runner, laid_out.searcher):
         made.cache_clear()
     yield
-    for made in (run.runner, find_peaks.searcher):
+    for made in (run.runner, laid_out.searcher):
         made.cache_clear()
 
 
@@ -89,6 +89,6 @@ def test_folded_and_nested_loops_give_the_same_bits(deepest, speeds, masses, mon
     of = scene(np.random.default_rng(2), speeds, masses)
     nested = results(of)
     monkeypatch.setattr(writer, "DEEPEST", deepest)
-    run.runner.cache_clear(), find_peaks.searcher.cache_clear()
+    run.runner.cache_clear(), laid_out.searcher.cache_clear()
     for result, expected in zip(results(of), nested, strict=True):
         xr.testing.assert_identical(result, expected)

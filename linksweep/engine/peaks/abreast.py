@@ -73,15 +73,17 @@ GAIN, LOSS, SOUND = range(PLACES + 17, PLACES + 20)
 STATE_ROWS = PLACES + 20
 
 FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
+NOTHING_YET = {SIZE: 0.0, SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
 TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
-    first, last, designs, lanes, smooth, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate,
-    digits, inputs, constants, x, rows, state, brackets, gathered, best
+    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, strides, grades, prepare, sample,
+    evaluate, digits, inputs, constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
-    signal after the other, each filled up to whole blocks."""
+    signal after the other, each filled up to whole blocks. `even` signals are the same on both halves of the turn: the
+    samples of one are searched."""
     columns = state.shape[1]
     width = best.shape[1] // (columns // lanes)
     none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
@@ -95,7 +97,10 @@ def search(
             call(prepare, (inputs, own))
             place_samples(own, lanes, grades, x)
             call(sample, (own, x, rows))
-            compare_sample(rows, SAMPLES, state, columns)
+            if even:
+                compare_sample_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 3, state, columns)
+            else:
+                compare_sample(rows, SAMPLES, state, columns)
             pick_samples(rows, x, lanes, state)
             predict_vertices(state, columns)
             place_left(state, columns)
@@ -117,7 +122,7 @@ def search(
                     if count + 2 * HALF > brackets.shape[1]:
                         refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
                         count = none
-                    count = open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best)
+                    count = open_brackets(rows, x, lanes, k, smooth, even, state, tag, brackets, count, best)
         refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
 
 
@@ -156,10 +161,27 @@ def place_samples(constants, lanes, grades, x):
             x[half * PLACED * lanes + lane] = -1.0 / x[((1 - half) * PLACED + 2 * HALF) * lanes + lane]
 
 
-@around({SIZE: 0.0, SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf})
+@around(NOTHING_YET)
 def compare_sample(left, value, right, number, size, summit, reach, other):
     """Note the largest magnitude, the best summit, and the heights that it and any other summit may reach."""
-    height = (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
+    return with_height(summit_height(left, value, right), value, number, size, summit, reach, other)
+
+
+@around(NOTHING_YET)
+def compare_sample_of_half(left, value, right, number, size, summit, reach, other):
+    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits."""
+    height = summit_height(left, value, right)
+    height = (number < 1.0).where(-math.inf, (number > 2.0 * HALF + 1.0).where(-math.inf, height))
+    return with_height(height, value, number + (HALF - 1.0), size, summit, reach, other)
+
+
+def summit_height(left, value, right):
+    """Return the height that a summit about a sample may reach; −inf about a sample that is none."""
+    return (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
+
+
+def with_height(height, value, number, size, summit, reach, other):
+    """Return the largest magnitude, the best summit, and the heights that it and any other may reach, with one more."""
     best, less = reach < height, (height < reach).where(height, reach)
     return (
         (size < abs(value)).where(abs(value), size),
@@ -273,7 +295,7 @@ def keep_peaks(state, column, lanes, best, tag):
         best[EVALUATIONS, tag + lane] = SAMPLES + 4
 
 
-def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
+def open_brackets(rows, x, lanes, k, smooth, even, state, tag, brackets, count, best):
     """Open brackets about all summits of a signal that may exceed its peak so far, or else its highest sample; return
     their number."""
     columns, lane, confirmed = state.shape[1], k % lanes, smooth and state[CONFIRMED, k] > 0.0
@@ -293,9 +315,10 @@ def open_brackets(rows, x, lanes, k, smooth, state, tag, brackets, count, best):
     left, value = rows[(SAMPLES - 1) * columns + k], rows[k]
     left, value = left if left == left else -math.inf, value if value == value else -math.inf
     for j in range(SAMPLES):
+        searched = not even or HALF <= j <= 3 * HALF
         right = rows[(j + 1) % SAMPLES * columns + k]
         right = right if right == right else -math.inf
-        if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
+        if searched and left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
             half = j // (2 * HALF)
             for near in range(3):
                 brackets[XA + 2 * near, count] = x[(j + near + 2 * half) * lanes + lane]

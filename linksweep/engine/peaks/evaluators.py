@@ -37,6 +37,9 @@ SOURCE = inspect.getsource(sys.modules[__name__])
 """All that enters the machine code besides nodes and instructions."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
+ALONG, END = "piece_tangent", "piece_end"
+"""Inputs that place a sample on a piece of the turn instead, which a turn follows there and back: the tangent of half
+the angle from the piece's start or end, and which of the two."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
 
@@ -60,7 +63,9 @@ class Evaluators:
     def __init__(self, plan: Plan, signals: tuple[str, ...]) -> None:
         self.plan, self.signals = plan, [plan.outputs[signal] for signal in signals]
         place = {node.value: node for node in plan.nodes if node.operator == "input"}
-        self.tangent, self.far = place[TANGENT], place[FAR]
+        self.even = ALONG in place
+        """True where signals are the same at opposite tangents: on the way there and back."""
+        self.tangent, self.far = (place[ALONG], place[END]) if self.even else (place[TANGENT], place[FAR])
         work = [node for node in plan.nodes if node.operator not in ("input", "constant")]
         self.inputs = [node for node in place.values() if node not in (self.tangent, self.far)]
         self.of_designs = [node for node in work if not self._turns(node)]

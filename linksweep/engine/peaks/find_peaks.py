@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.kernel.compile import SEARCH_SIGNATURE, address, compiled_call, compiled_entry, compiled_functions
-from linksweep.engine.patience import Patience
-from linksweep.engine.peaks import abreast, brackets, lanewise, search
+from linksweep.engine.kernel.compile import (
+    SEARCH_SIGNATURE,
+    ZEROS_SIGNATURE,
+    compiled_call,
+    compiled_entry,
+    compiled_functions,
+)
+from linksweep.engine.peaks import abreast, brackets, lanewise, search, zeros
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
     BRACKET_ROWS,
@@ -25,16 +28,13 @@ from linksweep.engine.peaks.brackets import (
     TRIALS,
     X1,
 )
-from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
+from linksweep.engine.peaks.laid_out import WIDTHS, laid_out
 from linksweep.engine.peaks.lanewise import Lanewise
-from linksweep.engine.run import Field, Fields, Sizes, flat, ordered, over_threads
+from linksweep.engine.run import Field, Fields, Sizes, over_threads
 from linksweep.engine.trace.plan import Plan
 
-WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
 SIGNALS_AT_ONCE = 16
 """Signals searched together."""
-INTERPRETED_DESIGNS = 40
-"""Designs interpreted before a plan's kernel is compiled."""
 INTERPRETED_SAMPLES = 100_000
 """Samples that a search along paths may evaluate interpreted."""
 DESIGNS_PER_THREAD = 1000
@@ -56,24 +56,6 @@ class Peak(NamedTuple):
     evaluations: Field
 
 
-@dataclass(eq=False)
-class Searcher(Patience):
-    """The search for the peaks of some outputs of a plan, ready to run."""
-
-    evaluators: Evaluators
-
-    def functions(self, designs: int) -> Functions:
-        """Return the evaluators interpreted for the first designs, then compiled."""
-        interpret = self.should_interpret(designs, INTERPRETED_DESIGNS)
-        return self.evaluators.interpreted if interpret else self.evaluators.compiled
-
-
-@lru_cache(maxsize=256)
-def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
-    """Return the `Searcher` of these arguments, one for all requests."""
-    return Searcher(Evaluators(plan, signals))
-
-
 @cache
 def compiled_search() -> Callable:
     """Return `abreast.search` as machine code."""
@@ -81,6 +63,13 @@ def compiled_search() -> Callable:
     vectors["call"] = compiled_call()
     enters = f"{lanewise.SOURCE} {inspect.getsource(brackets)} {inspect.getsource(abreast)}"
     return compiled_entry("search", _plain(brackets, search, abreast), vectors, SEARCH_SIGNATURE, enters)
+
+
+@cache
+def compiled_zeros() -> Callable:
+    """Return `zeros.find_zeros` as machine code."""
+    source, enters = _plain(search, abreast, zeros), inspect.getsource(zeros)
+    return compiled_entry("find_zeros", source, {"call": compiled_call()}, ZEROS_SIGNATURE, enters)
 
 
 def _plain(*modules: ModuleType) -> str:
@@ -93,17 +82,6 @@ def _plain(*modules: ModuleType) -> str:
 
 def _is_of(modules: tuple[ModuleType, ...], value: object) -> bool:
     return inspect.isfunction(value) and value.__module__ in (module.__name__ for module in modules)
-
-
-@lru_cache(maxsize=1)
-def grades() -> np.ndarray:
-    """Return the half-angle tangents of the samples of half a turn from its middle on, for each scale of the sinh
-    grade; both ends are 1."""
-    scale = 0.5 ** np.arange(search.GRADES)[:, None]
-    steps = np.arange(search.HALF + 1) / search.HALF
-    table = scale * np.sinh(np.arcsinh(1.0 / scale) * steps)
-    table[:, -1] = 1.0
-    return table
 
 
 def find_peaks(
@@ -125,44 +103,42 @@ def find_peaks(
 
 def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int | None) -> dict[str, Peak]:
     """Return the peaks of a plan's signals, which all have the same dims."""
-    signals = tuple(name for name in plan.outputs if name not in WIDTHS)
-    ready = searcher(plan, signals)
-    shape = tuple(sizes[dim] for dim in plan.loops)
-    designs, nodes = math.prod(shape), ready.evaluators.inputs
-    functions = ready.functions(designs)
-    lanes = functions.lanes
-    run = abreast.search if lanes == 1 else compiled_search()
-    prepare, sample, evaluate = functions[2:] if lanes == 1 else map(address, functions[2:])
-    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
-    strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
-    strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
-    columns, blocks = lanes * len(signals), -(-designs // lanes)
+    designs = laid_out(plan, inputs, sizes)
+    signals, lanes, blocks = designs.signals, designs.lanes, designs.blocks
+    run: Callable = compiled_search() if designs.compiled else abreast.search
+    columns = lanes * len(signals)
     best = np.empty((BEST_ROWS + 1, columns * blocks))  # a column for each design of each signal, in whole blocks
 
     def work(first: int, last: int) -> None:
-        constants = functions.constants * lanes
         run(
-            first, last, designs, lanes, smooth, np.array(shape, dtype=np.int64), parameters, parameter_at[:-1],
-            strides, grades(), prepare, sample, evaluate,
-            np.zeros((max(len(shape), 1), lanes), dtype=np.int64), np.zeros(len(nodes) * lanes),
-            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * search.PLACED * lanes),
-            np.zeros((search.SAMPLES + 1) * columns), np.zeros((abreast.STATE_ROWS, columns)),
-            np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(constants), best,
+            first, last, designs.designs, lanes, smooth, designs.even, *designs.arguments(first, last),
+            np.zeros((abreast.STATE_ROWS, columns)), np.zeros((BRACKET_ROWS, abreast.ROOM)), designs.gathered, best,
         )  # fmt: skip
 
     with np.errstate(all="ignore"):
-        over_threads(work, blocks, 1 + designs // DESIGNS_PER_THREAD, threads)
-    stored = best.reshape(len(best), len(signals), -1)[..., :designs]
-    return {name: Peak(*(Field(plan.loops, row[k].reshape(shape)) for row in stored)) for k, name in enumerate(signals)}
+        over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
+    stored = best.reshape(len(best), len(signals), -1)[..., : designs.designs]
+    fields = [[Field(plan.loops, row.reshape(designs.shape)) for row in rows] for rows in stored.swapaxes(0, 1)]
+    return {name: Peak(*rows) for name, rows in zip(signals, fields, strict=True)}
 
 
-def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
-    """Return the distances between a parameter's values along each design dim, 0 along those that it lacks."""
-    strides, size = [], 1
-    for dim in reversed(plan.loops):
-        strides.append(size if dim in field.dims else 0)
-        size *= sizes[dim] if dim in field.dims else 1
-    return strides[::-1]
+def zeros_of_pieces(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:
+    """Return the zeros of a plan's one signal on pieces (number, piece, nth), NaN for none: tangents, and 0 or 1 for
+    the half turn about the start or the end."""
+    pieces = laid_out(plan, inputs, sizes)
+    run: Callable = compiled_zeros() if pieces.compiled else zeros.find_zeros
+    places = np.full((2, pieces.blocks * pieces.lanes, zeros.MOST_ZEROS), np.nan)
+    room = zeros.MOST_ZEROS * abreast.BLOCKS * pieces.lanes
+
+    def work(first: int, last: int) -> None:
+        run(
+            first, last, pieces.designs, pieces.lanes, *pieces.arguments(first, last),
+            np.zeros((zeros.ZERO_ROWS, room)), pieces.gathered, places,
+        )  # fmt: skip
+
+    with np.errstate(all="ignore"):
+        over_threads(work, pieces.blocks, 1 + pieces.designs // DESIGNS_PER_THREAD, threads)
+    return places[:, : pieces.designs]
 
 
 def search_functions(samples: int) -> Mapping[str, Callable]:

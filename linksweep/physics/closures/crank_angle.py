@@ -46,6 +46,18 @@ def angle_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, 
     return where(far, -cos, cos), where(far, -cos_lo, cos_lo), where(far, -sin, sin)
 
 
+def place_on_piece(piece_tangent: Number, piece_end: Number, piece_from: Number, piece_to: Number) -> Number:
+    """Return the half-angle tangent of a place on a piece of a half turn, between those of its ends.
+
+    The place moves as sin²(φ/2) from the start to the end, and back, while φ makes a turn: what varies smoothly along
+    the piece, or as the root of the distance from an end, is a smooth and even function of φ. `piece_tangent` is
+    tan(φ/2), or, where `piece_end` is positive, that of the angle from φ = 180°.
+    """
+    square = piece_tangent * piece_tangent
+    moved = (piece_to - piece_from) * (square / (1.0 + square))
+    return where(piece_end > 0.0, piece_to - moved, piece_from + moved)
+
+
 def crank_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, Number, Number, Number]:
     """Return cos θ2 and sin θ2 as double-doubles, each with its low word; `far_half` as in `angle_from_tangent`."""
     square, far = two_product(half_tangent, half_tangent), far_half > 0.0

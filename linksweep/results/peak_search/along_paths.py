@@ -61,6 +61,13 @@ def angle_in_period(angle: Array, period: float) -> Array:
     return np.where(folded < period - NEAR_PERIOD, folded, 0.0 * folded)
 
 
+def put(peak: SignalPeak, group: Any, numbers: tuple[Array, ...]) -> None:
+    """Write the four numbers of a signal's peak of each of a group's designs."""
+    at = _flat_index(peak.value, group.places, len(group.designs))
+    for field, values in zip(peak, numbers, strict=True):
+        field.values.reshape(-1)[at] = values
+
+
 def follow(group: Any, peaks: dict[str, SignalPeak], all_paths: tuple[PathsOf, ...], threads: int | None) -> None:
     """Search along all paths of a group's designs, and replace the peaks that are exceeded."""
     for paths in (paths_of(group) for paths_of in all_paths):

@@ -1,14 +1,16 @@
 """Find the exact peaks of a scene: its signals' largest values over the continuous revolution, for every design.
 
 Where the crank turns fully, no load changes with the angle and near-toggles are known in closed form, the fused search
-inside the kernel finds them. Its samples ignore jumps and the closest approaches of springs: paths about these are
-searched too. Other designs and scenes are searched along paths alone.
+inside the kernel finds them. Where friction alone makes forces jump, it searches the pieces of the turn between jumps.
+Otherwise its samples ignore jumps and the closest approaches of springs: paths about these are searched too. Other
+designs and scenes are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
 """
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 import numpy as np
@@ -16,7 +18,7 @@ import numpy as np
 from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.peaks.find_peaks import Peak, find_peaks
 from linksweep.engine.run import Field
-from linksweep.engine.trace.plan import plan
+from linksweep.engine.trace.plan import Plan, plan
 from linksweep.results.compute import compute, only_where
 from linksweep.results.peak_search.along_paths import (
     PathsOf,
@@ -24,14 +26,16 @@ from linksweep.results.peak_search.along_paths import (
     angle_in_period,
     follow,
     nothing,
+    put,
     raise_to_poles,
     with_unknown_bound,
 )
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
-from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
-from linksweep.results.peak_search.groups import assembled_groups, empty, groups
+from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
+from linksweep.results.peak_search.groups import ONE, assembled_groups, empty, groups
 from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
+from linksweep.results.peak_search.pieces import AT_ONCE, designs_without_jams, divides, follow_pieces, rubbing_signals
 from linksweep.results.peak_search.poles import may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
@@ -92,15 +96,23 @@ def _is_over_angle(scene: Scene, signal: str) -> bool:
 
 
 def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, SignalPeak]:
-    """Return peaks from the fused search, raised to those along paths where its samples do not suffice."""
-    names = (*signals, "assembly")
+    """Return peaks from the fused search of whole turns, or of their pieces, raised to those along paths where its
+    samples do not suffice."""
+    names, turning = (*signals, "assembly"), _turning(scene, signals)
     whole, partly = (_designs_where(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
-    partly = partly if _arcs_known(scene, names, partly) else partly[:0]
-    peaks = _fused(scene, signals, threads)
-    searched = assembly.values < (PARTLY if len(partly) else NEVER)
-    if not searched.all():
-        peaks = peaks_where(Field(assembly.dims, searched), peaks)
-    if scene.jumps() or scene.mechanism.kinks():
+    arcs_known = _arcs_known(scene, names, partly)
+    searched, partly = (whole, partly) if arcs_known else (np.union1d(whole, partly), partly[:0])
+    peaks = _constants(scene, tuple(signal for signal in signals if signal not in turning), searched)
+    rubbing = rubbing_signals(scene, turning)
+    divided = designs_without_jams(scene, whole) if rubbing else whole[:0]
+    free = tuple(signal for signal in turning if signal not in rubbing) if divides(scene) else ()
+    peaks |= _fused(scene, free, searched, True, threads)
+    others = tuple(signal for signal in turning if signal not in free)
+    smooth = not (scene.jumps() or scene.mechanism.kinks())
+    peaks |= _fused(scene, others, np.setdiff1d(searched, divided, assume_unique=True), smooth, threads)
+    follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing}, threads)
+    whole = np.setdiff1d(whole, divided, assume_unique=True)
+    if not smooth:
         for group in groups(scene, names, whole, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_breaks,), threads)
     if scene.approaches():
@@ -109,7 +121,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
             follow(group, peaks, (about_approaches,), threads)
     for group in groups(scene, names, partly):
         follow(group, peaks, paths_of(scene, PARTLY), threads)
-    return peaks
+    return {signal: peaks[signal] for signal in signals}
 
 
 def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
@@ -137,22 +149,60 @@ def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPe
 # ----------------------------------------------------------------------------------------- the fused search
 
 
-def _fused(scene: Scene, signals: tuple[str, ...], threads: int | None) -> dict[str, SignalPeak]:
-    """Return peaks from the search inside the kernel; a signal that does not depend on the angle is its own peak."""
-    inputs, index = scene.inputs, scene.mechanism.index
-    forms = tuple((name, form) for name, form in inputs.forms if name not in GRID_ROWS)
+def _fused(
+    scene: Scene, signals: tuple[str, ...], designs: Array, smooth: bool, threads: int | None
+) -> dict[str, SignalPeak]:
+    """Return peaks of these designs from the search inside the kernel; those of others are NaN."""
+    if not signals:
+        return {}
+    if len(designs) == math.prod(scene.inputs.sizes.values()):
+        inputs = scene.inputs
+        results = find_peaks(_between_samples(scene, signals), signals, inputs.fields, inputs.sizes, smooth, threads)
+        return {signal: _at_angle(scene, peak) for signal, peak in results.items()}
+    peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
+    places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
+    for group in groups(scene, signals, designs, AT_ONCE):
+        rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
+        request, inputs_of_group = group.one_by_one(scene.table.between_samples, signals, rows, {}, places)
+        results = find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads)
+        for signal, peak in results.items():
+            value, _, _, bound, samples = (field.values for field in peak)
+            angle = angle_in_period(_away(peak) + middle, scene.period)
+            put(peaks[signal], group, (value, np.where(np.isnan(value), np.nan, angle), bound, samples))
+    return peaks
+
+
+def _between_samples(scene: Scene, signals: tuple[str, ...]) -> Plan:
+    """Return the plan of signals between samples of a turn, and of the widths of its near-toggles."""
+    index = scene.mechanism.index
+    forms = tuple((name, form) for name, form in scene.inputs.forms if name not in GRID_ROWS)
     table = scene.table.between_samples
     widths = plan(table, (NEAR_WIDTH, FAR_WIDTH), forms)
     dims = {dim: None for node in widths.outputs.values() for dim in widths.dims(node)}
     forms += ((TANGENT, (index, *dims)), (FAR, (index,)))
-    request = plan(table, (*signals, NEAR_WIDTH, FAR_WIDTH), forms)
-    turning = tuple(signal for signal in signals if index in request.outputs[signal].dims)
-    constant = tuple(signal for signal in signals if signal not in turning)
-    smooth = not (scene.jumps() or scene.mechanism.kinks())
-    peaks = find_peaks(request, turning, inputs.fields, inputs.sizes, smooth, threads) if turning else {}
-    values = compute(scene, scene.grid(1), constant) if constant else {}
-    at_angles = {signal: _at_angle(scene, peak) for signal, peak in peaks.items()}
-    return at_angles | {signal: _constant(field) for signal, field in values.items()}
+    return plan(table, (*signals, NEAR_WIDTH, FAR_WIDTH), forms)
+
+
+def _turning(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the signals that depend on the angle."""
+    outputs = _between_samples(scene, signals).outputs
+    return tuple(signal for signal in signals if scene.mechanism.index in outputs[signal].dims)
+
+
+def _constants(scene: Scene, signals: tuple[str, ...], designs: Array) -> dict[str, SignalPeak]:
+    """Return the peaks of signals that do not depend on the angle: at 0, after one sample; NaN where none of these
+    designs shares one."""
+    values = compute(scene, scene.grid(1), signals) if signals else {}
+    sizes = scene.inputs.sizes
+    good = np.zeros(math.prod(sizes.values()), dtype=bool)
+    good[designs] = True
+    peaks = {signal: _constant(field) for signal, field in values.items()}
+    return peaks_where(Field(tuple(sizes), good.reshape(tuple(sizes.values()))), peaks) if peaks else {}
+
+
+def _away(peak: Peak) -> Array:
+    """Return the angles of peaks from the near-toggle [degree]."""
+    return 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
 
 
 def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
@@ -167,7 +217,7 @@ def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
     value, beyond, evaluations, tangent, far = (
         Field(dims, array if array.shape == shape else np.broadcast_to(array, shape).copy()) for array in numbers
     )
-    angle = 2.0 * np.degrees(np.arctan(tangent.values)) + 180.0 * far.values + aligned(middle, dims)
+    angle = _away(peak._replace(tangent=tangent, far=far)) + aligned(middle, dims)
     angle = np.where(np.isnan(value.values), np.nan, angle_in_period(angle, scene.period))
     return SignalPeak(value, Field(dims, angle), beyond, evaluations)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import singledispatch
 from itertools import chain
 from typing import Any, NamedTuple
@@ -11,11 +11,13 @@ import numpy as np
 import xarray as xr
 
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
-from linksweep.engine.run import Field
-from linksweep.engine.trace.plan import plan
+from linksweep.engine.quantity import Table
+from linksweep.engine.run import Field, Fields
+from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
-from linksweep.scene.pairs import Array, Places, different_designs, places_of, quantities_at
+from linksweep.scene.grid import NAMES as GRID_ROWS
+from linksweep.scene.pairs import Array, Places, different_designs, inputs_along, places_of, quantities_at
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
 
@@ -24,6 +26,8 @@ AT_ONCE = 256
 OWN_AT_ONCE = 16
 """Designs searched together where loads over the angle have design dims: each load is sampled at all designs' angles,
 so the memory grows with the square of this number."""
+ONE = "_one"
+"""Dim of designs, or of pieces of their turns, each with its own value of every parameter."""
 COMBINED = "_combined"
 """Dim that combines the design dims of loads over the angle."""
 
@@ -77,6 +81,22 @@ class Group(NamedTuple):
         if self.limits is None:
             return np.empty((len(self.designs), 0))
         return self.limits.zeros_of(self.scene.table.limits or (), kind)
+
+    def one_by_one(
+        self, table: Table, names: tuple[str, ...], rows: Array, own: Mapping[str, Array], places: InputForms
+    ) -> tuple[Plan, Fields]:
+        """Return the plan of quantities of a table between samples, and its inputs along the dim `ONE`: a value for
+        each of these rows of the group, and `own` ones besides; `places` are the forms of the search's own inputs."""
+        inputs = self.scene.inputs
+        forms = tuple(
+            (name, (ONE,) if isinstance(form, tuple) and form else form)
+            for name, form in inputs.forms
+            if name not in GRID_ROWS
+        )
+        request = plan(table, (*names, NEAR_WIDTH, FAR_WIDTH), (*forms, *((name, (ONE,)) for name in own), *places))
+        at = places_of(inputs.sizes, self.designs[rows])
+        fields = inputs_along(ONE, request, inputs, at)
+        return request, fields | {name: Field((ONE,), values) for name, values in own.items()}
 
     def number(self, number: Any) -> Array:
         """Return a parameter of the scene, or a number computed from parameters, for each of these designs."""

@@ -18,7 +18,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from linksweep.engine.peaks.find_peaks import grades
+from linksweep.engine.peaks.laid_out import grades
 from linksweep.engine.peaks.search import GRADES
 from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field

@@ -129,12 +129,17 @@ def _singular_angles(findings: dict[str, Finding]) -> list[Array]:
     return [findings[kind].values for kind in ("dead_centre_angle", "jam_angle") if kind in findings]
 
 
-def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
+def singular_angles(group: Group, signals: tuple[str, ...] = ()) -> Array:
+    """Return the dead centres and jams (design, nth) of designs, those of the output if it is among the signals."""
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive})
     checks += scene.mechanism.output_findings() if _of_output(signals) else ()
     angles = [_singular_angles(findings(*map(group.number, numbers))) for findings, numbers in checks]
-    angle = np.concatenate([group.zeros("dead_centre"), group.zeros("wedge"), *chain(*angles)], axis=1)
+    return np.concatenate([group.zeros("dead_centre"), group.zeros("wedge"), *chain(*angles)], axis=1)
+
+
+def _dead_centres_and_jams(group: Group, signals: tuple[str, ...]) -> Candidates:
+    angle = singular_angles(group, signals)
     row, which = np.nonzero(np.isfinite(angle))
     return row, angle[row, which], np.full(len(row), CLOSEST)
 

@@ -10,7 +10,7 @@ from long import long_but
 from scipy.optimize import minimize_scalar
 
 import linksweep as ls
-from linksweep.engine.peaks import find_peaks
+from linksweep.engine.peaks import laid_out
 
 PRESS = ls.example("press")
 WEIGHTLESS = {"mass": 0.0, "inertia": 0.0}
@@ -220,9 +220,9 @@ def test_a_design_alone_has_the_bits_that_it_has_among_others(scene):
 
 @pytest.mark.parametrize("of", [["F32"], pytest.param(OF, marks=pytest.mark.long)])
 def test_compiled_and_interpreted_searches_give_the_same_bits(of, monkeypatch):
-    monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", math.inf)
+    monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", math.inf)
     interpreted = ls.peaks(several(), of=of)
-    monkeypatch.setattr(find_peaks, "INTERPRETED_DESIGNS", -1)
+    monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", -1)
     xr.testing.assert_identical(interpreted, ls.peaks(several(), of=of))
 
 

@@ -1,0 +1,114 @@
+"""Lay out the designs of a plan for searches side by side: parameters, evaluators, and the arrays to work in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from linksweep.engine.kernel.compile import address
+from linksweep.engine.patience import Patience
+from linksweep.engine.peaks import abreast, search
+from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
+from linksweep.engine.run import Field, Fields, Sizes, flat, ordered
+from linksweep.engine.trace.plan import Plan
+
+WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
+INTERPRETED_DESIGNS = 40
+"""Designs interpreted before a plan's kernel is compiled."""
+
+
+@dataclass(eq=False)
+class Searcher(Patience):
+    """The evaluators of some outputs of a plan, ready to run."""
+
+    evaluators: Evaluators
+
+    def functions(self, designs: int) -> Functions:
+        """Return the evaluators interpreted for the first designs, then compiled."""
+        interpret = self.should_interpret(designs, INTERPRETED_DESIGNS)
+        return self.evaluators.interpreted if interpret else self.evaluators.compiled
+
+
+@lru_cache(maxsize=256)
+def searcher(plan: Plan, signals: tuple[str, ...]) -> Searcher:
+    """Return the `Searcher` of these arguments, one for all requests."""
+    return Searcher(Evaluators(plan, signals))
+
+
+class LaidOut(NamedTuple):
+    """Designs of a plan, counted row-major over its loops, and the functions that evaluate `signals` of them."""
+
+    signals: tuple[str, ...]
+    even: bool
+    functions: Functions
+    shape: tuple[int, ...]
+    parameters: tuple[np.ndarray, ...]
+    """All parameters, where each starts, and the distances between its values along each design dim."""
+
+    @property
+    def lanes(self) -> int:
+        return self.functions.lanes
+
+    @property
+    def designs(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def blocks(self) -> int:
+        return -(-self.designs // self.lanes)
+
+    @property
+    def compiled(self) -> bool:
+        return self.lanes > 1
+
+    def arguments(self, first: int, last: int) -> tuple[Any, ...]:
+        """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in."""
+        lanes, constants = self.lanes, self.functions.constants * self.lanes
+        evaluators = map(address, self.functions[2:]) if self.compiled else self.functions[2:]
+        return (
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *evaluators,
+            np.zeros((max(len(self.shape), 1), lanes), dtype=np.int64), np.zeros(self.parameters[2].shape[1] * lanes),
+            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * search.PLACED * lanes),
+            np.zeros((search.SAMPLES + 1) * len(self.signals) * lanes),
+        )  # fmt: skip
+
+    @property
+    def gathered(self) -> np.ndarray:
+        """An array for the constants of brackets side by side."""
+        return np.zeros(self.functions.constants * self.lanes)
+
+
+def laid_out(plan: Plan, inputs: Fields, sizes: Sizes) -> LaidOut:
+    """Return the designs of a plan, whose outputs are signals, all with the same dims, and widths of near-toggles."""
+    signals = tuple(name for name in plan.outputs if name not in WIDTHS)
+    ready, shape = searcher(plan, signals), tuple(sizes[dim] for dim in plan.loops)
+    nodes = ready.evaluators.inputs
+    parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
+    strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
+    strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
+    functions = ready.functions(math.prod(shape))
+    return LaidOut(signals, ready.evaluators.even, functions, shape, (parameters, parameter_at[:-1], strides))
+
+
+def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
+    """Return the distances between a parameter's values along each design dim, 0 along those that it lacks."""
+    strides, size = [], 1
+    for dim in reversed(plan.loops):
+        strides.append(size if dim in field.dims else 0)
+        size *= sizes[dim] if dim in field.dims else 1
+    return strides[::-1]
+
+
+@lru_cache(maxsize=1)
+def grades() -> np.ndarray:
+    """Return the half-angle tangents of the samples of half a turn from its middle on, for each scale of the sinh
+    grade; both ends are 1."""
+    scale = 0.5 ** np.arange(search.GRADES)[:, None]
+    steps = np.arange(search.HALF + 1) / search.HALF
+    table = scale * np.sinh(np.arcsinh(1.0 / scale) * steps)
+    table[:, -1] = 1.0
+    return table

@@ -1,0 +1,148 @@
+"""Find the zeros of a signal on pieces of the turn, several pieces side by side, one in each lane.
+
+The signal is evaluated at the samples on the way from a piece's start to its end. Neighbours of opposite signs bracket
+a zero, and so do a sample that is nearest to zero and the vertex of the parabola about it, where that lies beyond. The
+Illinois method refines the brackets of many pieces at once.
+
+`find_zeros` is plain Python that numba compiles.
+
+Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
+"""
+
+from linksweep.engine.kernel.instructions import call
+from linksweep.engine.peaks.abreast import BLOCKS, gather, place_samples
+from linksweep.engine.peaks.search import HALF
+
+MOST_ZEROS = 12
+"""Zeros of one piece, at most."""
+STEPS = 100
+"""Steps to each zero, at most: more than it takes beside a kink."""
+CLOSED = 1e-15
+"""Step, as a tangent, that ends the search for a zero."""
+
+# rows of `zeros_at`: two ends of each bracket with their values, a trial with its value; half turn, number of the
+# signal, column of `zeros`; whether the bracket holds a zero
+START, AT_START, STOP, AT_STOP, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, OWNER, HOLDS = range(10)
+ZERO_ROWS = 10
+UNKNOWN, NONE, OPEN, FOUND = range(4)
+
+
+def find_zeros(
+    first, last, designs, lanes, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate, digits,
+    inputs, constants, x, rows, zeros_at, gathered, zeros
+):  # fmt: skip
+    """Write the zeros of pieces in blocks `first` … `last` to `zeros` (number, piece, nth): tangents, half turns."""
+    none = first - first
+    for start in range(first, last, BLOCKS):
+        count = none
+        for block in range(start, min(start + BLOCKS, last)):
+            own = constants[block - start]
+            gather(block * lanes, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs)
+            call(prepare, (inputs, own))
+            place_samples(own, lanes, grades, x)
+            call(sample, (own, x, rows))
+            for lane in range(lanes):
+                count = open_zeros(rows, x, lanes, lane, block * lanes + lane, zeros_at, count)
+        evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate)
+        keep_vertices(zeros_at, count)
+        count = drop_closed(zeros_at, count, zeros)
+        for _ in range(STEPS):
+            if count == 0:
+                break
+            for k in range(count):
+                zeros_at[TRIAL, k] = false_position(zeros_at, k)
+            evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate)
+            for k in range(count):
+                narrow(zeros_at, k)
+            count = drop_closed(zeros_at, count, zeros)
+
+
+def open_zeros(rows, x, lanes, lane, owner, zeros_at, count):
+    """Open brackets of zeros between samples of a lane, and beside samples that are nearest to zero; return their
+    number."""
+    for j in range(HALF, 3 * HALF):
+        half = j // (2 * HALF)
+        at = (j + 1 + 2 * half) * lanes + lane
+        here, ahead = rows[j * lanes + lane], rows[(j + 1) * lanes + lane]
+        if here == 0.0 or here * ahead < 0.0:
+            count = open_zero(zeros_at, count, x[at], here, x[at + lanes], ahead, x[at], half, owner, OPEN)
+        before = rows[(j - 1) * lanes + lane]
+        if before * here > 0.0 and here * ahead > 0.0 and abs(here) < abs(before) and abs(here) < abs(ahead):
+            step = 0.5 * (before - ahead) / (before + ahead - 2.0 * here)
+            if abs(here) < 0.5 * abs(step * (ahead - before)):  # twice what the vertex lies nearer to zero
+                vertex = x[at] + step * 0.5 * (x[at + lanes] - x[at - lanes])
+                for side in (-1, 1):
+                    end = at + side * lanes
+                    value = before if side < 0 else ahead
+                    count = open_zero(zeros_at, count, vertex, here, x[end], value, vertex, half, owner, UNKNOWN)
+    return count
+
+
+def open_zero(zeros_at, count, start, at_start, stop, at_stop, trial, half, owner, holds):
+    """Note a bracket in the next column, if there is room; return how many there are."""
+    if count == zeros_at.shape[1]:
+        return count
+    zeros_at[START, count], zeros_at[AT_START, count] = start, at_start
+    zeros_at[STOP, count], zeros_at[AT_STOP, count] = stop, at_stop
+    zeros_at[TRIAL, count], zeros_at[SIDE, count] = trial, float(half)
+    zeros_at[SIGNAL_NUMBER, count], zeros_at[OWNER, count], zeros_at[HOLDS, count] = 0.0, float(owner), float(holds)
+    return count + 1
+
+
+def evaluate_trials(zeros_at, count, lanes, start, constants, gathered, evaluate):
+    """Evaluate the signal at the trials of all brackets."""
+    for front in range(0, count, lanes):
+        for lane in range(lanes):
+            owner = int(zeros_at[OWNER, min(front + lane, count - 1)])
+            own, its = constants[owner // lanes - start], owner % lanes
+            for row in range(len(gathered) // lanes):
+                gathered[row * lanes + lane] = own[row * lanes + its]
+        call(evaluate, (gathered, zeros_at, TRIAL, AT_TRIAL, SIDE, SIGNAL_NUMBER, front, front + lanes))
+
+
+def keep_vertices(zeros_at, count):
+    """Make the vertices the ends of their brackets; those that lie beyond zero hold a zero."""
+    for k in range(count):
+        beyond = zeros_at[AT_TRIAL, k] * zeros_at[AT_STOP, k] < 0.0
+        if zeros_at[HOLDS, k] == UNKNOWN:
+            zeros_at[AT_START, k], zeros_at[HOLDS, k] = zeros_at[AT_TRIAL, k], OPEN if beyond else NONE
+
+
+def false_position(zeros_at, k):
+    """Return where the line through a bracket's ends is zero."""
+    a, f_a, b, f_b = zeros_at[START, k], zeros_at[AT_START, k], zeros_at[STOP, k], zeros_at[AT_STOP, k]
+    return b - f_b * (b - a) / (f_b - f_a) if f_b != f_a else b
+
+
+def narrow(zeros_at, k):
+    """Make a bracket's trial its end, by the Illinois method; it is closed where that hardly moves the end."""
+    value = zeros_at[AT_TRIAL, k]
+    value = value if value == value else 0.0  # where there is no value, the place itself is near enough
+    if (value < 0.0) == (zeros_at[AT_STOP, k] < 0.0):
+        zeros_at[AT_START, k] *= 0.5
+    else:
+        zeros_at[START, k], zeros_at[AT_START, k] = zeros_at[STOP, k], zeros_at[AT_STOP, k]
+    if value == 0.0 or abs(zeros_at[TRIAL, k] - zeros_at[STOP, k]) < CLOSED:
+        zeros_at[HOLDS, k] = FOUND
+    zeros_at[STOP, k], zeros_at[AT_STOP, k] = zeros_at[TRIAL, k], value
+
+
+def drop_closed(zeros_at, count, zeros):
+    """Note the zeros that are found; return how many brackets remain."""
+    still_open = 0
+    for k in range(count):
+        if zeros_at[HOLDS, k] == FOUND:
+            note_zero(zeros, int(zeros_at[OWNER, k]), zeros_at[STOP, k], zeros_at[SIDE, k])
+        elif zeros_at[HOLDS, k] == OPEN:
+            for row in range(ZERO_ROWS):
+                zeros_at[row, still_open] = zeros_at[row, k]
+            still_open += 1
+    return still_open
+
+
+def note_zero(zeros, owner, tangent, half):
+    """Note a zero of a piece after those that are known."""
+    for nth in range(zeros.shape[2]):
+        if zeros[0, owner, nth] != zeros[0, owner, nth]:
+            zeros[0, owner, nth], zeros[1, owner, nth] = tangent, half
+            return

@@ -1,0 +1,218 @@
+"""Search for peaks on pieces of the turn: between the angles at which friction jumps or forces have a kink.
+
+The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
+at a narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Pieces of many designs
+are searched side by side, each as a turn that follows it there and back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.engine.peaks.evaluators import ALONG, END, FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.find_peaks import Peak, find_peaks, zeros_of_pieces
+from linksweep.engine.quantity import Row, Table
+from linksweep.engine.run import Fields
+from linksweep.engine.trace.plan import Plan, plan
+from linksweep.physics.algebra import planar
+from linksweep.physics.closures import crank_angle
+from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.groups import ONE, Group, groups
+from linksweep.results.peak_search.poles import singular_angles
+from linksweep.scene.pairs import Array, by_row, places_of
+from linksweep.scene.scene import Scene
+
+AT_ONCE = 8192
+"""Designs whose pieces are searched together."""
+ENDS, HALF_TURN, WIDTHS = ("piece_from", "piece_to"), "far_half", ("width_at_start", "width_at_end")
+"""Inputs of a piece: its ends as tangents of half the angle from the middle of a half turn; that half turn; widths of
+the near-toggle as seen from its ends."""
+NARROW = 0.5
+"""Width of a near-toggle, as tangent of half the angle, below which pieces end at it."""
+BORDERS = np.array([90.0, 270.0])
+"""Ends of half turns, from the near-toggle [degree]."""
+BEYOND = 30.0
+"""How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
+
+
+class Pieces(NamedTuple):
+    """Pieces of the turns of designs, in their order: row of the design in its group, start and end, as angles from the
+    near-toggle [degree]; directions of sliding (direction, piece)."""
+
+    row: Array
+    start: Array
+    end: Array
+    directions: Array
+
+    @property
+    def half(self) -> Array:
+        """0 or 1 for the half turn in which, or about which, each piece lies."""
+        return np.floor(np.mod(0.5 * (self.start + self.end) + 90.0, 360.0) / 180.0)
+
+    def tangents(self, half: Array, angle: Array) -> Array:
+        """Return the tangents of half the angles from the middles of these half turns."""
+        away = np.mod(angle - 180.0 * half + 180.0, 360.0) - 180.0
+        return np.tan(np.radians(0.5 * away))
+
+
+def divides(scene: Scene) -> bool:
+    """Return whether all jumps of a scene are those of friction, so that signals are smooth between them."""
+    machine = scene.mechanism
+    return bool(machine.directions()) and not scene.approaches() and len(scene.jumps()) == len(machine.jumps())
+
+
+def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
+    """Return those signals of a scene that depend on the direction of sliding; none where pieces are not enough."""
+    machine = scene.mechanism
+    known = {on_piece(name) for name in machine.directions()}
+    forms = (*scene.inputs.forms, *((name, ()) for name in (*known, *ENDS, HALF_TURN, *WIDTHS, ALONG, END)))
+    table = _table_on_pieces(scene.table, machine.directions())
+    inputs_of = {signal: plan(table, (signal,), forms).inputs for signal in (signals if divides(scene) else ())}
+    return tuple(signal for signal, inputs in inputs_of.items() if not known.isdisjoint(inputs))
+
+
+def designs_without_jams(scene: Scene, designs: Array) -> Array:
+    """Return those designs of a scene that friction jams nowhere, and whose drive stands still nowhere."""
+    every = Group(scene, designs, places_of(scene.inputs.sizes, designs), np.empty(0))
+    return designs[~np.isfinite(singular_angles(every)).any(axis=1)]
+
+
+def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
+    """Write the peaks of designs, from a search of their pieces."""
+    for group in groups(scene, tuple(peaks), designs, AT_ONCE) if peaks else ():
+        pieces = _pieces(group, threads)
+        request, inputs = _evaluated(group, pieces, tuple(peaks))
+        results = find_peaks(request, tuple(peaks), inputs, {ONE: len(pieces.row)}, True, threads)
+        for signal, peak in peaks.items():
+            put(peak, group, _highest(group, pieces, inputs, results[signal]))
+
+
+def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: Peak) -> tuple[Array, ...]:
+    """Return value, angle [degree], bound and samples of the highest peak of each design's pieces."""
+    first = np.flatnonzero(np.diff(pieces.row, prepend=-1))
+    value, beyond = peak.value.values, peak.beyond.values
+    height = np.nan_to_num(value, nan=-np.inf)
+    highest = np.maximum.reduceat(height, first)
+    winner = np.flatnonzero(height == highest[pieces.row])[::-1]
+    own = np.empty(len(first), dtype=int)
+    own[pieces.row[winner]] = winner  # the first of equals is written last
+    reach = np.maximum.reduceat(np.nan_to_num(value + beyond, nan=-np.inf), first)
+    angle = _angles(pieces, inputs, own, peak.tangent.values[own], peak.far.values[own])
+    angle = angle_in_period(angle + group.number(group.scene.mechanism.near_toggle_angle), group.scene.period)
+    samples = np.add.reduceat(peak.evaluations.values, first)
+    unknown = np.isnan(value[own])
+    return tuple(np.where(unknown, np.nan, numbers) for numbers in (highest, angle, reach - highest, samples))
+
+
+# ------------------------------------------------------------------------------------------------- pieces
+
+
+def _pieces(group: Group, threads: int | None) -> Pieces:
+    """Return the pieces of a group's designs, which end at all jumps and kinks."""
+    pieces = _between_jumps(group)
+    machine = group.scene.mechanism
+    middle = 0.5 * (pieces.start + pieces.end) + group.number(machine.near_toggle_angle)[pieces.row]
+    pieces = pieces._replace(directions=group.values(machine.directions(), pieces.row, middle, threads))
+    for name in machine.kinks():
+        pieces = _cut_at_zeros(group, pieces, name, threads)
+    return pieces
+
+
+def _between_jumps(group: Group) -> Pieces:
+    """Return the pieces of whole turns between jumps, narrow near-toggles, and ends of half turns."""
+    scene, count = group.scene, len(group.designs)
+    frame = group.number(scene.mechanism.near_toggle_angle)
+    jumps = np.stack([np.mod(group.number(jump) - frame, 360.0) for jump in scene.jumps()], axis=1)
+    middles, widths = group.near_toggles()
+    narrow = np.where(widths < NARROW, middles, np.nan)
+    with np.errstate(invalid="ignore"):
+        away = np.abs(np.mod(jumps[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
+        borders = np.where((away < BEYOND).any(axis=1), np.nan, BORDERS)
+    cuts = np.sort(np.concatenate([jumps, narrow, borders], axis=1), axis=1)
+    return Pieces(*_between(cuts, cuts[:, 0] + 360.0), np.empty((0, count)))
+
+
+def _between(cuts: Array, last: Array) -> tuple[Array, Array, Array]:
+    """Return row, start and end of the pieces between cuts (row, cut) in order, NaN at the end for none, and the last
+    end of each row."""
+    row, nth = np.nonzero(np.isfinite(cuts))
+    start = cuts[row, nth]
+    end = np.append(start[1:], 0.0)
+    final = np.append(row[1:] != row[:-1], True)
+    end[final] = last[row[final]]
+    sound = end > start
+    return row[sound], start[sound], end[sound]
+
+
+def _cut_at_zeros(group: Group, pieces: Pieces, name: str, threads: int | None) -> Pieces:
+    """Return the pieces, cut at the zeros of a quantity."""
+    request, inputs = _evaluated(group, pieces, (name,))
+    tangent, far = zeros_of_pieces(request, inputs, {ONE: len(pieces.row)}, threads)
+    piece, nth = np.nonzero(np.isfinite(tangent))
+    if not len(piece):
+        return pieces
+    angle = _angles(pieces, inputs, piece, tangent[piece, nth], far[piece, nth])
+    cuts = np.concatenate([pieces.start[:, None], by_row(piece, angle, len(pieces.row))], axis=1)
+    of, start, end = _between(np.sort(cuts, axis=1), pieces.end)
+    return Pieces(pieces.row[of], start, end, pieces.directions[:, of])
+
+
+def _angles(pieces: Pieces, inputs: Fields, piece: Array, tangent: Array, far: Array) -> Array:
+    """Return the angles from the near-toggle [degree] of places on pieces."""
+    square = tangent * tangent
+    share = square / (1.0 + square)
+    start, end = (inputs[name].values[piece] for name in ENDS)
+    tangent = np.where(far > 0.0, end - (end - start) * share, start + (end - start) * share)
+    middle = 180.0 * inputs[HALF_TURN].values[piece]
+    angle = 2.0 * np.degrees(np.arctan(tangent)) + middle
+    return pieces.start[piece] + np.mod(angle - pieces.start[piece] + 90.0, 360.0) - 90.0
+
+
+# ---------------------------------------------------------------------------------------------- evaluation
+
+
+def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Plan, Fields]:
+    """Return the plan of quantities on pieces, and its inputs: those of the designs, and of the pieces."""
+    scene, index = group.scene, group.scene.mechanism.index
+    directions = scene.mechanism.directions()
+    half = pieces.half
+    start, end = (pieces.tangents(half, angle) for angle in (pieces.start, pieces.end))
+    widths = _widths(start, end, group.near_toggles()[1][pieces.row, half.astype(int)])
+    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *widths), strict=True))
+    own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
+    table, places = _table_on_pieces(scene.table, directions), ((ALONG, (index, ONE)), (END, (index,)))
+    return group.one_by_one(table, names, pieces.row, own, places)
+
+
+def on_piece(name: str) -> str:
+    """Return the name of a direction that is known on a piece."""
+    return f"{name}_on_piece"
+
+
+@lru_cache(maxsize=64)
+def _table_on_pieces(table: Table, directions: tuple[str, ...]) -> Table:
+    """Return the table between samples with places on pieces."""
+    between = table.between_samples
+    place = Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS))
+    known = {NEAR_WIDTH: WIDTHS[0], FAR_WIDTH: WIDTHS[1]} | {name: on_piece(name) for name in directions}
+    rows = (Row(planar.identity, (name,), (own,)) for name, own in known.items())
+    return replace(between, rows=(*between.rows, place, *rows))
+
+
+def _widths(start: Array, end: Array, width: Array) -> tuple[Array, Array]:
+    """Return the widths of the near-toggle as both ends of pieces know it, as tangents of half the angle that follows
+    a piece.
+
+    Quantities have poles at tangents 0 ± i·width, at a share z of the piece. There tan² is z/(1 − z).
+    """
+    span = end - start
+    narrow = np.flatnonzero(width < NARROW)
+    widths = np.ones((2, len(start)))
+    for of_end, away in zip(widths, (-start, end), strict=True):
+        z = (away + 1j * width)[narrow] / span[narrow]
+        of_end[narrow] = np.abs(np.sqrt(z / (1.0 - z)).imag)
+    return widths[0], widths[1]

@@ -1,0 +1,138 @@
+"""Peaks of machines with friction, searched on pieces of the turn on which all forces are smooth."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.engine.peaks import laid_out, zeros
+from linksweep.engine.peaks.abreast import BLOCKS
+from linksweep.engine.peaks.search import PLACED, SAMPLES
+from linksweep.physics.closures.crank_angle import place_on_piece
+from linksweep.results.peak_search import pieces
+from linksweep.results.peak_search.groups import groups
+
+DESIGNS = 12
+FORCES = ("F12", "F32", "F43", "F14", "T12")
+
+
+def numbers(seed: int, *ends: float) -> xr.DataArray:
+    return xr.DataArray(np.random.default_rng(seed).uniform(*ends, DESIGNS), dims="design")
+
+
+def engines(**changes) -> ls.Scene:
+    crank = ls.Link(numbers(1, 0.03, 0.06), numbers(2, 0.5, 1.5), 1e-3, cg_distance=0.01, cg_angle=30.0)
+    rod = ls.Link(numbers(3, 0.12, 0.2), numbers(4, 0.3, 1.0), 2e-3, cg_distance=0.05, cg_angle=-5.0)
+    offset, friction = numbers(5, -0.02, 0.02), numbers(6, 0.0, 0.3)
+    mechanism = ls.SliderCrank(crank, rod, 0.5, offset, friction, slide_angle=20.0)
+    push = ls.Load("slider", force=(numbers(7, -90.0, 90.0), numbers(8, -90.0, 90.0)))
+    return ls.Scene(replace(mechanism, **changes), numbers(9, -30.0, 30.0), 20.0, (0.0, -9.81), [push])
+
+
+def inverted() -> ls.Scene:
+    crank = ls.Link(numbers(1, 0.05, 0.1), 0.5, 1e-3)
+    rocker = ls.Link(0.4, numbers(2, 0.5, 1.0), 5e-3, cg_distance=0.1)
+    mechanism = ls.InvertedSliderCrank(
+        crank, rocker, 0.2, 0.3, 1e-4, numbers(3, -0.03, 0.03), friction=numbers(4, 0.0, 0.3)
+    )
+    return ls.Scene(mechanism, 20.0, gravity=(0.0, -9.81), loads=[ls.Load("rocker", torque=numbers(5, -9.0, 9.0))])
+
+
+@pytest.mark.parametrize("scene", [engines(branch="crossed"), inverted()])
+def test_peaks_reach_the_densest_samples_and_are_values_of_the_signal(scene):
+    """The samples are those of a dense sweep; beside a jump they fall short of the one-sided limit."""
+    peaks, dense = ls.peaks(scene, of=FORCES), ls.peaks(scene, of=FORCES, theta2=5760)
+    assert (peaks.status == 0).all()
+    for name in (*(f"{force}_peak" for force in FORCES), "T12_max", "T12_min"):
+        sign, size = -1.0 if name.endswith("min") else 1.0, dense[f"{name.split('_')[0]}_peak"]
+        excess = sign * (peaks[name] - dense[name]) / size
+        assert excess.min() > -1e-11 and excess.max() < 5e-3, name
+    for k in range(0, DESIGNS, 5):
+        at = float(peaks.F32_peak_at[k])
+        beside = ls.sweep(scene, [at - 1e-7, at, at + 1e-7], of="F32").F32.isel(design=k)
+        assert float(beside.max()) == pytest.approx(float(peaks.F32_peak[k]), rel=1e-8)
+
+
+def test_the_slider_turns_round_and_the_guide_bears_nothing_only_at_ends_of_pieces():
+    scene = engines()
+    (group,) = groups(scene, ("T12",), np.arange(DESIGNS))
+    row, start, end, directions = pieces._pieces(group, None)
+    np.testing.assert_allclose(np.bincount(row, end - start), 360.0, rtol=1e-14)
+    middle = group.number(scene.mechanism.near_toggle_angle)[row]
+    signs = [
+        np.sign(group.values(("direction", "normal_force"), row, middle + start + share * (end - start)))
+        for share in np.linspace(1e-6, 1.0 - 1e-6, 41)
+    ]
+    assert np.ptp(np.array(signs), axis=0).max() == 0.0
+    np.testing.assert_array_equal(np.sign(directions[0]), signs[0][0])
+
+
+def one_engine(friction: float | xr.DataArray) -> ls.Scene:
+    crank, rod = ls.Link(0.05, 1.2, 1e-3), ls.Link(0.15, 0.6, 2e-3, cg_distance=0.05)
+    return ls.Scene(ls.SliderCrank(crank, rod, 0.5, 0.01, friction), 20.0, gravity=(0.0, -9.81))
+
+
+def test_jammed_designs_among_others_are_searched_along_paths():
+    friction = xr.DataArray([0.1, 9.0], dims="mu")
+    every = ls.peaks(one_engine(friction), of=["T12", "theta3"])
+    for k, own in enumerate(friction.values):
+        alone = ls.peaks(one_engine(float(own)), of=["T12", "theta3"])
+        for name, values in alone.data_vars.items():
+            np.testing.assert_array_equal(values, every[name].isel(mu=k, missing_dims="ignore"), err_msg=name)
+
+
+def test_compiled_and_interpreted_searches_of_pieces_give_the_same_bits(monkeypatch):
+    scene, results = one_engine(numbers(1, 0.0, 0.3)), []
+    for most in (math.inf, -1):
+        monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", most)
+        results.append(ls.peaks(scene, of=["T12"]))
+    xr.testing.assert_identical(*results)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.0, 1.0), (-0.7, 0.2), (0.3, 1.7)])
+def test_a_turn_follows_a_piece_there_and_back(start, end):
+    x = np.linspace(-1.0, 1.0, 41)
+    near, far = (place_on_piece(x, side, start, end) for side in (0.0, 1.0))
+    share = np.sin(np.arctan(x)) ** 2
+    np.testing.assert_allclose(near, start + (end - start) * share, rtol=1e-14, atol=1e-16)
+    np.testing.assert_allclose(far, end - (end - start) * share, rtol=1e-14, atol=1e-16)
+    assert near[20] == start and far[20] == end
+
+
+def zeros_of(height) -> np.ndarray:
+    """Return the zeros [rad] of a function of the angle that follows a piece."""
+
+    def prepare(inputs, constants):
+        constants[:] = 1.0
+
+    def sample(constants, x, rows):
+        angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
+        rows[:SAMPLES] = height(angles.ravel())
+
+    def evaluate(constants, table, x, value, far, signal, first, last):
+        at = table[:, first:last]
+        at[value] = height(2.0 * np.arctan(at[x]) + np.pi * at[far])
+
+    one, places = np.zeros(1, dtype=np.int64), np.full((2, 1, zeros.MOST_ZEROS), np.nan)
+    with np.errstate(all="ignore"):
+        zeros.find_zeros(
+            0, 1, 1, 1, one + 1, np.zeros(1), one, one[:, None], laid_out.grades(), prepare, sample, evaluate,
+            one[:, None].copy(), np.zeros(1), np.zeros((BLOCKS, 2)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
+        )  # fmt: skip
+    angles = 2.0 * np.arctan(places[0, 0]) + np.pi * places[1, 0]
+    return np.sort(angles[np.isfinite(angles)])
+
+
+@pytest.mark.parametrize("at", [[], [0.3], [1.57, 1.58], [0.4, 0.41, 2.9], [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]])
+def test_zeros_also_two_between_the_same_samples(at):
+    for kink in (1.0, 1e-3):
+        height = lambda angle, kink=kink: bent(np.prod([np.cos(angle) - np.cos(zero) for zero in at], axis=0), kink)  # noqa: E731
+        np.testing.assert_allclose(zeros_of(height), at, atol=2e-12)
+
+
+def bent(values: np.ndarray, kink: float) -> np.ndarray:
+    return np.where(values < 0.0, kink * values, values)
