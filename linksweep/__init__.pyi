@@ -36,6 +36,7 @@ from linksweep.files.pmks.from_pmks import NotCarriedOverWarning, from_pmks
 from linksweep.mechanisms import FourBar, InvertedSliderCrank, Linkage, LoopTrack, SliderCrank
 from linksweep.mechanisms.beams.sections import IBeam, Section, Tube
 from linksweep.mechanisms.links import Bar, Cylinder, Disk, Gears, Guide, Link, Slider
+from linksweep.plot.sheets.save_drawing import save_drawing
 from linksweep.reports.page import report
 from linksweep.results.check import check
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
@@ -133,6 +134,7 @@ __all__ = [
     "report",
     "sample",
     "save",
+    "save_drawing",
     "scene_at",
     "screen",
     "sensitivities",

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 PICTURES = (".png", ".pdf", ".svg")
 FILMS = (".gif", ".html")
+SHEETS = (".svg", ".pdf", ".dxf")
 
 
 class Commands:

@@ -15,11 +15,10 @@ from linksweep.mechanisms.drawing import Block, Drawing, Rail
 from linksweep.plot.kit import machine_parts, signals
 from linksweep.plot.kit.colors import BLACK, GREY, LOAD, SKY, force_color
 from linksweep.plot.kit.drawings import drawing_of
-from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.kit.load_parts import draw_loads
 from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
-from linksweep.plot.kit.shape import Shape, Slide, half_side, positions, shape_of
-from linksweep.plot.kit.style import axes_or_new, grid
+from linksweep.plot.kit.shape import Shape, Slide, block_corners, half_side, positions, shape_of, slideway
+from linksweep.plot.kit.style import axes_or_new, grid, show_lengths
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem, shown_units
@@ -77,9 +76,9 @@ def mechanism(
     """
     scene = scene if isinstance(scene, Scene) else scene_of(scene, whole=False)
     drawing = drawing_with_point(scene, link)
-    angle = _angle(theta2)
+    angle = crank_angle(theta2)
     cycle = positions(scene, drawing, [angle])
-    _require_assembled(cycle, angle, scene.period_of_motion)
+    require_assembled(cycle, angle, scene.period_of_motion)
     shape = shape_of(scene, drawing, cycle, point)
     acting = _joint_forces(scene, drawing, angle) if forces else {}
     (loads,) = loads_at(scene, drawing, cycle, [angle])
@@ -109,14 +108,15 @@ def drawing_with_point(scene: Scene, link: str | None) -> Drawing:
     return drawing if link is None else drawing.with_point_on(link, numbers[link])
 
 
-def _angle(theta2: Any) -> float:
+def crank_angle(theta2: Any) -> float:
+    """Return one crank angle [degree]; raise ValueError for anything else."""
     try:
         return float(to_float64(theta2, "angle"))
     except (TypeError, ValueError):
         raise ValueError(f"theta2 = {theta2!r}: must be one crank angle, in degrees") from None
 
 
-def _require_assembled(cycle: xr.Dataset, angle: float, period: float) -> None:
+def require_assembled(cycle: xr.Dataset, angle: float, period: float) -> None:
     """Raise ValueError where the mechanism has no position at the last angle of a cycle."""
     angles = cycle[signals.INDEX].values
     status = signals.spread(cycle.status, len(angles))
@@ -226,7 +226,7 @@ def draw_links(ax: Axes, drawing: Drawing, shape: Shape) -> dict[int, np.ndarray
 def _block(ax: Axes, block: Block, centre: np.ndarray, slide: Slide, half: float, bars: list[np.ndarray]) -> None:
     """Draw a block with its number, where no bar covers that; `bars` has the pins of each."""
     (x, y) = slide.along[:, -1]
-    machine_parts.block(ax, centre, np.array([x, y]), half)
+    machine_parts.block(ax, block_corners(centre, np.array([x, y]), half))
     if block.number is None:
         return
     places = centre + 0.7 * half * np.array([(x, y), (-x, -y), (-y, x), (y, -x)])
@@ -238,12 +238,8 @@ def _block(ax: Axes, block: Block, centre: np.ndarray, slide: Slide, half: float
 
 def _slideway(ax: Axes, block: Block, slide: Slide, shape: Shape, half: float) -> np.ndarray:
     """Draw a link that carries a block, as long as the block's travel; return its ends."""
-    number, pin = block.on or (0, "")
-    along, pivot = slide.along[:, -1], shape.pins[pin]
-    across = np.array([-along[1], along[0]])
-    foot = pivot + across * (across @ (shape.pins[block.pin] - pivot))
-    low, high = slide.travel(np.zeros(2))
-    ends = np.array([foot + place * along for place in (min(low - 1.4 * half, 0.0), max(high + 1.4 * half, 0.0))])
+    number = block.on[0] if block.on else 0
+    pivot, foot, ends = slideway(block, slide, shape, half)
     machine_parts.bar(ax, number, np.array([pivot, foot]), behind=True)
     machine_parts.bar(ax, number, ends, behind=True)
     return ends

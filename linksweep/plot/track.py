@@ -11,8 +11,7 @@ from linksweep.files.netcdf import scene_of
 from linksweep.plot.curves import shade_gaps
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, VERMILION
-from linksweep.plot.kit.lengths import show_lengths
-from linksweep.plot.kit.style import grid, panels
+from linksweep.plot.kit.style import grid, panels, show_lengths
 from linksweep.results.compute import angles_missing
 from linksweep.results.origin.in_shown_units import in_shown_units, results_in_shown_units
 from linksweep.results.origin.machine_of_results import machine_of_results

@@ -219,6 +219,7 @@ ARGUMENTS = {
     "strength": ["--material", "S355"],
     "breakdown": ["F32"],
     "balance": ["--radius", "6 cm"],
+    "draw": ["-o", "press.svg"],
     "tolerance": ["--of", "F32_peak", "--tol", "ground", "js9"],
 }
 MANY = {"peaks", "study", "check", "quantities"}

@@ -120,10 +120,10 @@ def test_stresses_of_a_report_are_in_shown_units():
 
 
 def test_moments_are_drawn_in_shown_units():
-    plain, shown = (ls.plot.moment_diagram(scene, "coupler") for scene in (ls.example("press"), SHOP))
-    assert (shown.get_xlabel(), shown.get_ylabel()) == ("distance from the first pin [in]", "bending moment [lbf in]")
-    assert plain.get_title("right").endswith(" N m") and shown.get_title("right").endswith(" lbf in")
-    for before, after in zip(plain.get_lines(), shown.get_lines(), strict=True):
+    plain, own = (ls.plot.moment_diagram(scene, "coupler") for scene in (ls.example("press"), SHOP))
+    assert (own.get_xlabel(), own.get_ylabel()) == ("distance from the first pin [in]", "bending moment [lbf in]")
+    assert plain.get_title("right").endswith(" N m") and own.get_title("right").endswith(" lbf in")
+    for before, after in zip(plain.get_lines(), own.get_lines(), strict=True):
         x, y = before.get_xydata().T
         expected = np.column_stack([1e-3 * x / INCH, y / (POUND * INCH)])
         np.testing.assert_allclose(after.get_xydata(), expected, rtol=1e-12, atol=1e-12)

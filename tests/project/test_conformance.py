@@ -130,6 +130,7 @@ CALLS = {
     "report": lambda s, path: ls.report(s.machine, path / "page.html"),
     "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
+    "save_drawing": lambda s, path: ls.save_drawing(s.machine, path / "sheet.svg"),
     "scene_at": lambda s, path: ls.scene_at(s.study, design=2),
     "screen": lambda s, path: ls.screen(s.machine, s.range, n=3, minimize=f"{s.force}_peak", **s.samples),
     "sensitivities": lambda s, path: ls.sensitivities(s.machine, s.force, to=[s.word]),
@@ -188,6 +189,7 @@ COMMANDS = {
     "study": lambda s, path: ["study", written(s, path), "-o", path / "study.nc", "--of", s.force],
     "check": lambda s, path: ["check", written(s, path)],
     "report": lambda s, path: ["report", written(s, path), "-o", path / "page.html"],
+    "draw": lambda s, path: ["draw", written(s, path), "-o", path / "sheet.dxf"],
     "animate": lambda s, path: ["animate", written(s, path), "-o", path / "film.gif", "--frames", 2],
     "bearings": lambda s, path: ["bearings", written(s, path), "--diameter", "2 cm", "--length", "3 cm"],
     "choose-bearings": lambda s, path: ["choose-bearings", written(s, path), "--life", "10000 h"],
@@ -220,7 +222,7 @@ LACKING: dict[str, str] = {
         plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
-        plot.moment_diagram plot.moment_diagrams command.strength
+        plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": """
@@ -253,7 +255,7 @@ LACKING: dict[str, str] = {
         scene_at screen sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights
         plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
         plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
-        contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams
+        contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing
     """,
 }
 """The pairs that give a sentence, by machine."""

@@ -17,10 +17,10 @@ from linksweep.base.validate import refuse
 from linksweep.mechanisms.drawing import Drawing
 from linksweep.plot.kit import signals
 from linksweep.plot.kit.colors import BLACK, BLUE, GREY, LOAD, force_color
-from linksweep.plot.kit.lengths import show_lengths
 from linksweep.plot.kit.load_parts import draw_loads, tail
 from linksweep.plot.kit.load_symbols import LoadSymbol, loads_at
 from linksweep.plot.kit.shape import Shape, half_side, positions, shape_of
+from linksweep.plot.kit.style import show_lengths
 from linksweep.plot.machine import draw_links
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene

@@ -24,7 +24,7 @@ from linksweep.plot.films.frames import (
     way,
 )
 from linksweep.plot.kit import signals
-from linksweep.plot.kit.lengths import show_lengths
+from linksweep.plot.kit.style import show_lengths
 from linksweep.plot.machine import ARROW, draw_ground
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.sweep import sweep

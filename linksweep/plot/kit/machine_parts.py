@@ -56,10 +56,8 @@ def rails(ax: Axes, first: np.ndarray, last: np.ndarray, along: np.ndarray, half
         ax.plot(*hatching.reshape(-1, 2).T, color=EDGE, linewidth=0.7, zorder=2.05, label="_hatching")
 
 
-def block(ax: Axes, centre: np.ndarray, along: np.ndarray, half: float) -> None:
-    """Draw a block about as long as it is wide."""
-    x, y = half * along, 0.92 * half * np.array([-along[1], along[0]])
-    corners = centre + np.array([-x - y, x - y, x + y, y - x, -x - y])
+def block(ax: Axes, corners: np.ndarray) -> None:
+    """Draw a block by its corners."""
     ax.fill(*corners.T, facecolor=BAR, zorder=2.16)
     ax.plot(*corners.T, color=EDGE, linewidth=1.0, zorder=2.17, label="_block")
 
@@ -103,7 +101,8 @@ def stay(ax: Axes, place: np.ndarray, corners: np.ndarray) -> None:
     """Draw a thin line from a point of a link to the nearest place between the link's pins, which may lie apart."""
     around = corners if len(corners) < 3 else np.append(corners, corners[:1], axis=0)
     start, side = around[:-1], np.diff(around, axis=0)
-    share = np.sum((place - start) * side, axis=1) / np.sum(side * side, axis=1)
+    squared = np.sum(side * side, axis=1)
+    share = np.sum((place - start) * side, axis=1) / np.where(squared > 0.0, squared, 1.0)  # two pins may lie together
     feet = start + np.clip(share, 0.0, 1.0)[:, None] * side
     foot = feet[np.argmin(np.linalg.norm(feet - place, axis=1))]
     ax.plot(*np.array([foot, place]).T, color=EDGE, linewidth=0.8, zorder=2.11, label="_stay")

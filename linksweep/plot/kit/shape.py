@@ -11,7 +11,7 @@ import xarray as xr
 
 from linksweep.base.degrees import cos_sin
 from linksweep.chains.between_links import is_pin
-from linksweep.mechanisms.drawing import Drawing, Frame
+from linksweep.mechanisms.drawing import Block, Drawing, Frame
 from linksweep.plot.kit import signals
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
@@ -156,6 +156,23 @@ def one(number: Any) -> float:
     if isinstance(number, xr.DataArray):
         signals.require_one_design([number])
     return float(number)
+
+
+def slideway(block: Block, slide: Slide, shape: Shape, half: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the pivot of a link that carries a block, the foot of it on the block's line, and the ends of the link's
+    slideway, as long as the block's travel."""
+    along, pivot = slide.along[:, -1], shape.pins[block.on[1] if block.on else ""]
+    across = np.array([-along[1], along[0]])
+    foot = pivot + across * (across @ (shape.pins[block.pin] - pivot))
+    low, high = slide.travel(np.zeros(2))
+    ends = np.array([foot + place * along for place in (min(low - 1.4 * half, 0.0), max(high + 1.4 * half, 0.0))])
+    return pivot, foot, ends
+
+
+def block_corners(centre: np.ndarray, along: np.ndarray, half: float) -> np.ndarray:
+    """Return the corners of a block about as long as it is wide, the first again at the end."""
+    x, y = half * along, 0.92 * half * np.array([-along[1], along[0]])
+    return centre + np.array([-x - y, x - y, x + y, y - x, -x - y])
 
 
 def half_side(drawing: Drawing, shape: Shape) -> float:
