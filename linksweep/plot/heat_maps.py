@@ -17,6 +17,7 @@ from linksweep.plot.kit.style import axes_or_new, legend_above
 from linksweep.results.compute import require_dataset
 from linksweep.results.front import has_peaks
 from linksweep.results.origin.in_shown_units import in_shown_units
+from linksweep.results.origin.machine_of_results import name_in_results
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -105,6 +106,7 @@ def heat_map(
     ('coupler length [m]', 'crank length [m]')
     """
     require_dataset(ds, "ls.peaks of several designs")
+    of, x, y, contours = (name_in_results(ds, name) for name in (of, x, y, contours))
     refuse(variable_problems(ds, "of", of, numbers="fiub"))
     ds = in_shown_units(ds)
     sample = ds if ds[of].ndim == 1 else None

@@ -16,6 +16,7 @@ from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.results.compute import require_dataset
 from linksweep.results.origin.in_shown_units import in_shown_units
+from linksweep.results.origin.machine_of_results import name_in_results
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     >>> ls.plot.hodograph(ls.sweep(ls.example("press"), of=["Fsx", "Fsy"])).get_xlabel()
     'shaking force $F_{sx}$ [N]'
     """
-    ds = with_peaks(ds)
+    of, ds = name_in_results(ds, of), with_peaks(ds)
     missing = [part for part in (f"{of}x", f"{of}y") if part not in ds]
     refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
     angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])
@@ -94,7 +95,8 @@ def orders(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     """
     require_dataset(ds, "ls.orders")
     known = [str(key).removesuffix(ENDING) for key in ds.data_vars if str(key).endswith(ENDING)]
-    names = known if of is None else [of] if isinstance(of, str) else list(of)
+    listed = [of] if isinstance(of, str) else [] if of is None else list(of)
+    names = known if of is None else [name_in_results(ds, name) for name in listed]
     refuse([] if known else ["ds has no amplitudes: take what ls.orders returns"])
     refuse([f"of: there are no orders of {name}; there are {', '.join(known)}" for name in {*names} - {*known}])
     ds = in_shown_units(ds)

@@ -23,6 +23,7 @@ from linksweep.results.compute import requested, require_dataset
 from linksweep.results.front import front as front_of
 from linksweep.results.front import stated_objective
 from linksweep.results.origin.in_shown_units import in_shown_units
+from linksweep.results.origin.machine_of_results import name_in_results
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,7 +84,8 @@ def scatter(
     ('$F_{32}$ peak [N]', '$T_{12}$ peak [N m]')
     """
     require_dataset(ds, "ls.peaks of several designs")
-    better = requested("maximize", maximize)
+    x, y, color = (name_in_results(ds, name) for name in (x, y, color))
+    better = [name_in_results(ds, name) for name in requested("maximize", maximize)]
     names = {"x": x, "y": y} | ({} if color is None else {"color": color})
     problems = [problem for path, name in names.items() for problem in variable_problems(ds, path, name)]
     refuse(problems + [f"maximize: {name} is neither x nor y" for name in better if name not in (x, y)])
@@ -194,7 +196,8 @@ def parallel_coordinates(
     '$T_{12}$ peak\\n[N m]'
     """
     require_dataset(ds, "ls.peaks of several designs")
-    of_axes = _axis_names(ds) if of is None else requested("of", of)
+    of_axes = _axis_names(ds) if of is None else [name_in_results(ds, name) for name in requested("of", of)]
+    minimize, maximize, color = (name_in_results(ds, name) for name in (minimize, maximize, color))
     refuse(_problems(ds, of_axes, color, best))
     aim, largest = _objective(ds, of_axes, of is None, minimize, maximize, color)
     of_axes += [aim] if of is None and aim not in of_axes and len(of_axes) < MOST_AXES else []

@@ -12,6 +12,7 @@ from linksweep.plot.kit.colors import BLACK, BLUE, GREY, ORANGE
 from linksweep.plot.kit.style import axes_or_new, grid
 from linksweep.results.compute import require_dataset
 from linksweep.results.origin.in_shown_units import in_shown_units
+from linksweep.results.origin.machine_of_results import name_in_results
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ def tornado(ds: xr.Dataset, of: str | None = None, *, most: int = 12, ax: Axes |
     require_dataset(ds, "ls.tolerance")
     known = [str(key).removesuffix("_share") for key in ds.data_vars if str(key).endswith("_share")]
     refuse([] if known else ["ds has no tolerances: take what ls.tolerance returns"])
-    name = known[0] if of is None else of
+    name = known[0] if of is None else name_in_results(ds, of)
     refuse(name_problems("of", name, known))
     several = [str(dim) for dim in ds[f"{name}_share"].dims if dim != "parameter"]
     refuse([f"ds has several designs, over {several[0]}: take one, as ds.isel({several[0]}=0)"] if several else [])

@@ -45,11 +45,17 @@ def force_in(name: str, pins: Pins) -> str:
     return force_name(*pins[pin]) + line + ending if pin in pins else name
 
 
+def by_name(path: str, values: Mapping[str, Any], scene: Any) -> dict[str, Any]:
+    """Return values by the names of quantities, of which the letter of a pin stands for the force in it."""
+    return {requested(path, name, scene)[0]: value for name, value in values.items()}
+
+
 def _shared_pin(path: str, name: str, pins: Pins) -> list[str]:
     """Return a problem for the letter of a pin at which several joints have names of their own."""
-    joints = [pin for pin in pins if pin.partition(":")[0] == name.partition("_")[0] and ":" in pin]
+    letter = name.partition("_")[0]
+    joints = [pin for pin in pins if pin.partition(":")[0] == letter and ":" in pin]
     several = joints and ":" not in name
-    return [f"{path}: several links share pin {name}; name one of {', '.join(joints)}"] if several else []
+    return [f"{path}: several links share pin {letter}; name one of {', '.join(joints)}"] if several else []
 
 
 def either(**values: Any) -> tuple[str, Any]:

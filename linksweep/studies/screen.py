@@ -129,7 +129,7 @@ def screen(
     >>> bool(alone.F32_peak[0] == result.F32_peak.min())
     True
     """
-    further = requested("of", of)
+    further = requested("of", of, scene)
     task = screening_of(scene, parameters, minimize, maximize, subject_to, keep, bins, seed, options)
     refuse([*counts_problems(n=n, chunk=chunk, threads=threads)])
     client = client_of(client)

@@ -11,7 +11,7 @@ import numpy as np
 
 from linksweep.base.validate import as_float, count_problems, name_problems, quote, refuse
 from linksweep.base.version import installed_version
-from linksweep.results.compute import requested
+from linksweep.results.compute import by_name, requested
 from linksweep.scene.at_sections import link_of
 from linksweep.scene.designs.drawing import draw, seed_range_problems
 from linksweep.scene.designs.lazy import in_memory
@@ -43,13 +43,15 @@ def screening_of(
     dims = [*design_sizes(scene), *scene.mechanism.both_branches]
     advice = "give one design, as of ls.scene_at, and let its numbers vary by `parameters`"
     refuse([f"scene: has designs along {', '.join(dims)}; {advice}"] if dims else [])
-    small, large = requested("minimize", minimize), requested("maximize", maximize)
+    small, large = requested("minimize", minimize, scene), requested("maximize", maximize, scene)
     refuse([f"maximize: {name} is to be small, too; name it once" for name in large if name in small])
     objectives = dict.fromkeys(small, 1.0) | dict.fromkeys(large, -1.0)
-    limits = _limits(subject_to)
+    limits = by_name("subject_to", _limits(subject_to), scene)
     along = [] if scene.section is not None else [name for name in (*small, *large, *limits) if link_of(name)]
     refuse([f"{name}: differs along its link; give the scene one place, as section=0.5" for name in along[:1]])
-    edges = {name: _edges(name, own) for name, own in bins.items()} if isinstance(bins, Mapping) else {}
+    edges = {}
+    if isinstance(bins, Mapping):
+        edges = {name: _edges(name, own) for name, own in by_name("bins", bins, scene).items()}
     refuse([] if isinstance(bins, Mapping) else counts_problems(bins=bins))
     nothing = 'minimize: give what is asked for: minimize="F32_peak", maximize, subject_to or bins'
     refuse([] if objectives or limits or edges else [nothing])

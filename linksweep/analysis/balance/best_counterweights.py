@@ -26,7 +26,7 @@ from linksweep.analysis.balance.counterweights import Counterweight, by_link
 from linksweep.analysis.balance.regressor import OF_LINK, regressor
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Rule, name_problems, quote, refuse
-from linksweep.results.compute import require
+from linksweep.results.compute import by_name, require
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.selection import design_sizes
 from linksweep.scene.scene import Scene
@@ -139,6 +139,7 @@ def _weights(scene: Scene, minimize: Any) -> dict[tuple[str, str], float]:
     """Return the weights by quantity and kind of size."""
     form = 'must be weights by name, as {"F32_peak": 1.0, "T12_ripple": 0.5}'
     refuse([f"minimize = {quote(minimize)}: {form}"] if not isinstance(minimize, Mapping) or not minimize else [])
+    minimize = by_name("minimize", minimize, scene)
     sizes = sizes_named("minimize", scene, minimize)
     weights = [checked_number(f"minimize.{name}", weight, WEIGHT) for name, weight in minimize.items()]
     return dict(zip(sizes, map(float, weights), strict=True))

@@ -18,7 +18,7 @@ from linksweep.base.validate import count_problems, name_problems, quote, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested, require_dataset
 from linksweep.results.dataset import by_command, with_units
-from linksweep.results.origin.machine_of_results import machine_of_results
+from linksweep.results.origin.machine_of_results import machine_of_results, name_in_results
 from linksweep.scene.grid import whole_turns
 
 TURN = 360.0
@@ -63,7 +63,7 @@ def orders(ds: xr.Dataset, of: str | Iterable[str], *, n: int = 12) -> xr.Datase
     [4460.0, 820.0]
     """
     require_dataset(ds, "ls.sweep")
-    names = requested("of", of)
+    names = [name_in_results(ds, name) for name in requested("of", of)]
     index = next((dim for dim in indices() if dim in ds.dims), "theta2")
     refuse([] if index in ds.dims else [f"ds has no dimension {index}: take what ls.sweep returns"])
     known = [str(name) for name in ds.data_vars if name != "status"]

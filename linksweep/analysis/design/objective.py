@@ -21,7 +21,7 @@ from linksweep.analysis.design.result_derivatives import result_names
 from linksweep.analysis.design.searches import local_optimum
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
-from linksweep.results.compute import require_scene
+from linksweep.results.compute import by_name, requested, require_scene
 from linksweep.results.peaks import peaks, quantity_of
 from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
@@ -308,8 +308,12 @@ def objective(
     target, path = (maximize, "maximize") if minimize is None else (minimize, "minimize")
     if not isinstance(target, str) and not callable(target):
         refuse([f"{path} = {quote(target)}: must be a name, or a function of the Dataset of peaks"])
+    if isinstance(target, str):
+        (target,) = requested(path, target, scene)
     names = _names(scene, target, constraint, None if of is None else list(of))
     measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
+    if isinstance(subject_to, Mapping):
+        subject_to = by_name("subject_to", subject_to, scene)
     bounds = checked_bounds(scene, subject_to)
     result = target if isinstance(target, str) and target in result_names(scene) else ""
     sign = 1.0 if path == "minimize" else -1.0

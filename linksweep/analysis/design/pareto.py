@@ -12,6 +12,7 @@ from linksweep.base.validate import name_problems, refuse
 from linksweep.mechanisms import indices
 from linksweep.results.compute import requested, require_dataset
 from linksweep.results.front import front, has_peaks, objective_attributes
+from linksweep.results.origin.machine_of_results import name_in_results
 
 FRONT = "front"
 """Dimension of a front whose designs lie along several dims."""
@@ -57,7 +58,12 @@ def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[s
     >>> bool((front.omega2.diff("design") > 0).all())  # in order of F32_peak: a larger force buys more speed
     True
     """
-    objectives = _objectives(ds, minimize, maximize)
+    require_dataset(ds, "ls.peaks of several designs")
+    small, large = (
+        [name_in_results(ds, name) for name in requested(path, names)]
+        for path, names in (("minimize", minimize), ("maximize", maximize))
+    )
+    objectives = _objectives(ds, small, large)
     *together, sound_status = xr.broadcast(*objectives, has_peaks(ds))
     dims, shape = sound_status.dims, sound_status.shape
     refuse([] if dims else ["ds holds one design: there is nothing to choose from; give it a dimension of designs"])
@@ -67,15 +73,13 @@ def pareto(ds: xr.Dataset, *, minimize: Iterable[str] = (), maximize: Iterable[s
     designs = designs[front(costs[designs])]
     chosen = _at(ds, {str(dim): at for dim, at in zip(dims, np.unravel_index(designs, shape), strict=True)})
     others = {name: text for name, text in ds.attrs.items() if name not in ("minimize", "maximize")}
-    chosen.attrs = others | objective_attributes(requested("minimize", minimize), requested("maximize", maximize))
+    chosen.attrs = others | objective_attributes(small, large)
     return chosen
 
 
-def _objectives(ds: Any, minimize: Any, maximize: Any) -> list[xr.DataArray]:
+def _objectives(ds: xr.Dataset, minimize: list[str], maximize: list[str]) -> list[xr.DataArray]:
     """Return the objectives, all to be small."""
-    require_dataset(ds, "ls.peaks of several designs")
-    objectives = [("minimize", name) for name in requested("minimize", minimize)]
-    objectives += [("maximize", name) for name in requested("maximize", maximize)]
+    objectives = [("minimize", name) for name in minimize] + [("maximize", name) for name in maximize]
     refuse([] if objectives else ['minimize: is empty; give names of variables, as in ["F32_peak", "T12_peak"]'])
     refuse([problem for path, name in objectives for problem in variable_problems(ds, path, name, numbers="fiu")])
     return [-ds[name] if path == "maximize" else ds[name] for path, name in objectives]

@@ -10,7 +10,7 @@ import xarray as xr
 
 from linksweep.base.validate import refuse
 from linksweep.mechanisms import MECHANISMS, Mechanism
-from linksweep.results.compute import require_dataset
+from linksweep.results.compute import force_in, require_dataset
 from linksweep.scene.file.reading import mechanism_of
 
 
@@ -19,6 +19,15 @@ def machine_of_results(ds: xr.Dataset) -> Mechanism | None:
     name, known = parameters_of_scene(ds).get("mechanism", {}).get("type"), ", ".join(MECHANISMS)
     refuse([] if name is None or name in MECHANISMS else [f"ds: is of a {name}; registered are {known}: register it"])
     return None if name is None else _machine(ds.attrs["scene"])
+
+
+def name_in_results(ds: xr.Dataset, name: Any) -> Any:
+    """Return the name of a variable; of the letter of a pin, which a Dataset has no variable of, that of its force:
+    "B_peak" is F32_peak."""
+    if not isinstance(name, str) or not isinstance(ds, xr.Dataset) or name in ds.variables:
+        return name
+    machine = machine_of_results(ds)
+    return name if machine is None else force_in(name, machine.pins)
 
 
 def parameters_of_scene(ds: xr.Dataset) -> dict[str, Any]:
