@@ -18,6 +18,23 @@ MADE = {"crank.length": "js9", "ground": ls.Tolerance("-50 um", "50 um")}
 @pytest.mark.parametrize(
     ("name", "lower", "upper"),
     [  # ISO 286-2, tables of limit deviations
+        ("30 j6", -4, 9),
+        ("50 r6", 34, 50),
+        ("50 s6", 43, 59),
+        ("70 s6", 59, 78),
+        ("40 k8", 0, 39),
+        ("40 N9", -62, 0),
+        ("3 N9", -29, -4),
+        ("40 P9", -88, -26),
+        ("40 P7", -42, -17),
+        ("40 S7", -59, -34),
+        ("300 M6", -41, -9),
+        ("600 h7", -70, 0),  # table of sizes above 500 mm
+        ("1200 g6", -94, -28),
+        ("2000 js9", -185, 185),
+        ("3150 n6", 135, 270),
+        ("700 P7", -168, -88),
+        ("700 N9", -250, -50),
         ("40 H7", 0, 25),
         ("40 g6", -25, -9),
         ("10 h9", -36, 0),
@@ -37,11 +54,38 @@ def test_limits_are_those_of_the_standard(name, lower, upper):
     assert limit_deviations(name, 1.0) == pytest.approx((1e-6 * lower, 1e-6 * upper), abs=1e-12)
 
 
+RANGES = {30.0: 0, 50.0: 1, 80.0: 2, 120.0: 3}
+HOLES = {  # catalogue tables of ISO 286-2 for sizes up to 30, 50, 80 and 120 mm [µm]
+    "J6": ((-5, 8), (-6, 10), (-6, 13), (-6, 16)),
+    "J7": ((-9, 12), (-11, 14), (-12, 18), (-13, 22)),
+    "J8": ((-13, 20), (-15, 24), (-18, 28), (-20, 34)),
+    "K6": ((-11, 2), (-13, 3), (-15, 4), (-18, 4)),
+    "K7": ((-15, 6), (-18, 7), (-21, 9), (-25, 10)),
+    "K8": ((-23, 10), (-27, 12), (-32, 14), (-38, 16)),
+    "M6": ((-17, -4), (-20, -4), (-24, -5), (-28, -6)),
+    "M7": ((-21, 0), (-25, 0), (-30, 0), (-35, 0)),
+    "M8": ((-29, 4), (-34, 5), (-41, 5), (-48, 6)),
+    "N6": ((-24, -11), (-28, -12), (-33, -14), (-38, -16)),
+    "N7": ((-28, -7), (-33, -8), (-39, -9), (-45, -10)),
+    "N8": ((-36, -3), (-42, -3), (-50, -4), (-58, -4)),
+    "R7": ((-41, -20), (-50, -25), (-62, -32), (-76, -41)),
+    "H11": ((0, 130), (0, 160), (0, 190), (0, 220)),
+    "JS8": ((-16.5, 16.5), (-19.5, 19.5), (-23, 23), (-27, 27)),
+}
+
+
+@pytest.mark.parametrize("name", HOLES)
+def test_limits_of_holes_are_those_of_the_tables(name):
+    for size, column in RANGES.items():
+        expected = tuple(1e-6 * end for end in HOLES[name][column])
+        assert limit_deviations(f"{size:g} {name}", 1.0) == pytest.approx(expected, abs=1e-12), size
+
+
 def test_a_class_without_a_size_is_that_of_the_length():
     assert limit_deviations("H7", 0.04) == limit_deviations("40 H7", 9.0)
 
 
-@pytest.mark.parametrize("name", ["40 Z7", "40 H20", "600 H7", "40 k9", "40 K7"])
+@pytest.mark.parametrize("name", ["40 Z7", "40 H20", "4000 H7", "600 s6", "40 j9", "40 J5"])
 def test_classes_beyond_the_tables_are_refused(name):
     with pytest.raises(ValueError, match=name.split()[1]):
         limit_deviations(name, 1.0)
