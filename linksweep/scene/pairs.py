@@ -25,16 +25,28 @@ Places = Mapping[str, Array]
 
 
 def quantities_at(
-    scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
+    scene: Scene,
+    names: tuple[str, ...],
+    designs: Array,
+    angles: Array,
+    threads: int | None = None,
+    motion: Mapping[str, Array] | None = None,
 ) -> Array:
-    """Return values (names, pairs) at pairs of a design and an angle [degree]."""
+    """Return values (names, pairs) at pairs of a design and an angle [degree].
+
+    `motion` are parameters that each pair has of its own, in place of the scene's, such as omega2 and alpha2.
+    """
     if not len(angles):
         return np.empty((len(names), 0))
     inputs, grid, sample = _inputs_at(scene, angles)
-    forms = tuple((name, (grid.dim,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
+    motion = motion or {}
+    own = {name for name, form in inputs.forms if (isinstance(form, tuple) and form) or name in motion}
+    forms = tuple((name, (grid.dim,) if name in own else form) for name, form in inputs.forms)
     request = plan(scene.table, names, forms)
     places = places_of(inputs.sizes, designs) | {grid.dim: sample}
-    values = evaluate(request, inputs_along(grid.dim, request, inputs, places), grid, {}, threads)
+    fields = inputs_along(grid.dim, request, inputs, places)
+    fields |= {name: Field((grid.dim,), values) for name, values in motion.items() if name in request.inputs}
+    values = evaluate(request, fields, grid, {}, threads)
     return np.stack([np.broadcast_to(values[name].values, angles.shape) for name in names])
 
 

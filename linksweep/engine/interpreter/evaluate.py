@@ -58,7 +58,7 @@ def _rows(value: np.ndarray | np.float64, shape: tuple[int, ...], designs: int) 
         designs, shape = 1, value.shape
     rows = np.ascontiguousarray(np.broadcast_to(value, shape), dtype=np.float64).reshape(designs, -1)
     missing = REGISTER - rows.shape[1]
-    return rows if missing <= 0 else np.pad(rows, ((0, 0), (0, missing)), mode="edge")
+    return rows if missing <= 0 else np.concatenate([rows, np.repeat(rows[:, -1:], missing, axis=1)], axis=1)
 
 
 def _place(rows: np.ndarray) -> tuple[int, int]:
