@@ -19,6 +19,8 @@ from linksweep.analysis.drive.motors.curve import Motor
 from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.governed import GovernedMotor
 from linksweep.analysis.drive.motors.induction import InductionMotor
+from linksweep.analysis.drive.run_down import run_down
+from linksweep.analysis.drive.run_up import run_up
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
@@ -132,6 +134,8 @@ __all__ = [
     "quantities",
     "regressor",
     "report",
+    "run_down",
+    "run_up",
     "sample",
     "save",
     "save_drawing",

@@ -96,7 +96,8 @@ class Systems:
             outcome[done] = self.outcome(done, state[done])
             outcome[rows[~good & (size[rows] < SHORTEST * longest)]] = GIVEN_UP
             rows = rows[outcome[rows] == GOES_ON]
-        return Trace(*(np.concatenate(parts) for parts in zip(*kept, strict=True)), outcome)
+        ends, times, states, slopes = (np.concatenate(parts) for parts in zip(*kept, strict=True))
+        return Trace(ends, times, states, slopes, outcome)
 
     def advanced(self, rows: Array, state: Array, slope: Array, size: Array) -> tuple[Array, Array]:
         """Return states after one step, forwards or backwards, and derivatives (stage, system, component) on the way;

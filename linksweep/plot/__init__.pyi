@@ -14,6 +14,7 @@ from linksweep.plot.load_analysis import over_speed as over_speed
 from linksweep.plot.load_diagrams import bearing as bearing
 from linksweep.plot.load_diagrams import bearings as bearings
 from linksweep.plot.machine import mechanism as mechanism
+from linksweep.plot.runs import run_up as run_up
 from linksweep.plot.shaking_force import hodograph as hodograph
 from linksweep.plot.shaking_force import orders as orders
 from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
@@ -40,6 +41,7 @@ __all__ = [
     "orders",
     "over_speed",
     "parallel_coordinates",
+    "run_up",
     "scatter",
     "tornado",
     "torque",

@@ -25,29 +25,38 @@ Places = Mapping[str, Array]
 
 
 def quantities_at(
-    scene: Scene,
-    names: tuple[str, ...],
-    designs: Array,
-    angles: Array,
-    threads: int | None = None,
-    motion: Mapping[str, Array] | None = None,
+    scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
 ) -> Array:
-    """Return values (names, pairs) at pairs of a design and an angle [degree].
+    """Return values (names, pairs) at pairs of a design and an angle [degree]."""
+    return Pairs(scene, designs, angles).values(names, threads)
 
-    `motion` are parameters that each pair has of its own, in place of the scene's, such as omega2 and alpha2.
-    """
-    if not len(angles):
-        return np.empty((len(names), 0))
-    inputs, grid, sample = _inputs_at(scene, angles)
-    motion = motion or {}
-    own = {name for name, form in inputs.forms if (isinstance(form, tuple) and form) or name in motion}
-    forms = tuple((name, (grid.dim,) if name in own else form) for name, form in inputs.forms)
-    request = plan(scene.table, names, forms)
-    places = places_of(inputs.sizes, designs) | {grid.dim: sample}
-    fields = inputs_along(grid.dim, request, inputs, places)
-    fields |= {name: Field((grid.dim,), values) for name, values in motion.items() if name in request.inputs}
-    values = evaluate(request, fields, grid, {}, threads)
-    return np.stack([np.broadcast_to(values[name].values, angles.shape) for name in names])
+
+class Pairs:
+    """Pairs of a design and an angle [degree] of a scene, whose loads are evaluated there once."""
+
+    def __init__(self, scene: Scene, designs: Array, angles: Array) -> None:
+        self.scene, self.designs, self.count = scene, designs, len(angles)
+        if self.count:
+            self.inputs, self.grid, self.sample = _inputs_at(scene, angles)
+
+    def values(
+        self, names: tuple[str, ...], threads: int | None = None, motion: Mapping[str, Array] | None = None
+    ) -> Array:
+        """Return values (names, pairs) of quantities.
+
+        `motion` are parameters that each pair has of its own, in place of the scene's, such as omega2 and alpha2.
+        """
+        if not self.count:
+            return np.empty((len(names), 0))
+        motion, inputs, dim = motion or {}, self.inputs, self.grid.dim
+        own = {name for name, form in inputs.forms if (isinstance(form, tuple) and form) or name in motion}
+        forms = tuple((name, (dim,) if name in own else form) for name, form in inputs.forms)
+        request = plan(self.scene.table, names, forms)
+        places = places_of(inputs.sizes, self.designs) | {dim: self.sample}
+        fields = inputs_along(dim, request, inputs, places)
+        fields |= {name: Field((dim,), values) for name, values in motion.items() if name in request.inputs}
+        values = evaluate(request, fields, self.grid, {}, threads)
+        return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
 
 
 def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:

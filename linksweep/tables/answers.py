@@ -17,6 +17,7 @@ from linksweep.tables.of_check import check_table
 from linksweep.tables.of_drive import drive_table, wheel_table
 from linksweep.tables.of_peaks import study_parts
 from linksweep.tables.of_pins import bearing_parts, choice_parts, share_parts
+from linksweep.tables.of_runs import run_parts
 from linksweep.tables.of_sensitivity import sensitivity_parts, tolerance_parts
 from linksweep.tables.of_strength import strength_parts
 from linksweep.tables.of_system import system_parts
@@ -46,6 +47,8 @@ KINDS: Mapping[str, Kind] = {
     "compare": _kind(lambda ds: iter([balance_table(ds)]), "", "balance"),
     "duty": _kind(lambda ds: iter([drive_table(ds)]), "effort_peak power_max work_fed", ""),
     "flywheel": _kind(lambda ds: iter([wheel_table(ds)]), "speed flywheel_inertia fluctuation drive_torque", "theta2"),
+    "run_up": _kind(run_parts, "duration time speed", "step"),
+    "run_down": _kind(run_parts, "duration time speed", "step"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
     "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
     "strength": _kind(strength_parts, "stress goodman_safety buckling_safety", "link plane"),

@@ -128,6 +128,8 @@ CALLS = {
     "quantities": lambda s, path: ls.quantities(s.machine, "force"),
     "regressor": lambda s, path: ls.regressor(s.machine, [s.drive], theta2=SAMPLES),
     "report": lambda s, path: ls.report(s.machine, path / "page.html"),
+    "run_down": lambda s, path: ls.run_down(s.machine, until=0.9, turns=0.1, of=[s.drive]),
+    "run_up": lambda s, path: ls.run_up(s.machine, MOTOR, until=1e-3, of=[s.drive]),
     "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
     "save_drawing": lambda s, path: ls.save_drawing(s.machine, path / "sheet.svg"),
@@ -163,6 +165,7 @@ CALLS = {
     "plot.orders": lambda s, path: ls.orders(s.shaking, "Fsx", n=3).linksweep.orders(),
     "plot.over_speed": lambda s, path: ls.plot.over_speed(s.machine, s.force, speeds=[10.0, 20.0]),
     "plot.parallel_coordinates": lambda s, path: s.study.linksweep.parallel_coordinates(),
+    "plot.run_up": lambda s, path: CALLS["run_down"](s, path).linksweep.run_up(),
     "plot.scatter": lambda s, path: s.study.linksweep.scatter(x=f"{s.force}_peak", y=f"{s.drive}_peak"),
     "plot.tornado": lambda s, path: ls.tolerance(
         s.machine, {s.word: ls.Tolerance(0.0, 0.1)}, of=s.force, n=0
@@ -206,6 +209,10 @@ COMMANDS = {
 }
 """Arguments of each command that takes a scene; `demo` and `completion` take none."""
 
+NO_CLOSED_FORM = """
+    best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
+    command.balance
+"""
 LACKING: dict[str, str] = {
     "press": "plot.loop",
     "engine": """
@@ -216,19 +223,17 @@ LACKING: dict[str, str] = {
         position_equation plot.loop size_links strength plot.moment_diagram plot.moment_diagrams command.strength
     """,
     "loop": """
-        bearings best_counterweights breakdown choose_bearings command.choose-bearings counterweights coupler_curve
-        duty explore flywheel geometry load_spectrum motor_load orders pin_friction position_equation regressor
+        bearings best_counterweights breakdown choose_bearings command.choose-bearings counterweights coupler_curve duty
+        explore flywheel geometry load_spectrum motor_load orders pin_friction position_equation regressor
         shaking_moment speed_limit speed_separation with_counterweights plot.balance plot.bearing plot.bearings
         plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
         plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw
+        run_down run_up plot.run_up
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
-    "knuckle-press": """
-        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
-        command.balance
-    """,
+    "knuckle-press": NO_CLOSED_FORM,
     "scotch-yoke": """
         counterweights position_equation plot.loop command.balance size_links strength plot.moment_diagram
         plot.moment_diagrams command.strength
@@ -236,18 +241,13 @@ LACKING: dict[str, str] = {
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
+        run_down run_up plot.run_up
     """,
-    "whitworth": """
-        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
-        command.balance
-    """,
-    "geared-five-bar": """
-        best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
-        command.balance
-    """,
+    "whitworth": NO_CLOSED_FORM,
+    "geared-five-bar": NO_CLOSED_FORM,
     "yoke": """
-        counterweights position_equation plot.heat_map plot.loop command.balance size_links strength
-        plot.moment_diagram plot.moment_diagrams command.strength
+        counterweights position_equation plot.heat_map plot.loop command.balance size_links strength plot.moment_diagram
+        plot.moment_diagrams command.strength
     """,
     "inline-four": """
         best_counterweights breakdown check choose_bearings compare counterweights coupler_curve explore geometry
@@ -256,6 +256,7 @@ LACKING: dict[str, str] = {
         plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
         plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
         contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing
+        run_down run_up plot.run_up
     """,
 }
 """The pairs that give a sentence, by machine."""

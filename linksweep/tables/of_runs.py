@@ -1,0 +1,56 @@
+"""Tables of a run-up or a run-down: how long it takes, what the motor gives, and the peaks on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from linksweep.tables.cells import digits, unit_of, with_unit
+from linksweep.tables.table import Part, Row, Table
+
+NUMBERS = {
+    "duration": "it takes",
+    "turns": "turns of the crank",
+    "steady_speed": "speed of the steady cycle",
+    "motor_work": "work of the motor",
+    "motor_heat": "heat in the motor",
+    "kinetic_energy": "kinetic energy",
+}
+"""Title of each number of a run."""
+FAILURES = {
+    "does_not_start": "The motor does not start it: at rest it does not overcome weights, loads and friction.",
+    "stalls": "The crank comes to rest on its way: the motor is too weak there.",
+    "settles_below": "Its speed settles below the one that is sought.",
+    "keeps_turning": "It keeps turning: nothing in the scene takes its energy away, such as friction or a damper.",
+    "takes_more_turns": "It takes more turns: give turns= a larger number.",
+    "breaks_off": "It breaks off: the machine does not turn fully, or jams; ls.check says why.",
+}
+"""Sentence for each status that is not ok."""
+
+
+def run_parts(ds: xr.Dataset) -> Iterator[Part]:
+    """Yield the table of a run and that of its peaks; of one that comes to nothing, a sentence and where it ends."""
+    status = str(ds["status"].attrs["flag_meanings"]).split()[int(ds["status"])]
+    if status != "ok":
+        yield FAILURES[status]
+        last = int(np.isfinite(ds["time"].values).sum()) - 1
+        ends = [(name, ds[name].isel(step=last)) for name in ("time", "angle", "speed")]
+        yield Table(("where it ends", "", ""), [_row(title, value) for title, value in ends], right=(1,))
+        return
+    rows = [_row(title, ds[name]) for name, title in NUMBERS.items() if name in ds and np.isfinite(float(ds[name]))]
+    yield Table(("the run", "", ""), rows, right=(1,))
+    names = [str(name) for name in ds.data_vars if f"{name}_at" in ds]
+    header = ("largest on the way", "value", "unit", "at time", "at theta2")
+    yield Table(header, [_peak(ds, name) for name in names], right=(1, 3, 4))
+
+
+def _row(title: str, value: xr.DataArray) -> Row:
+    return title, digits(float(value)), unit_of(value).removesuffix("1")
+
+
+def _peak(ds: xr.Dataset, name: str) -> Row:
+    """Return the row of a peak, with its time and its crank angle."""
+    time, angle = (with_unit(float(ds[f"{name}_{end}"]), unit_of(ds[f"{name}_{end}"])) for end in ("time", "at"))
+    return name, digits(float(ds[name])), unit_of(ds[name]), time, angle

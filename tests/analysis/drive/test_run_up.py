@@ -1,0 +1,249 @@
+"""Run-up and run-down: an independent integration of Lagrange's equations, closed forms, energy, failures to start."""
+
+from dataclasses import replace
+
+import numpy as np
+import oracle_in_time as reference
+import pytest
+import xarray as xr
+
+import linksweep as ls
+
+CRANK, ROD, ROCKER = (0.08, 0.5, 1e-3, 0.03, 20.0), (0.22, 0.7, 3e-3, 0.1, -10.0), (0.18, 0.6, 2e-3, 0.08, 5.0)
+WHEEL = 0.02
+MOTOR = ls.DCMotor(stall_torque=1.5, no_load_speed=120.0, inertia=1e-3)
+RATIO = 4.0
+SHAFT = WHEEL + RATIO**2 * 1e-3
+
+FOUR_BAR = ls.Scene(
+    ls.FourBar(ls.Link(*CRANK), ls.Link(*ROD), ls.Link(*ROCKER), ground=0.2),
+    omega2=1.0,
+    gravity=(0.0, -9.81),
+    loads=[
+        ls.Load("rocker", torque=-2.0),
+        ls.Spring(("ground", 0.3, 0.1), ("coupler", 0.04, 30.0), rate=200.0, free_length=0.1),
+        ls.Damper(("ground", -0.1, 0.1), ("rocker", 0.1, -30.0), coefficient=8.0),
+        ls.TorsionDamper("ground", "coupler", coefficient=0.03),
+    ],
+)
+SLIDER_CRANK = ls.Scene(
+    ls.SliderCrank(ls.Link(*CRANK), ls.Link(*ROD), slider_mass=0.4, offset=0.02, friction=0.1),
+    omega2=1.0,
+    gravity=(0.0, -9.81),
+    loads=[ls.Damper(("ground", -0.1, 0.1), ("rod", 0.1, -30.0), coefficient=8.0)],
+)
+WEIGHT = {"gravity": (0.0, -9.81), "shaft_inertia": SHAFT}
+BODIES = [reference.Body(*link) for link in (CRANK, ROD, ROCKER)]
+OF_FOUR_BAR = reference.Machine(
+    BODIES,
+    ground=0.2,
+    torques={2: -2.0},
+    lines=[
+        reference.Line((("ground", 0.3, 0.1), (1, 0.04, 30.0)), rate=200.0, free_length=0.1),
+        reference.Line((("ground", -0.1, 0.1), (2, 0.1, -30.0)), damping=8.0),
+    ],
+    turning_dampers={1: 0.03},
+    **WEIGHT,
+)
+OF_SLIDER_CRANK = reference.Machine(
+    BODIES[:2],
+    slider_mass=0.4,
+    offset=0.02,
+    friction=0.1,
+    lines=[reference.Line((("ground", -0.1, 0.1), (1, 0.1, -30.0)), damping=8.0)],
+    **WEIGHT,
+)
+PINS = ["F12", "F32", "F43", "F14"]
+LIGHT = tuple(replace(link, mass=0.0, inertia=0.0) for link in (ls.Link(*ROD), ls.Link(*ROCKER)))
+FLYWHEEL = ls.Scene(ls.FourBar(ls.Link(0.08, 0.0, 5e-3), *LIGHT, ground=0.2), omega2=1.0)
+"""A crank of constant inertia: the other links have no mass."""
+
+
+def torque(speed):
+    return RATIO * 1.5 * (1.0 - RATIO * speed / 120.0)
+
+
+# ------------------------------------------------------------------------------- an independent integration
+
+
+@pytest.mark.parametrize(
+    ("scene", "machine"), [(FOUR_BAR, OF_FOUR_BAR), (SLIDER_CRANK, OF_SLIDER_CRANK)], ids=["four-bar", "slider-crank"]
+)
+def test_run_up_against_lagrange(scene, machine):
+    pins = PINS[: len(machine.joints())]
+    run = ls.run_up(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=10.0, until=0.85, of=pins)
+    assert int(run.status) == 0
+    peaks_at = [float(run[f"{name}_peak_time"]) for name in pins]
+    even = np.linspace(0.0, float(run.duration), 100)[1:]
+    times = np.unique(np.concatenate([run.time[1:], peaks_at, even]))
+    angle, speed = machine.run(torque, times, theta=np.radians(10.0))
+    steps = np.searchsorted(times, run.time[1:])
+    np.testing.assert_allclose(np.radians(run.angle[1:]), angle[steps], rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(run.speed[1:], speed[steps], rtol=0.0, atol=1e-8 * 30.0)
+    assert float(run.time[-1]) == float(run.duration)
+    for k, name in enumerate(pins):
+        sizes = [machine.pin_forces(angle[i], speed[i], torque(speed[i]))[k] for i in np.searchsorted(times, even)]
+        (i,) = np.searchsorted(times, [peaks_at[k]])
+        largest = machine.pin_forces(angle[i], speed[i], torque(speed[i]))[k]
+        np.testing.assert_allclose(run[f"{name}_peak"], largest, rtol=1e-8)
+        assert max(sizes) <= largest * (1.0 + 1e-8)
+
+
+def test_clockwise_against_lagrange():
+    scene = replace(FOUR_BAR, omega2=-1.0, loads=FOUR_BAR.loads[1:])
+    machine = replace(OF_FOUR_BAR, torques={})
+    run = ls.run_up(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=200.0, until=0.6, of=["F32"])
+    angle, speed = machine.run(lambda w: -torque(-w), run.time[1:], theta=np.radians(200.0))
+    np.testing.assert_allclose(np.radians(run.angle[1:]), angle, rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(run.speed[1:], speed, rtol=0.0, atol=1e-8 * 30.0)
+
+
+def test_run_down_against_lagrange():
+    scene = replace(SLIDER_CRANK, omega2=25.0)
+    run = ls.run_down(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=30.0, until=0.9, of=["F32"])
+    assert int(run.status) == 0
+    angle, speed = OF_SLIDER_CRANK.run(lambda w: 0.0, run.time[1:], theta=np.radians(30.0), omega=25.0)
+    np.testing.assert_allclose(np.radians(run.angle[1:]), angle, rtol=0.0, atol=1e-8)
+    np.testing.assert_allclose(run.speed[1:], speed, rtol=0.0, atol=1e-8 * 25.0)
+
+
+def test_energy_from_the_motor_is_stored_or_lifted():
+    """Without losses: work of the motor = kinetic energy + potential energy of weights + work against the torque."""
+    scene = replace(FOUR_BAR, loads=[ls.Load("crank", torque=-1.0)])
+    machine = replace(OF_FOUR_BAR, torques={}, lines=[], turning_dampers={})
+    run = ls.run_up(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=70.0, until=0.8, of=["F32"])
+    first, last = np.radians(run.angle.values[[0, -1]])
+    lifted = machine.height_energy(last) - machine.height_energy(first)
+    np.testing.assert_allclose(run.motor_work, run.kinetic_energy + lifted + (last - first), rtol=1e-9)
+    slip = 1.0 - RATIO * run.speed.values / 120.0
+    np.testing.assert_allclose(run.motor_torque, 1.5 * slip, rtol=1e-13)
+
+
+# ------------------------------------------------------------------------------------------------ closed forms
+
+
+def test_a_flywheel_on_a_motor_with_a_straight_curve():
+    """ω = ω0 (1 − e^(−t/τ)), τ = J ω0/M0; the winding takes ½ J ω0² (1 − e^(−2t/τ))."""
+    ratio, wheel = xr.DataArray([4.0, 8.0], dims="gear"), xr.DataArray([0.0, 0.05], dims="wheel")
+    run = ls.run_up(FLYWHEEL, MOTOR, ratio=ratio, flywheel=wheel, until=0.95, of=["F12"])
+    inertia, speed = 5e-3 + ratio**2 * 1e-3 + wheel, 120.0 / ratio
+    tau = inertia * speed / (1.5 * ratio)
+    part = 0.95
+    xr.testing.assert_allclose(run.duration, -tau * np.log(1.0 - part), rtol=1e-9)
+    turns = (-speed * tau * np.log(1.0 - part) - speed * tau * part) / (2.0 * np.pi)
+    xr.testing.assert_allclose(run.turns, turns, rtol=1e-9)
+    energy = 0.5 * inertia * speed**2
+    xr.testing.assert_allclose(run.motor_work, energy * part**2, rtol=1e-9)
+    xr.testing.assert_allclose(run.kinetic_energy, energy * part**2, rtol=1e-12)
+    xr.testing.assert_allclose(run.motor_heat, energy * (1.0 - (1.0 - part) ** 2), rtol=1e-9)
+    xr.testing.assert_allclose(run.steady_speed, speed + 0.0 * wheel, rtol=1e-10)
+
+
+def test_heat_of_an_induction_motor_is_the_energy_of_its_flywheel():
+    """Whatever its curve: M (ω_s − ω) dt = J (ω_s − ω) dω."""
+    motor = ls.InductionMotor(157.0, 15.0, rated_torque=6.0, rated_speed=149.0, inertia=4e-3)
+    run = ls.run_up(FLYWHEEL, motor, ratio=5.0, flywheel=0.02, until=0.9, of=["F12"])
+    energy = 0.5 * (5e-3 + 0.02 + 25.0 * 4e-3) * (157.0 / 5.0) ** 2
+    np.testing.assert_allclose(run.motor_heat, energy * (1.0 - 0.1**2), rtol=1e-9)
+
+
+def test_a_constant_torque_speeds_up_uniformly():
+    motor = ls.GovernedMotor(20.0, cut_from=90.0, cut_to=100.0)
+    run = ls.run_up(FLYWHEEL, motor, flywheel=0.1, until=0.8, of=["T12"])
+    np.testing.assert_allclose(run.duration, 80.0 * 0.105 / 20.0, rtol=1e-10)
+    np.testing.assert_allclose(run.turns, 0.5 * 80.0**2 * 0.105 / 20.0 / (2.0 * np.pi), rtol=1e-10)
+    np.testing.assert_allclose(run.acceleration, 20.0 / 0.105, rtol=1e-10)
+    np.testing.assert_allclose(run.T12_peak, 20.0 * 0.005 / 0.105, rtol=1e-10)  # what the flywheel leaves
+    assert np.isnan(run.motor_heat)
+
+
+def test_run_down_with_a_damper():
+    """ω = ω0 e^(−c t/J)."""
+    damped = replace(FLYWHEEL, omega2=-40.0, loads=[ls.TorsionDamper("ground", "crank", coefficient=0.5)])
+    run = ls.run_down(damped, flywheel=0.1, until=0.05, of=["T12"])
+    np.testing.assert_allclose(run.duration, 0.105 / 0.5 * np.log(20.0), rtol=1e-9)
+    np.testing.assert_allclose(run.turns, 40.0 * 0.95 * 0.105 / 0.5 / (2.0 * np.pi), rtol=1e-9)
+    np.testing.assert_allclose(run.speed, -40.0 * np.exp(-0.5 / 0.105 * run.time), rtol=1e-9)
+    np.testing.assert_allclose(run.kinetic_energy, 0.5 * 0.105 * 1600.0, rtol=1e-13)
+
+
+def test_run_down_to_standstill():
+    """A constant torque against the crank brings it to rest uniformly."""
+    braked = replace(FLYWHEEL, omega2=40.0, loads=[ls.Load("crank", torque=-15.0)])
+    run = ls.run_down(braked, flywheel=0.1, until=0.0, of=["F12"])
+    np.testing.assert_allclose(run.duration, 40.0 * 0.105 / 15.0, rtol=1e-9)
+    np.testing.assert_allclose(run.turns, 0.5 * 1600.0 * 0.105 / 15.0 / (2.0 * np.pi), rtol=1e-9)
+
+
+# -------------------------------------------------------------------------------------- what comes to nothing
+
+
+def meaning(run):
+    words = run.status.attrs["flag_meanings"].split()
+    return [words[k] for k in np.ravel(run.status)]
+
+
+def test_a_weak_motor_does_not_start_or_stalls():
+    """Against a torque of 3 N m and the weight of the crank, which are 3 + m g s cos(θ + 20°)."""
+    stall = xr.DataArray([2.0, 3.1, 8.0], dims="motor")
+    motor = ls.DCMotor(stall_torque=stall, no_load_speed=120.0)
+    light = replace(FLYWHEEL, mechanism=replace(FLYWHEEL.mechanism, crank=ls.Link(0.08, 2.0, 5e-3, 0.05, 0.0)))
+    weighed = replace(light, gravity=(0.0, -9.81), loads=[ls.Load("crank", torque=-3.0)])
+    run = ls.run_up(weighed, motor, start=180.0, until=0.5, of=["F12"])
+    assert meaning(run) == ["does_not_start", "stalls", "ok"]
+    assert np.isfinite(run.duration).values.tolist() == [False, False, True]
+    assert float(run.speed[1].max()) > 0.0
+
+
+def test_what_never_ends_is_told():
+    """A curve with a gap lets the speed settle below; without losses nothing ever stops."""
+    gap = ls.Motor(speeds=(0.0, 10.0, 14.0, 18.0, 100.0), torques=(50.0, 50.0, 10.0, 50.0, 0.0))
+    held = replace(FLYWHEEL, loads=[ls.Load("crank", torque=-20.0)])
+    run = ls.run_up(held, gap, flywheel=0.1, until=0.9, of=["F12"])
+    assert meaning(run) == ["settles_below"]
+    np.testing.assert_allclose(run.speed[-1], 13.0, rtol=1e-7)  # where the curve falls through 20 N m
+    assert np.isnan(run.duration) and np.isnan(run.F12_peak)
+    free = replace(FOUR_BAR, omega2=25.0, loads=FOUR_BAR.loads[1:2])
+    assert meaning(ls.run_down(free, flywheel=0.2, of=["F32"])) == ["keeps_turning"]
+    damped = replace(FOUR_BAR, omega2=25.0, loads=FOUR_BAR.loads[3:])
+    assert meaning(ls.run_down(damped, flywheel=5.0, turns=2.0, of=["F32"])) == ["takes_more_turns"]
+
+
+# ------------------------------------------------------------------------------------------ designs and input
+
+
+def test_a_batch_is_its_designs():
+    """Each design has its own steps: with others beside it, every bit of them is the same, but for the last one."""
+    length = xr.DataArray([0.2, 0.22, 0.25], dims="rod", coords={"rod": [20, 22, 25]})
+    start = xr.DataArray([0.0, 90.0], dims="at")
+    scene = replace(FOUR_BAR, mechanism=replace(FOUR_BAR.mechanism, coupler=ls.Link(length, *ROD[1:])))
+    both = ls.run_up(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=start, until=0.5, of=["F32", "T12"])
+    assert both.F32_peak.dims == ("rod", "at") and both.rod.values.tolist() == [20, 22, 25]
+    one = replace(FOUR_BAR, mechanism=replace(FOUR_BAR.mechanism, coupler=ls.Link(0.25, *ROD[1:])))
+    alone = ls.run_up(one, MOTOR, ratio=RATIO, flywheel=WHEEL, start=90.0, until=0.5, of=["F32", "T12"])
+    steps, part = alone.sizes["step"] - 1, both.isel(rod=2, at=1)
+    for name in ("time", "angle", "speed", "acceleration"):
+        assert np.array_equal(part[name][:steps], alone[name][:steps]), name
+        assert np.isnan(part[name][steps + 1 :]).all()
+    for name in ("duration", "turns", "motor_work", "motor_heat", "F32_peak", "T12_peak", "F32_peak_at"):
+        np.testing.assert_allclose(part[name], alone[name], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ls.run_up(FOUR_BAR, 3.0), "motor = 3"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, until=1.5), "until = 1.5"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, ratio=0.0), "ratio = 0"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, turns=0.0), "turns = 0"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, of=["F23z"]), "F23z"),
+        (lambda: ls.run_up(replace(FOUR_BAR, drive="rocker"), MOTOR), 'drive = "rocker"'),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, threads=0), "threads = 0"),
+        (lambda: ls.run_down(FOUR_BAR, threads=0), "threads = 0"),
+        (lambda: ls.run_down(FOUR_BAR, until=1.0), "until = 1"),
+        (lambda: ls.run_down(replace(FOUR_BAR, omega2=0.0)), "omega2 = 0"),
+    ],
+)
+def test_input_that_is_not_allowed(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
