@@ -56,7 +56,7 @@ def _system(q: Design, t2: float):
     mbs = container.AddSystem()
     ground = mbs.AddObject(item.ObjectGround())
     A1, D1 = (mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=ground, localPosition=[x, 0, 0])) for x in (0.0, q.d))
-    (crank, A2, B2), (_, B3, C3), (_, D4, C4) = (_body(mbs, item, q, *link) for link in _links(q, t2))
+    (crank, A2, B2), (_, B3, C3), (_, D4, C4) = (body(mbs, item, q, *link) for link in links(q, t2))
     pins = [
         mbs.AddObject(item.ObjectJointRevolute2D(markerNumbers=list(pair)))
         for pair in ((A1, A2), (B2, B3), (C3, C4), (D1, D4))
@@ -73,7 +73,7 @@ def _system(q: Design, t2: float):
     return container, sensors
 
 
-def _links(q: Design, t2: float):
+def links(q: Design, t2: float):
     """Yield for crank, coupler and rocker: first pin and its velocity, angle and rate, mass and inertia, centre of
     gravity in the link, length; vectors as complex numbers."""
     t3, t4 = peers.position(q, t2)
@@ -84,7 +84,7 @@ def _links(q: Design, t2: float):
     yield q.d + 0j, 0j, t4, w4, q.m4, q.I4, q.u * np.exp(1j * np.radians(q.delta4)), q.c
 
 
-def _body(mbs, item, q: Design, pin, pin_velocity, angle, rate, mass, inertia, cg, length):
+def body(mbs, item, q: Design, pin, pin_velocity, angle, rate, mass, inertia, cg, length):
     """Add a rigid body; return its node, and the markers of its two pins."""
     arm = cg * np.exp(1j * angle)
     G, v = pin + arm, pin_velocity + 1j * rate * arm

@@ -54,9 +54,9 @@ def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     ax, system = grid(axes_or_new(ax)), units_of(ds)
     time, speed, torque = _between(ds)
     ax.plot(time, system.value(speed, "rad/s"), color=BLUE, label="crank speed")
-    if "steady_speed" in ds and np.isfinite(ds["steady_speed"]):
-        steady = np.sign(speed[-1]) * float(ds["steady_speed"])
-        ax.axhline(system.value(steady, "rad/s"), color=GREY, linestyle="--", linewidth=1.0, label="steady mean")
+    if "operating_speed" in ds and np.isfinite(ds["operating_speed"]):
+        usual = np.sign(speed[-1]) * float(ds["operating_speed"])
+        ax.axhline(system.value(usual, "rad/s"), color=GREY, linestyle="--", linewidth=1.0, label="operating point")
     ax.set(xlabel="time [s]", ylabel=f"crank speed $\\omega_2$ [{system.unit('rad/s')}]")
     ax.margins(x=0.0)
     lines = ax.get_lines()

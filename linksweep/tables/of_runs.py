@@ -13,7 +13,7 @@ from linksweep.tables.table import Part, Row, Table
 NUMBERS = {
     "duration": "it takes",
     "turns": "turns of the crank",
-    "steady_speed": "speed of the steady cycle",
+    "operating_speed": "speed of the operating point",
     "motor_work": "work of the motor",
     "motor_heat": "heat in the motor",
     "kinetic_energy": "kinetic energy",

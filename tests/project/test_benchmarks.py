@@ -30,6 +30,7 @@ GOALS = {
     "first": {0.3, 1.0, 1.5},
     "threads": {1.7},
     "derivatives": {5.0},
+    "run_up": set(),
 }
 
 

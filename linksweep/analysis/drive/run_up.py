@@ -11,8 +11,8 @@ import xarray as xr
 from linksweep.analysis.drive.drive_train import drive_train
 from linksweep.analysis.drive.motion_in_time import LASTS, NOT_STARTED, REACHED, SETTLES, STOPS, Run
 from linksweep.analysis.drive.motors.motor import AnyMotor
+from linksweep.analysis.drive.operating_point import operating_speed
 from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, turned
-from linksweep.analysis.drive.steady_cycle import steady_cycle
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.time_steps import GIVEN_UP
@@ -20,8 +20,6 @@ from linksweep.results.compute import require
 from linksweep.scene.designs.lazy import in_memory
 from linksweep.scene.scene import Scene
 
-ANGLES = 12
-"""Angles of the steady cycle: its mean speed does not depend on them."""
 UNTIL = Rule("dimensionless", above=0.0, at_most=1.0)
 OUTCOMES = {
     REACHED: "ok",
@@ -58,8 +56,9 @@ def run_up(
     flywheel : float or DataArray, default 0.0
         Moment of inertia of a flywheel on the crank's shaft [kg m²].
     until : float, default 0.99
-        Speed at which the run-up is over, per the mean speed over time of the steady cycle [1], as
-        `linksweep.steady_cycle` returns it.
+        Speed at which the run-up is over, per that of the operating point [1]: there the motor gives the mean torque
+        that the machine takes over a cycle at constant speed. A machine without one is to reach that part of the speed
+        at which its motor no longer drives.
     start : float or DataArray, default 0.0
         Crank angle from which it starts [degree].
     of : str or iterable of str, default None
@@ -75,8 +74,7 @@ def run_up(
     Dataset
         Results over the design dims:
 
-        - `duration` [s] and `turns` [1] until the speed is first reached; `steady_speed` [rad/s], the mean of the
-          steady cycle
+        - `duration` [s] and `turns` [1] until the speed is first reached; `operating_speed` [rad/s]
         - `motor_work`, `motor_heat`, `kinetic_energy` [J]: work on the motor's shaft, heat in its rotor or winding (NaN
           of a motor whose curve does not tell), and energy of the machine with flywheel and rotor at the end
         - of each quantity `F32_peak`, the largest magnitude on the way, `F32_peak_at` [degree] and `F32_peak_time` [s]
@@ -110,11 +108,13 @@ def run_up(
     scene, until = in_memory(scene), checked_number("until", until, UNTIL)
     start, turns, names = checked(scene, start, turns, of, threads)
     designs = Designs(scene, drive_train(scene, motor, ratio, flywheel), start, threads)
-    cycle = steady_cycle(scene, motor, ratio=ratio, flywheel=flywheel, theta2=ANGLES)
-    steady = designs.flat(cycle["speed_mean"])
-    top = designs.flat(abs(designs.scene.omega2))
-    target = until * np.where(np.isfinite(steady), steady, top)
+    usual, top = operating_speed(designs), designs.top_speed
+    target = until * np.where(np.isfinite(usual), usual, top)
     run = Run(designs.crank(), np.zeros(designs.count), target, 1.0, turns, top)
     results = turned(run) | fed(designs, run)
-    results["steady_speed"] = (steady, "rad/s", "mean over time of the crank's speed in the steady cycle")
+    results["operating_speed"] = (
+        usual,
+        "rad/s",
+        "speed at which the motor gives the mean torque that the machine takes",
+    )
     return described(scene, designs, run, names, OUTCOMES, results, "linksweep.run_up(scene, ...)")

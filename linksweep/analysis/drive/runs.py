@@ -38,13 +38,17 @@ class Designs:
 
     def __init__(self, scene: Scene, train: DriveTrain, start: Number, threads: int | None) -> None:
         self.train, self.threads = train, threads
-        top = train.scene.omega2 + 0.0 * start  # with all design dims
-        self.scene = replace(train.scene, omega2=top)
+        self.scene = replace(train.scene, omega2=train.scene.omega2 + 0.0 * start)  # over all design dims
         self.sizes = self.scene.at_one_angle.inputs.sizes
         self.order = tuple(dict.fromkeys((*scene.at_one_angle.inputs.sizes, *self.sizes)))
         self.count = int(np.prod([*self.sizes.values()], dtype=int))
         self.start, self.ratio = self.flat(start), self.flat(train.ratio)
         self.inertia = self.flat(train.flywheel) + self.ratio**2 * self.flat(train.motor.inertia)
+
+    @property
+    def top_speed(self) -> Array:
+        """Speeds of the cranks at which their motors no longer drive [rad/s]."""
+        return abs(self.flat(self.scene.omega2))
 
     def flat(self, number: Any) -> Array:
         """Return a number, or an array with design dims, for each design."""

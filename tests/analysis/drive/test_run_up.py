@@ -136,7 +136,16 @@ def test_a_flywheel_on_a_motor_with_a_straight_curve():
     xr.testing.assert_allclose(run.motor_work, energy * part**2, rtol=1e-9)
     xr.testing.assert_allclose(run.kinetic_energy, energy * part**2, rtol=1e-12)
     xr.testing.assert_allclose(run.motor_heat, energy * (1.0 - (1.0 - part) ** 2), rtol=1e-9)
-    xr.testing.assert_allclose(run.steady_speed, speed + 0.0 * wheel, rtol=1e-10)
+    xr.testing.assert_allclose(run.operating_speed, speed + 0.0 * wheel, rtol=1e-10)
+
+
+def test_the_operating_point_by_hand():
+    """A damper takes c ω: on a straight curve, M0 (1 − i ω/ω0) i = c ω; a load of constant torque besides."""
+    loads = [ls.TorsionDamper("ground", "crank", coefficient=0.3), ls.Load("crank", torque=-2.0)]
+    run = ls.run_up(replace(FLYWHEEL, loads=loads), MOTOR, ratio=RATIO, until=0.9, of=["F12"])
+    speed = (1.5 * RATIO - 2.0) / (1.5 * RATIO**2 / 120.0 + 0.3)
+    np.testing.assert_allclose(run.operating_speed, speed, rtol=1e-12)
+    np.testing.assert_allclose(run.speed[-1], 0.9 * speed, rtol=1e-12)
 
 
 def test_heat_of_an_induction_motor_is_the_energy_of_its_flywheel():
@@ -184,8 +193,8 @@ def meaning(run):
 
 
 def test_a_weak_motor_does_not_start_or_stalls():
-    """Against a torque of 3 N m and the weight of the crank, which are 3 + m g s cos(θ + 20°)."""
-    stall = xr.DataArray([2.0, 3.1, 8.0], dims="motor")
+    """Against 3 N m and the weight of the crank, m g s cos θ; of the motors that start, one is too weak on average."""
+    stall = xr.DataArray([2.0, 2.5, 8.0], dims="motor")
     motor = ls.DCMotor(stall_torque=stall, no_load_speed=120.0)
     light = replace(FLYWHEEL, mechanism=replace(FLYWHEEL.mechanism, crank=ls.Link(0.08, 2.0, 5e-3, 0.05, 0.0)))
     weighed = replace(light, gravity=(0.0, -9.81), loads=[ls.Load("crank", torque=-3.0)])
