@@ -2,9 +2,9 @@
 it.
 
 Each function draws into `ax` where one is passed, and returns the axes; it neither shows a window nor changes
-matplotlib's settings. Marked peaks are exact where the Dataset is of one design and holds its scene; else they are the
-largest samples. Colours are Okabe and Ito's, which colour-blind readers tell apart; lines also differ in dashes, so
-that a force on top of another is seen, in grey too.
+matplotlib's settings. Marked peaks are exact where the Dataset holds its scene, of several designs those of each; else
+they are the largest samples. Colours are Okabe and Ito's, which colour-blind readers tell apart; lines also differ in
+dashes, so that a force on top of another is seen, in grey too.
 """
 
 from typing import Any

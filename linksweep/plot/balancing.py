@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import xarray as xr
 
 from linksweep.plot.kit import signals
@@ -14,6 +13,7 @@ from linksweep.plot.kit.locus import draw_cross
 from linksweep.plot.kit.style import crank_angles, grid, panels
 from linksweep.results.compute import require_scene
 from linksweep.results.origin.in_shown_units import in_shown_units
+from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import shown_units
@@ -68,16 +68,16 @@ def balance(before: Scene, after: Scene, *, theta2: int = 720) -> Figure:
     pins = drawing.pin_forces
     scenes = {"before": before, "after": after}
     cycles = {name: _cycle(scene, theta2, [*SHAKING, drive, *pins]) for name, scene in scenes.items()}
+    largest = {name: _largest(scene, ["Fs", "Ms", drive, *pins]) for name, scene in scenes.items()}
     unit = {name: str(item.attrs.get("units", "")) for name, item in cycles["before"].items()}
-    worst = max(pins, key=lambda pin: float(np.nanmax(cycles["before"][pin].values)))
+    worst = max(pins, key=lambda pin: largest["before"][pin])
     with panels(2, 2, figsize=(7.1, 6.0)) as (figure, ((above, beside), (below, last))):
-        _hodograph(above, cycles)
-        _over_angle(beside, cycles, "Ms", "Shaking moment about A", f"$M_s$ [{unit['Ms']}]")
+        _hodograph(above, cycles, largest)
+        _over_angle(beside, cycles, largest, "Ms", "Shaking moment about A", f"$M_s$ [{unit['Ms']}]")
         kind = signals.drive_kind(drive).capitalize()
-        _over_angle(below, cycles, drive, kind, f"{signals.symbol(drive)} [{unit[drive]}]".strip())
-        _over_angle(
-            last, cycles, worst, f"Load of {drawing.joint_text(worst)}", f"{signals.symbol(worst)} [{unit[worst]}]"
-        )
+        _over_angle(below, cycles, largest, drive, kind, f"{signals.symbol(drive)} [{unit[drive]}]".strip())
+        title = f"Load of {drawing.joint_text(worst)}"
+        _over_angle(last, cycles, largest, worst, title, f"{signals.symbol(worst)} [{unit[worst]}]")
     return figure
 
 
@@ -85,32 +85,39 @@ def _cycle(scene: Scene, theta2: int, names: list[str]) -> xr.Dataset:
     return in_shown_units(sweep(scene, theta2, of=names), shown_units(scene.units))
 
 
-def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset]) -> None:
+def _largest(scene: Scene, names: list[str]) -> dict[str, float]:
+    """Return the exact largest magnitude of each quantity in the cycle, in the unit in which it is shown."""
+    worst = in_shown_units(peaks(scene, of=names), shown_units(scene.units))
+    return {name: float(worst[f"{name}_peak"]) for name in names}
+
+
+def _hodograph(ax: Axes, cycles: dict[str, xr.Dataset], largest: dict[str, dict[str, float]]) -> None:
     """Draw the shaking force's components against each other."""
     draw_cross(ax)
     for name, cycle in cycles.items():
         _, x, y = signals.revolution(cycle, cycle["Fsx"], cycle["Fsy"])
-        ax.plot(x, y, label=_legend_text(name, np.hypot(x, y)), **STYLES[name])
+        ax.plot(x, y, label=_legend_text(name, largest[name]["Fs"]), **STYLES[name])
     unit = signals.unit(cycle["Fsx"], "N")
     ax.set(xlabel=f"$F_{{sx}}$ [{unit}]", ylabel=f"$F_{{sy}}$ [{unit}]")
     ax.set_title("Shaking force", loc="left")
     _legend(ax)
 
 
-def _over_angle(ax: Axes, cycles: dict[str, xr.Dataset], name: str, title: str, label: str) -> None:
+def _over_angle(
+    ax: Axes, cycles: dict[str, xr.Dataset], largest: dict[str, dict[str, float]], name: str, title: str, label: str
+) -> None:
     grid(ax)
     for when, cycle in cycles.items():
         angles, values = signals.revolution(cycle, cycle[name])
-        ax.plot(angles, values, label=_legend_text(when, values), **STYLES[when])
+        ax.plot(angles, values, label=_legend_text(when, largest[when][name]), **STYLES[when])
     crank_angles(ax, angles)
     ax.set_ylabel(label)
     ax.set_title(title, loc="left")
     _legend(ax)
 
 
-def _legend_text(when: str, values: np.ndarray) -> str:
+def _legend_text(when: str, largest: float) -> str:
     """Return the legend of a curve, with its largest value; a force that is balanced away leaves its rounding."""
-    largest = float(np.nanmax(np.abs(values)))
     return f"{when}, up to {signals.number(largest if largest > ROUNDING else 0.0)}"
 
 

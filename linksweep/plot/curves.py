@@ -6,7 +6,7 @@ axis ends at a usual size.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ from linksweep.plot.kit.colors import (
 from linksweep.plot.kit.drawings import drawing_of_results
 from linksweep.plot.kit.style import axes_or_new, crank_angles, grid
 from linksweep.plot.kit.with_peaks import with_peaks
+from linksweep.results.origin.in_shown_units import units_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -91,12 +92,12 @@ def forces(ds: xr.Dataset, of: Iterable[str] | None = None, *, ax: Axes | None =
     >>> ls.sweep(ls.example("press")).linksweep.forces(["F12", "F32"]).get_ylabel()
     'pin force [N]'
     """
-    ds = with_peaks(ds)
+    samples, ds = ds, with_peaks(ds)
     names = force_names(ds, of)
     by_name = {name: signals.magnitude(ds, name) for name in names}
     if len(names) > 1:
         signals.require_one_design(by_name.values())
-    curves = _curves(ds, by_name)
+    curves = _curves(samples, ds, by_name, signals.magnitude)
     peaks = [signals.peak(curve.angles, curve.values) for curve in curves]
     top = signals.scale([curve.values for curve in curves], peaks)
     ax = axes_or_new(ax)
@@ -142,10 +143,10 @@ def torque(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ls.sweep(ls.example("press")).linksweep.torque().get_ylabel()
     'drive torque $T_{12}$ [N m]'
     """
-    ds = with_peaks(ds)
+    samples, ds = ds, with_peaks(ds)
     name = signals.drive_name(ds)
     units = signals.unit(ds[name], "N m")
-    curves = _curves(ds, {name: ds[name]})
+    curves = _curves(samples, ds, {name: ds[name]}, lambda one, name: one[name])
     extremes = [(curve, _extremes(curve)) for curve in curves]
     every = [peak for _, pair in extremes for peak in pair.values()]
     size = signals.scale([curve.values for curve in curves], every)
@@ -187,18 +188,27 @@ def kind_of(drawing: Drawing, names: Iterable[str]) -> str:
     return " and ".join(dict.fromkeys("slide" if kind in slides and len(slides) > 1 else kind for kind in kinds))
 
 
-def _curves(ds: xr.Dataset, by_name: dict[str, xr.DataArray]) -> list[Curve]:
-    """Return the lines to draw: one for each signal, or of a single signal one for each design."""
+def _curves(
+    samples: xr.Dataset,
+    ds: xr.Dataset,
+    by_name: dict[str, xr.DataArray],
+    signal_of: Callable[[xr.Dataset, str], xr.DataArray],
+) -> list[Curve]:
+    """Return the lines to draw, with their exact peaks: one for each signal of `ds`, or of one signal for each design.
+
+    `samples` is the cycle of several designs, each of which has peaks of its own.
+    """
     curves: list[Curve] = []
     joints = drawing_of_results(ds).joint_of
     for name, signal in by_name.items():
-        for design, values in signals.designs(signal).items():
+        for design, place in signals.designs(signal, units_of(ds)).items():
+            one = with_peaks(samples.isel(place)) if place else ds
             color, dashes = STYLES[len(curves) % len(STYLES)]
             color = force_color(name) if len(by_name) > len(FORCE_COLORS) else color
             text = design or f"{signals.symbol(name)} ({joints.get(name, 'drive')})"
             style = {"color": color, "linestyle": dashes}
             symbol_at_peak = signals.symbol(name) if len(by_name) > 1 else ""
-            angles, row = signals.revolution(ds, values)
+            angles, row = signals.revolution(one, signal_of(one, name))
             curves.append(Curve(name, text, angles, row, style, symbol_at_peak))
     return curves
 

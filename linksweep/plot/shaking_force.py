@@ -53,7 +53,8 @@ def hodograph(ds: xr.Dataset, of: str = "Fs", *, ax: Axes | None = None) -> Axes
     >>> ls.plot.hodograph(ls.sweep(ls.example("press"), of=["Fsx", "Fsy"])).get_xlabel()
     'shaking force $F_{sx}$ [N]'
     """
-    of, ds = name_in_results(ds, of), with_peaks(ds)
+    of = name_in_results(ds, of)
+    ds = with_peaks(ds, of)
     missing = [part for part in (f"{of}x", f"{of}y") if part not in ds]
     refuse([f"ds has no {part}: sweep with of=[..., {part!r}]" for part in missing])
     angles, x, y = signals.revolution(ds, ds[f"{of}x"], ds[f"{of}y"])

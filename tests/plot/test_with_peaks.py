@@ -184,3 +184,50 @@ def test_a_lap_marks_the_extremes_between_its_samples():
     marks = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_label() in ("_max", "_min")}
     np.testing.assert_allclose(marks["_max"], [0.0, 700.0 * (1e4 / 30.0 + 9.81)], rtol=1e-12, atol=1e-6)
     np.testing.assert_allclose(marks["_min"], [180.0, 700.0 * (1e4 / 30.0 - 9.81)], rtol=1e-12, atol=1e-4)
+
+
+def lengths() -> ls.Scene:
+    return replace(
+        ls.example("press"),
+        mechanism=replace(
+            ls.example("press").mechanism,
+            coupler=ls.Bar(xr.DataArray([0.2, 0.22, 0.24], dims="coupler"), 0.02, 0.02, 7750.0),
+        ),
+    )
+
+
+def test_each_of_several_designs_has_its_exact_peak():
+    scene = lengths()
+    cycle, worst = ls.sweep(scene, 24), ls.peaks(scene, of=["F32", "T12"])
+    ax = cycle.linksweep.forces(["F32"])
+    marks = [line.get_xydata()[0] for line in ax.lines if line.get_label() == "_peak F32"]
+    expected = np.transpose([worst.F32_peak_at, worst.F32_peak])
+    np.testing.assert_allclose(sorted(map(tuple, marks)), sorted(map(tuple, expected)), rtol=1e-9, atol=2e-7)
+    assert cycle.F32.max("theta2").values == pytest.approx(worst.F32_peak.values, rel=0.1)  # but no sample is a peak
+    assert not np.isin(cycle.F32.max("theta2"), worst.F32_peak).any()
+    curves = [line for line in ax.lines if line.get_label().startswith("coupler = ")]
+    assert len(curves) == 3 and max(len(line.get_xdata()) for line in curves) > 25
+    ax = cycle.linksweep.torque()
+    tops = sorted(line.get_ydata()[0] for line in ax.lines if line.get_label() == "_peak T12")
+    np.testing.assert_allclose(tops, sorted([*worst.T12_max.values, *worst.T12_min.values]), rtol=1e-9)
+
+
+def test_a_hodograph_marks_the_exact_peak_of_its_vector():
+    scene = ls.example("press")
+    for of in ("Fs", "F43"):
+        worst = ls.peaks(scene, of=[of])
+        ax = ls.sweep(scene, 24, of=[f"{of}x", f"{of}y"]).linksweep.hodograph(of)
+        (mark,) = [line.get_xydata()[0] for line in ax.lines if line.get_label() == f"_peak {of}"]
+        assert np.hypot(*mark) == pytest.approx(float(worst[f"{of}_peak"]), rel=1e-9)
+
+
+def test_before_and_after_balancing_state_exact_peaks():
+    before = ls.example("press")
+    after = ls.with_counterweights(before, ls.counterweights(before, radius=0.06))
+    figure = ls.plot.balance(before, after, theta2=24)
+    for scene, when in ((before, "before"), (after, "after")):
+        worst = ls.peaks(scene, of=["Fs", "Ms", "T12", "F43"])
+        legends = [" ".join(text.get_text() for text in ax.get_legend().get_texts()) for ax in figure.axes]
+        for name, legend in zip(("Fs", "Ms", "T12", "F43"), legends, strict=True):
+            peak = float(worst[f"{name}_peak"])
+            assert f"{when}, up to {number(peak if peak > 1e-9 else 0.0)}" in legend

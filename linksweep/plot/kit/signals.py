@@ -13,6 +13,7 @@ from linksweep.base.validate import refuse
 from linksweep.chains.between_links import force_name, pair_of, reaction
 from linksweep.plot.kit.drawings import drawing_of_results, efforts
 from linksweep.scene.grid import whole_turns
+from linksweep.scene.shown_units import UnitSystem
 from linksweep.tables.cells import number as number
 
 INDEX = "theta2"
@@ -103,16 +104,20 @@ def require_one_design(signals: Iterable[xr.DataArray]) -> None:
     refuse([f"there are several designs, over {over}: a plot shows one; {choice}"] if sizes else [])
 
 
-def designs(signal: xr.DataArray) -> dict[str, xr.DataArray]:
-    """Return the signal of each design by a label: one, or up to six along one dim. Raises ValueError for more."""
+def designs(signal: xr.DataArray, system: UnitSystem) -> dict[str, dict[str, int]]:
+    """Return the place of each design of a signal by its label: one, or up to six along one dim.
+
+    Raises ValueError for more. Labels are in the units in which results are shown.
+    """
     extra = [dim for dim in signal.dims if dim != INDEX]
     if len(extra) != 1 or signal.sizes[extra[0]] > MOST_LINES:
         require_one_design([signal])
-        return {"": signal}
-    dim = extra[0]
+        return {"": {}}
+    dim = str(extra[0])
     labels = signal[dim].values  # positions where the dim has no coordinate
     units = signal[dim].attrs.get("units", "") if dim in signal.coords else ""
-    return {f"{dim} = {label_text(v)} {units}".rstrip(): signal.isel({dim: k}) for k, v in enumerate(labels)}
+    numbers = system.value(labels, units) if labels.dtype.kind == "f" else labels
+    return {f"{dim} = {label_text(v)} {system.unit(units)}".rstrip(): {dim: k} for k, v in enumerate(numbers)}
 
 
 def label_text(value: object) -> str:

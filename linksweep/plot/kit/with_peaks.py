@@ -24,23 +24,23 @@ from linksweep.scene.scene import Scene
 
 ASIDE = 1e-7
 """Distance from a peak [degree] at which its one-sided limit agrees in all digits that a plot prints."""
-SHAKING = ("Fsx", "Fsy")
 EQUAL = 1e-9
 """Largest difference between a sample and its scene's value, relative to the largest; an altered sample has more."""
 
 
-def with_peaks(ds: xr.Dataset) -> xr.Dataset:
+def with_peaks(ds: xr.Dataset, *more: str) -> xr.Dataset:
     """Return a cycle, or a part of it, with samples at its exact peaks, in the units in which it is shown.
 
-    To a Dataset that was altered, or has several designs, no samples are added.
+    `more` are quantities besides those whose peaks `linksweep.peaks` returns by default. To a Dataset that was altered,
+    or has several designs, no samples are added.
 
     Raises ValueError for a Dataset that is not over the crank angle.
     """
     require_angles(ds)
-    return results_in_shown_units(_with_samples(ds))
+    return results_in_shown_units(_with_samples(ds, more))
 
 
-def _with_samples(ds: xr.Dataset) -> xr.Dataset:
+def _with_samples(ds: xr.Dataset, more: tuple[str, ...]) -> xr.Dataset:
     """Return a cycle with samples at its exact peaks, where its scene has them."""
     if {*ds.dims} != {INDEX} or WHOLE_TURN in ds.attrs:
         return ds
@@ -54,16 +54,17 @@ def _with_samples(ds: xr.Dataset) -> xr.Dataset:
     turn = full_turn(np.sort(angles))
     ends = float(angles.min()), float(angles.min() + turn if turn else angles.max())
     part = None if ends[1] - ends[0] >= scene.period else ends
-    worst = _peaks(scene, tuple(name for name in ["Fs"] if {*SHAKING} <= {*ds.variables}), part)
+    known = tuple(name for name in more if name in scene.table.quantity)
+    worst = _peaks(scene, known, part)
     new = np.setdiff1d(_around(worst, ends, scene.period), angles)
     names = [str(name) for name in ds.data_vars if name in scene.table.quantity]
     if not len(new) or not names:
         return ds
     own = ds[[*names, *(["status"] if "status" in ds else [])]]
-    more = _samples(scene, own, new)
-    if more is None:
+    added = _samples(scene, own, new)
+    if added is None:
         return ds
-    bare = [part.reset_coords(drop=True) for part in (own, more)]
+    bare = [part.reset_coords(drop=True) for part in (own, added)]
     joined = xr.concat([part.broadcast_like(part[INDEX]) for part in bare], INDEX).sortby(INDEX)
     labels = {name: label for name, label in ds.coords.items() if not label.dims}
     _raise_to_infinity(joined, worst, scene.period)
