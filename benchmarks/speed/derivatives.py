@@ -1,16 +1,23 @@
-"""Time derivatives to ten parameters: their kernel against that of the quantity alone, and those of an exact peak."""
+"""Time derivatives: their kernels against those of the quantity alone, to ten parameters and to the crank angle.
+
+The latter is what a Newton step of the peak search would take, of which the row's note says how many it could save.
+"""
 
 from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
+
 import linksweep as ls
 from benchmarks.cases import Size
+from benchmarks.speed.exact import crank_rockers
 from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import SHARE, Row, race
+from linksweep.engine.peaks.search import SAMPLES
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import compute
-from linksweep.scene.derivatives.differentiated import differentiated, number_problem
+from linksweep.scene.derivatives.differentiated import ANGLE, differentiated, number_problem
 from linksweep.scene.parameters import free
 
 GOALS = {"press": 5.0, "engine": 5.0, "watt-2": 5.0, "jansen-leg": 5.0}
@@ -20,7 +27,7 @@ PARAMETERS = 10
 
 
 def rows(size: Size) -> list[Row]:
-    return [_row(name, goal, size) for name, goal in GOALS.items()]
+    return [*(_row(name, goal, size) for name, goal in GOALS.items()), _newton_step(size)]
 
 
 def _row(name: str, goal: float, size: Size) -> Row:
@@ -29,13 +36,35 @@ def _row(name: str, goal: float, size: Size) -> Row:
     force = f"{scene.mechanism.peak_quantities(scene.drive)[1]}_squared"
     paths = tuple(path for path in free(scene) if path.partition(".")[0] in scene.mechanism.roles)
     paths = tuple(path for path in paths if not number_problem(scene, path))[:PARAMETERS]
+    return _against_itself(scene, force, paths, f"{len(paths)} derivatives", goal, size, name)
+
+
+def _newton_step(size: Size) -> Row:
+    """Return the row of a force with its slope to the crank angle, and how many evaluations follow the samples of a
+    search, of random crank-rockers."""
+    taken = ls.peaks(crank_rockers(max(size.designs // 10, 1), 20.0), of=["F32_samples"]).F32_samples.values
+    note = f"a search takes {SAMPLES} samples and {np.mean(taken) - SAMPLES:.1f} evaluations after them"
+    return _against_itself(ls.example("press"), "F32_squared", (ANGLE,), "its slope", None, size, "press", note=note)
+
+
+def _against_itself(
+    scene: ls.Scene,
+    force: str,
+    paths: tuple[str, ...],
+    words: str,
+    goal: float | None,
+    size: Size,
+    name: str,
+    **more: str,
+) -> Row:
+    """Return the row of a quantity and its derivatives against the quantity alone."""
     angles = max(size.angles // 10, 1)
     grid = scene.grid(angles)
     sampled, own = scene.at(grid), differentiated(scene, (force,), paths).at(grid)
     every = (force, *(derivative_of(force, path) for path in paths))
-    plain, slopes = f"{name}, {force}", f"{name}, {force} and {len(paths)} derivatives"
+    plain, slopes = f"{name}, {force}", f"{name}, {force} and {words}"
     with way("compiled"):
         alone = kernel_of(partial(compute, sampled, grid, (force,), 1))
         both = kernel_of(partial(compute, own, grid, every, 1))
         timed = race({slopes: both.call, plain: alone.call}, size, angles)
-    return timed.row(SHARE, slopes, plain, goal)
+    return timed.row(SHARE, slopes, plain, goal, **more)
