@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.conditions import USUAL, Conditions
 from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, result_value, whole_name
 from linksweep.base.validate import as_float, quote, refuse
 from linksweep.scene.parameters import replaced
@@ -37,6 +38,7 @@ class ResultFunction:
 
     base: Scene
     paths: tuple[str, ...]
+    conditions: Conditions = USUAL
     _kept: dict[tuple[str, bytes], Derived] = field(default_factory=dict, repr=False)
 
     def scene(self, x: np.ndarray) -> Scene:
@@ -50,7 +52,7 @@ class ResultFunction:
 
     def value(self, name: str, x: np.ndarray, worst: str) -> Any:
         """Return the worst ("max" or "min") of a result at x: a number, or one for each column of x."""
-        values = result_value(self.designs(x), name)
+        values = result_value(self.designs(x), name, conditions=self.conditions)
         others = [dim for dim in values.dims if dim != CANDIDATES]
         numbers = getattr(values, worst)(others, skipna=False).values
         return float(numbers.reshape(-1)[0]) if x.ndim == 1 else np.broadcast_to(numbers, x.shape[1:]).copy()
@@ -61,7 +63,7 @@ class ResultFunction:
         if key not in self._kept:
             while len(self._kept) >= KEPT:
                 self._kept.pop(next(iter(self._kept)))
-            self._kept[key] = derived(self.designs(x), name, self.paths)
+            self._kept[key] = derived(self.designs(x), name, self.paths, conditions=self.conditions)
         result = self._kept[key]
         arrays = xr.broadcast(result.value, *(slope.drop_attrs() for slope in result.slopes.values()))
         values, *slopes = (array.values.ravel() for array in arrays)
@@ -69,13 +71,13 @@ class ResultFunction:
         return np.array([slope[k] for slope in slopes])
 
 
-def checked_bounds(scene: Scene, subject_to: Any) -> dict[str, Bounds]:
+def checked_bounds(scene: Scene, subject_to: Any, conditions: Conditions = USUAL) -> dict[str, Bounds]:
     """Return the bounds of results by whole name; ValueError for unknown names, and for what is no pair of bounds."""
     if subject_to is None:
         return {}
     if not isinstance(subject_to, Mapping):
         refuse([f'subject_to = {quote(subject_to)}: must be bounds by result, as in {{"swing": (50, None)}}'])
-    problems = [problem for name in subject_to for problem in result_problems(scene, "subject_to", name)]
+    problems = [problem for name in subject_to for problem in result_problems(scene, "subject_to", name, conditions)]
     for name, ends in subject_to.items():
         pair = isinstance(ends, tuple | list) and len(ends) == 2
         sound = pair and all(end is None or as_float(end) is not None for end in ends) and tuple(ends) != (None, None)

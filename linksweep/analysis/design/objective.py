@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.conditions import USUAL, Conditions, checked_conditions
 from linksweep.analysis.design.constraints import (
     CANDIDATES,
     Bounds,
@@ -19,6 +20,7 @@ from linksweep.analysis.design.constraints import (
 )
 from linksweep.analysis.design.result_derivatives import result_names
 from linksweep.analysis.design.searches import local_optimum
+from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.units import quantity
 from linksweep.base.validate import name_problems, quote, refuse
 from linksweep.results.compute import by_name, requested, require_scene
@@ -53,6 +55,8 @@ class Objective:
         1 where it is minimized, -1 where it is maximized [1].
     subject_to : mapping of str to pair, default empty
         Bounds of results by name, each in its result's unit [any].
+    conditions : Conditions
+        Speed fluctuation and bearings on which some of these results depend.
 
     Examples
     --------
@@ -71,6 +75,7 @@ class Objective:
     target: str = ""
     sign: float = 1.0
     subject_to: Mapping[str, Bounds] = field(default_factory=dict)
+    conditions: Conditions = USUAL
 
     @property
     def x0(self) -> np.ndarray:
@@ -83,7 +88,7 @@ class Objective:
     @cached_property
     def function(self) -> ResultFunction:
         """Results of the scene as functions of the parameters."""
-        return ResultFunction(self.base, tuple(self.ranges))
+        return ResultFunction(self.base, tuple(self.ranges), self.conditions)
 
     @property
     def constraints(self) -> list[Any]:
@@ -246,6 +251,8 @@ def objective(
     constraint: Measure | None = None,
     of: Iterable[str] | None = None,
     subject_to: Mapping[str, tuple[float | None, float | None]] | None = None,
+    fluctuation: float = 0.02,
+    pins: Mapping[str, Bearing] | None = None,
     **options: Any,
 ) -> Objective:
     """Make a function of a scene's parameters for ``scipy.optimize.differential_evolution(vectorized=True)``.
@@ -272,6 +279,10 @@ def objective(
         Least and largest value of results by name, each in the result's unit [any], None for no bound:
         {"transmission_angle_min": (40, None), "swing": (50, None)}, names as in `linksweep.sensitivities`. They are in
         `.constraints`, and in `.optimum()`.
+    fluctuation : float, default 0.02
+        Coefficient of speed fluctuation of "flywheel_inertia" [1].
+    pins : mapping of str to Bearing, default None
+        Bearings, {"B": ls.Bearing(capacity=...)}, of which "L10_B" and "L10h_B" take the capacity.
     **options
         Further arguments of `peaks`, such as theta2.
 
@@ -314,10 +325,11 @@ def objective(
     measure = partial(_measured, target, 1.0 if path == "minimize" else -1.0)
     if isinstance(subject_to, Mapping):
         subject_to = by_name("subject_to", subject_to, scene)
-    bounds = checked_bounds(scene, subject_to)
+    conditions = checked_conditions(scene, fluctuation, pins)
+    bounds = checked_bounds(scene, subject_to, conditions)
     result = target if isinstance(target, str) and target in result_names(scene) else ""
     sign = 1.0 if path == "minimize" else -1.0
-    ready = Objective(scene, ranges, measure, constraint, names, options, result, sign, bounds)
+    ready = Objective(scene, ranges, measure, constraint, names, options, result, sign, bounds, conditions)
     _try(ready, target, path)
     return ready
 

@@ -1,4 +1,4 @@
-"""Derivatives of single results to parameters: peaks, means, strokes, transmission angles, the flywheel.
+"""Derivatives of single results to parameters: peaks, means, strokes, transmission angles, flywheel, life of bearings.
 
 An extreme has the derivative of its quantity at its own angle (`linksweep.results.derivatives.of_peaks`), a mean that
 of its integrals (`of_means`), and others follow:
@@ -18,19 +18,26 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.conditions import USUAL, Conditions, life_names, life_of
 from linksweep.analysis.design.geometry import geometry
+from linksweep.analysis.design.timing import TIME_RATIO, time_ratio_slopes
 from linksweep.analysis.design.travel import rate_of
 from linksweep.analysis.drive.flywheel import flywheel, flywheel_slopes
+from linksweep.analysis.pins.bearing import TEXTS
+from linksweep.analysis.pins.life_derivatives import life, life_derivatives
 from linksweep.base.validate import name_problems
 from linksweep.engine.run import Field
 from linksweep.results.compute import quantity_problems
-from linksweep.results.derivatives.of_means import mean_derivatives, moving_unknown
+from linksweep.results.derivatives.of_integrals import moving_unknown
+from linksweep.results.derivatives.of_means import mean_derivatives
 from linksweep.results.derivatives.of_peaks import (
+    ARC_END,
     EQUAL,
     JUMP,
     NONE,
     OK,
     TIE,
+    UNBOUNDED,
     peak_derivatives,
     turning_point_derivatives,
     unlike,
@@ -45,7 +52,10 @@ OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
 """The position of which a closed form gives the travel."""
 TRAVEL = "_travel"
 FLYWHEEL = "flywheel_inertia"
-OF_MOTION = "transmission_angle"
+MOTION = "omega2", "alpha2"
+"""Parameters that move no place."""
+STATUS_OF_LIFE = np.array([OK, ARC_END, NONE, UNBOUNDED, NONE])
+"""Status of the derivatives of a life, by the status of the life: the ends of a part of a revolution move."""
 
 
 class Derived(NamedTuple):
@@ -70,26 +80,33 @@ class Derived(NamedTuple):
 
 
 def derived(
-    scene: Scene, name: str, to: tuple[str, ...], threads: int | None = None, fluctuation: float = 0.02
+    scene: Scene, name: str, to: tuple[str, ...], threads: int | None = None, conditions: Conditions = USUAL
 ) -> Derived:
-    """Return a result by its name, with its derivatives to parameters; `fluctuation` is that of a flywheel."""
+    """Return a result by its name, with its derivatives to parameters."""
     scene = with_sections(scene, name)
     if name in OUTPUT or name.endswith(TRAVEL):
         return _travel(scene, name, to, threads)
+    if name.endswith(TIME_RATIO):
+        return _time_ratio(scene, name, to, threads)
     if name == FLYWHEEL:
-        return _flywheel(scene, to, threads, fluctuation)
+        return _flywheel(scene, to, threads, conditions.fluctuation)
+    if name in life_names(scene):
+        return _life(scene, name, to, threads, conditions)
     stem, end = split(scene, name)
     if end in ("mean", "rms"):
         return _mean(scene, stem, end, to, threads)
     return _peak(scene, stem, end, to, threads)
 
 
-def result_value(scene: Scene, name: str, threads: int | None = None, fluctuation: float = 0.02) -> xr.DataArray:
+def result_value(scene: Scene, name: str, threads: int | None = None, conditions: Conditions = USUAL) -> xr.DataArray:
     """Return a result by its name."""
-    if name in OUTPUT or name.endswith(TRAVEL):
+    if name in OUTPUT or name.endswith((TRAVEL, TIME_RATIO)):
         return _motion(scene, name, threads)[1][name]
     if name == FLYWHEEL:
-        return flywheel(scene, fluctuation=fluctuation, threads=threads).flywheel_inertia
+        return flywheel(scene, fluctuation=conditions.fluctuation, threads=threads).flywheel_inertia
+    if name in life_names(scene):
+        word, pin = life_of(name)
+        return life(scene, pin, conditions.bearing(pin), threads)[word]
     stem, end = split(scene, name)
     of = f"{stem}_{end}" if end in ("mean", "rms") else stem
     return peaks(scene, of=[of], threads=threads)[f"{stem}_{end}"]
@@ -100,13 +117,16 @@ def result_names(scene: Scene) -> list[str]:
     quantities = scene.table.quantity
     signed = [name for name, q in quantities.items() if not q.squared and name != "cond"]
     positions = [n for n in signed if quantities[n].units in ("m", "degree") and rate_of(n) in scene.table.maker]
-    outputs = [name for name in OUTPUT if name in _findings(scene)]
-    others = [*(f"{name}{TRAVEL}" for name in positions), *([FLYWHEEL] if "reduced_torque" in quantities else [])]
+    outputs = [name for name in (*OUTPUT, TIME_RATIO) if name in _findings(scene)]
+    moving = [name for position in positions for name in (f"{position}{TRAVEL}", f"{position}_{TIME_RATIO}")]
+    others = [*moving, *([FLYWHEEL] if "reduced_torque" in quantities else []), *life_names(scene)]
     return [*outputs, *others, *(f"{n}_{end}" for n in quantities if n != "cond" for end in _ends(scene, n))]
 
 
-def result_problems(scene: Scene, path: str, name: str) -> list[str]:
-    """Return the problem of a name that is no result with derivatives."""
+def result_problems(scene: Scene, path: str, name: str, conditions: Conditions = USUAL) -> list[str]:
+    """Return the problem of a name that is no result with derivatives, or of a life without a bearing."""
+    if name in life_names(scene):
+        return conditions.life_problems(path, name)
     known = result_names(scene)
     if name in known or name in scene.table.quantity:
         return []
@@ -195,15 +215,10 @@ def _extreme(
 def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
     """Return a stroke or swing, or the travel of a position."""
     alone, motion = _motion(scene, name, threads)
-    position, value = OUTPUT.get(name) or name.removesuffix(TRAVEL), motion[name]
-    if name in OUTPUT:
-        ends = motion["reversal_angle"]
-        (dim,) = {*map(str, ends.dims)} & {"limit", "reversal"}
-        first, last = (ends.isel({dim: k}, drop=True) for k in (0, 1))
-    else:
-        first, last = motion[f"{position}_max_at"], motion[f"{position}_min_at"]
-    own = tuple(path for path in to if path in alone.numbers)
-    (q_first, ahead), (q_last, behind) = (_turning_point(alone, position, at, own) for at in (first, last))
+    position, value = _position(scene, name), motion[name]
+    own = tuple(path for path in to if path in alone.numbers and path not in MOTION)
+    ends = _ends_of_way(motion, position)
+    (q_first, ahead), (q_last, behind) = (_turning_point(alone, position, at, own) for at in ends)
     way = q_first - q_last
     # an angle may pass 180 degrees on its way
     sense = xr.where(abs(np.mod(way - value + 180.0, 360.0) - 180.0) < 1e-6, 1.0, -1.0)
@@ -212,10 +227,36 @@ def _travel(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -
     return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
 
 
+def _time_ratio(scene: Scene, name: str, to: tuple[str, ...], threads: int | None) -> Derived:
+    """Return the time ratio of an output, or of a position."""
+    alone, motion = _motion(scene, name, threads)
+    position, value = _position(scene, name), motion[name]
+    own = tuple(path for path in to if path in alone.numbers and path not in MOTION)
+    known, even = time_ratio_slopes(alone, position, _ends_of_way(motion, position), own)
+    slopes = {path: known.get(path, 0.0 * value) for path in to}
+    return Derived(value, slopes, xr.where(np.isfinite(value), xr.where(even, TIE, OK), NONE))
+
+
+def _position(scene: Scene, name: str) -> str:
+    """Return the position of which a stroke, a swing, a travel or a time ratio is."""
+    if name == TIME_RATIO:
+        name = next(output for output in OUTPUT if output in _findings(scene))
+    return OUTPUT.get(name) or name.removesuffix(TRAVEL).removesuffix(f"_{TIME_RATIO}")
+
+
+def _ends_of_way(motion: xr.Dataset, position: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the crank angles [degree] at which a position turns round."""
+    if "reversal_angle" not in motion:
+        return motion[f"{position}_max_at"], motion[f"{position}_min_at"]
+    ends = motion["reversal_angle"]
+    (dim,) = {*map(str, ends.dims)} & {"limit", "reversal"}
+    return ends.isel({dim: 0}, drop=True), ends.isel({dim: 1}, drop=True)
+
+
 def _motion(scene: Scene, name: str, threads: int | None) -> tuple[Scene, xr.Dataset]:
-    """Return the mechanism alone, and the geometry of its motion with a stroke, a swing or a travel."""
+    """Return the mechanism alone, and the geometry of its motion with a stroke, a swing, a travel or a time ratio."""
     alone = replace(scene, omega2=1.0, alpha2=0.0, loads=())
-    of = None if name in OUTPUT else [name.removesuffix(TRAVEL)]
+    of = None if name in (*OUTPUT, TIME_RATIO) else [_position(scene, name)]
     return alone, geometry(alone, of, threads=threads)
 
 
@@ -238,8 +279,7 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     value = ds[name]
     squared = end == "rms" and quantity.squared
     of, power = (quantity.squared, 1) if squared else (stem, 2 if end == "rms" else 1)
-    fields = mean_derivatives(scene, str(of), power, to, threads)
-    slopes = {path: xr.DataArray(field.values, dims=field.dims) for path, field in fields.items()}
+    slopes = mean_derivatives(scene, str(of), power, to, threads)
     if end == "rms":
         slopes = {path: slope / (2.0 * value) for path, slope in slopes.items()}
     return Derived(value, slopes, xr.where(np.isfinite(value), JUMP if moving_unknown(scene, to) else OK, NONE))
@@ -249,3 +289,15 @@ def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuatio
     """Return the flywheel for a coefficient of fluctuation."""
     value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation, threads=threads)
     return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
+
+
+def _life(scene: Scene, name: str, to: tuple[str, ...], threads: int | None, conditions: Conditions) -> Derived:
+    """Return the equivalent load, or the life, of the bearing in a pin."""
+    word, pin = life_of(name)
+    results, slopes = life_derivatives(scene, word, pin, conditions.bearing(pin), to, threads)
+    units, text = TEXTS[word]
+    value = results[word].assign_attrs(units=units, long_name=f"{text}, pin {pin}")
+    status = STATUS_OF_LIFE[results["life_status"].astype(int)]
+    status = xr.DataArray(status, dims=results["life_status"].dims)
+    unknown = (status == OK) & moving_unknown(scene, to)
+    return Derived(value, slopes, xr.where(unknown, JUMP, status))

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from linksweep.analysis.design.conditions import checked_conditions
 from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, whole_name
+from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.validate import UNITS, count_problems, name_problems, quote, refuse
 from linksweep.engine.run import Field
 from linksweep.results.compute import angles_of, quantity_problems, requested, require_scene
@@ -34,6 +36,7 @@ def sensitivities(
     theta2: ArrayLike | None = None,
     theta: ArrayLike | None = None,
     fluctuation: float = 0.02,
+    pins: Mapping[str, Bearing] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Compute the derivatives of results to a scene's parameters, and their elasticities.
@@ -44,8 +47,9 @@ def sensitivities(
         Scene of any number of designs.
     of : str or iterable of str, default None
         Names of results: "F32_peak", "T12_max", "T12_min", "F14_mean", "T12_rms", of a quantity alone its peak;
-        "stroke" or "swing", "x_ram_travel", "transmission_angle_min", "flywheel_inertia". With angles, names of
-        quantities. None for the peaks of all pin forces and of the drive.
+        "stroke" or "swing", "x_ram_travel", "time_ratio", "transmission_angle_min", "flywheel_inertia"; of the bearing
+        in a pin "equivalent_load_B", "L10_B", "L10h_B". With angles, names of quantities. None for the peaks of all
+        pin forces and of the drive.
     to : str or iterable of str, default None
         Paths of parameters: "coupler.length", "loads[1].force[2]", "gravity[2]". None for all that are numbers, without
         coefficients of friction that are 0.
@@ -55,6 +59,8 @@ def sensitivities(
         Count of positions of a car in a loop, or positions [degree], in place of theta2.
     fluctuation : float, default 0.02
         Coefficient of speed fluctuation of "flywheel_inertia" [1].
+    pins : mapping of str to Bearing, default None
+        Bearings, {"B": ls.Bearing(capacity=...)}, of which "L10_B" and "L10h_B" take the capacity.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -98,10 +104,11 @@ def sensitivities(
     if angles is not None:
         return _of_samples(scene, angles, of, paths, threads)
     names = list(scene.mechanism.peak_quantities(scene.drive)) if of is None else requested("of", of, scene)
-    refuse([problem for name in names for problem in result_problems(scene, "of", name)])
+    conditions = checked_conditions(scene, fluctuation, pins)
+    refuse([problem for name in names for problem in result_problems(scene, "of", name, conditions)])
     variables: dict[str, Any] = {}
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        variables |= _variables(scene, name, derived(scene, name, paths, threads, fluctuation).only_ok())
+        variables |= _variables(scene, name, derived(scene, name, paths, threads, conditions).only_ok())
     command = f"linksweep.sensitivities(scene, of={names}, to={list(paths)})"
     return labelled(scene, variables, paths, command)
 

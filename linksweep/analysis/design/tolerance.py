@@ -23,9 +23,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.conditions import checked_conditions
 from linksweep.analysis.design.fits import is_fit, limit_deviations
 from linksweep.analysis.design.result_derivatives import derived, result_problems, result_value, whole_name
 from linksweep.analysis.design.sensitivities import labelled, stacked
+from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.units import quantity
 from linksweep.base.validate import count_problems, quote, refuse
 from linksweep.results.compute import requested, require_scene
@@ -63,6 +65,7 @@ def tolerance(
     n: int = 1024,
     seed: int | None = 0,
     fluctuation: float = 0.02,
+    pins: Mapping[str, Bearing] | None = None,
     threads: int | None = None,
 ) -> xr.Dataset:
     """Compute what tolerances of parameters do to results: sigma, the share of each parameter, the worst case.
@@ -82,6 +85,8 @@ def tolerance(
         Seed of these designs; None for others each time.
     fluctuation : float, default 0.02
         Coefficient of speed fluctuation of "flywheel_inertia" [1].
+    pins : mapping of str to Bearing, default None
+        Bearings, {"B": ls.Bearing(capacity=...)}, of which "L10_B" and "L10h_B" take the capacity.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -116,17 +121,18 @@ def tolerance(
     scene = with_sections(in_memory(scene), of)
     choices = _choices(scene, tolerances)
     names = requested("of", of, scene)
-    problems = [problem for name in names for problem in result_problems(scene, "of", name)]
+    conditions = checked_conditions(scene, fluctuation, pins)
+    problems = [problem for name in names for problem in result_problems(scene, "of", name, conditions)]
     refuse([*problems, *([] if n == 0 else count_problems("n", n)), *count_problems("threads", threads)])
     paths = tuple(choices)
     spreads = {path: _spread(choice, free(scene)[path][1]) for path, choice in choices.items()}
     variables: dict[str, Any] = {}
     drawn = sample(scene, choices, n=n, seed=seed, dim=DRAWN) if n else None
     for name in dict.fromkeys(whole_name(scene, name) for name in names):
-        result = derived(scene, name, paths, threads, fluctuation).only_ok()
+        result = derived(scene, name, paths, threads, conditions).only_ok()
         units, text = (str(result.value.attrs.get(word, "")) for word in ("units", "long_name"))
         linear = _linear(name, result.slopes, spreads, result.value, text)
-        exact = {} if drawn is None else _drawn(name, result_value(drawn, name, threads, fluctuation), text)
+        exact = {} if drawn is None else _drawn(name, result_value(drawn, name, threads, conditions), text)
         for key, (values, words) in (linear | exact).items():
             unit = "1" if key.endswith("_share") else units
             variables[key] = values.reset_coords(drop=True).assign_attrs(units=unit, long_name=words)
