@@ -143,10 +143,15 @@ def _variables(scene: Scene, name: str, result: Derived) -> dict[str, xr.DataArr
 
 
 def stacked(by_path: Mapping[str, xr.DataArray]) -> xr.DataArray:
-    """Return arrays by parameter as one over the dim `parameter`, the last."""
-    arrays = xr.broadcast(*(xr.DataArray(array).reset_coords(drop=True).drop_attrs() for array in by_path.values()))
-    index = xr.Variable(PARAMETER, list(by_path))
-    return xr.concat(arrays, index, coords="minimal", compat="override", join="override").transpose(..., PARAMETER)
+    """Return arrays by parameter as one over the dim `parameter`, the last; labels of dims stay."""
+    arrays = [xr.DataArray(array) for array in by_path.values()]
+    sizes = {dim: size for array in arrays for dim, size in array.sizes.items()}
+    labels = {dim: array[dim].variable for array in arrays for dim in array.dims if dim in array.coords}
+    columns = [array.variable.set_dims(sizes).transpose(*sizes).values for array in arrays]
+    return xr.DataArray(
+        xr.Variable((*sizes, PARAMETER), np.stack(columns, axis=-1)),
+        {**labels, PARAMETER: xr.Variable(PARAMETER, list(by_path))},
+    )
 
 
 def values_of(scene: Scene, path: str) -> xr.DataArray:
