@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import xarray as xr
 
 from linksweep.analysis.design.travel import rate_of
@@ -32,7 +31,7 @@ def time_ratio_slopes(
     it has a corner there; `scene` is the mechanism alone."""
     period = scene.period_of_motion
     first, last = (_angle_slopes(scene, rate_of(position), end, to) for end in ends)
-    way = np.mod(ends[0] - ends[1], period)
+    way = (ends[0] - ends[1]) % period
     slower = xr.where(way >= 0.5 * period, way, period - way)
     steep = xr.where(way >= 0.5 * period, 1.0, -1.0) * period / (period - slower) ** 2
     slopes = {path: steep * (first[path] - last[path]) for path in to}

@@ -40,6 +40,6 @@ def _weighted(power: int, value: Array, pace: Array | float = 1.0) -> Array:
 
 def _slope_of_weighted(power: int, value: Array, *others: Array) -> Array:
     """Return d(q^n/|v|)/dp from q, v, dq/dp and dv/dp, or from q and dq/dp alone."""
-    pace, slope, slope_of_pace = others if len(others) == 3 else (1.0, *others, 0.0)
-    of_value = power * value ** (power - 1) * slope if power else 0.0
-    return (of_value - value**power * slope_of_pace / pace) / abs(pace) + 0.0 * (value / pace)
+    pace, slope, slope_of_pace = others if len(others) == 3 else (np.ones(()), *others, np.zeros(()))
+    of_value = power * value ** (power - 1) * slope if power else np.zeros(())
+    return (of_value - value**power * slope_of_pace / pace) / np.abs(pace) + 0.0 * (value / pace)
