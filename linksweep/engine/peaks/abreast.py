@@ -164,15 +164,19 @@ def place_samples(constants, lanes, grades, x):
 @around(NOTHING_YET)
 def compare_sample(left, value, right, number, size, summit, reach, other):
     """Note the largest magnitude, the best summit, and the heights that it and any other summit may reach."""
-    return with_height(summit_height(left, value, right), value, number, size, summit, reach, other)
+    height = summit_height(left, value, right)
+    return larger(abs(value), size), *with_summit(height, number, summit, reach, other)
 
 
 @around(NOTHING_YET)
 def compare_sample_of_half(left, value, right, number, size, summit, reach, other):
-    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits."""
+    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits; the
+    magnitude is that of the best summit and beside it, as a piece may end where a signal tends to −∞."""
     height = summit_height(left, value, right)
     height = (number < 1.0).where(-math.inf, (number > 2.0 * HALF + 1.0).where(-math.inf, height))
-    return with_height(height, value, number + (HALF - 1.0), size, summit, reach, other)
+    around_it = larger(abs(left), larger(abs(value), abs(right)))
+    size = (reach < height).where(around_it, size)
+    return size, *with_summit(height, number + (HALF - 1.0), summit, reach, other)
 
 
 def summit_height(left, value, right):
@@ -180,15 +184,10 @@ def summit_height(left, value, right):
     return (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
 
 
-def with_height(height, value, number, size, summit, reach, other):
-    """Return the largest magnitude, the best summit, and the heights that it and any other may reach, with one more."""
+def with_summit(height, number, summit, reach, other):
+    """Return the best summit, and the heights that it and any other may reach, with one more."""
     best, less = reach < height, (height < reach).where(height, reach)
-    return (
-        (size < abs(value)).where(abs(value), size),
-        best.where(number, summit),
-        best.where(height, reach),
-        (other < less).where(less, other),
-    )
+    return best.where(number, summit), best.where(height, reach), (other < less).where(less, other)
 
 
 def pick_samples(rows, x, lanes, state):

@@ -35,7 +35,14 @@ from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_end
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.groups import ONE, assembled_groups, empty, groups
 from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
-from linksweep.results.peak_search.pieces import AT_ONCE, designs_without_jams, divides, follow_pieces, rubbing_signals
+from linksweep.results.peak_search.pieces import (
+    AT_ONCE,
+    designs_without_jams,
+    divides,
+    follow_pieces,
+    follow_unbounded,
+    rubbing_signals,
+)
 from linksweep.results.peak_search.poles import may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
@@ -119,7 +126,7 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
         narrow = np.intersect1d(with_narrow_approaches(scene, threads), whole)
         for group in groups(scene, names, narrow, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_approaches,), threads)
-    for group in groups(scene, names, partly):
+    for group in groups(scene, names, follow_unbounded(scene, partly, peaks, threads)):
         follow(group, peaks, paths_of(scene, PARTLY), threads)
     return {signal: peaks[signal] for signal in signals}
 

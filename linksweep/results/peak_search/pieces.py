@@ -21,6 +21,7 @@ from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
+from linksweep.results.peak_search.arcs import NEAREST, arc_ends
 from linksweep.results.peak_search.groups import ONE, Group, groups
 from linksweep.results.peak_search.poles import singular_angles
 from linksweep.scene.pairs import Array, by_row, places_of
@@ -37,16 +38,24 @@ BORDERS = np.array([90.0, 270.0])
 """Ends of half turns, from the near-toggle [degree]."""
 BEYOND = 30.0
 """How far a piece may reach beyond its half turn, rather than be cut at the border [degree]."""
+PROBES = np.array([1e-4, 1e-5])
+"""Distances from a toggle, in x of an arc, of the samples that show whether a signal is unbounded."""
+BESIDE_TOGGLE = 0.03
+"""Part of an arc that is a piece of its own beside each toggle."""
+LEAST_GROWTH, LARGE = 5.0, 1e3
+"""Growth from the one to the other, and over the middle of the arc, of an unbounded signal."""
 
 
 class Pieces(NamedTuple):
     """Pieces of the turns of designs, in their order: row of the design in its group, start and end, as angles from the
-    near-toggle [degree]; directions of sliding (direction, piece)."""
+    near-toggle [degree]; directions of sliding (direction, piece); and what limits the widths of peaks about its ends
+    (end, piece), as tangents of half the angle that follows the piece."""
 
     row: Array
     start: Array
     end: Array
     directions: Array
+    widths: Array | float = 1.0
 
     @property
     def half(self) -> Array:
@@ -106,6 +115,97 @@ def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: Peak) -> tuple[
     samples = np.add.reduceat(peak.evaluations.values, first)
     unknown = np.isnan(value[own])
     return tuple(np.where(unknown, np.nan, numbers) for numbers in (highest, angle, reach - highest, samples))
+
+
+# --------------------------------------------------------------------------------------------------- arcs
+
+
+def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+    """Write the peaks of those designs that move over part of a turn, and of which all signals grow without bound at
+    all toggles, to either side; return the other designs."""
+    if scene.jumps() or scene.mechanism.kinks() or scene.approaches():
+        return designs
+    regular, signals = designs_without_jams(scene, designs), tuple(peaks)
+    others = [np.setdiff1d(designs, regular, assume_unique=True)]
+    for group in groups(scene, signals, regular, AT_ONCE):
+        arcs, growth = _growth_at_toggles(group, signals, threads)
+        known = np.bincount(arcs.row, (growth == 0.0).any(axis=(0, 1)), len(group.designs)) == 0.0
+        known &= np.bincount(arcs.row, minlength=len(group.designs)) > 0
+        others.append(group.designs[~known])
+        for signal, of_signal in zip(signals, growth, strict=True):
+            upwards = np.bincount(arcs.row, (of_signal > 0.0).any(axis=0), len(group.designs)) > 0
+            _put_infinite(group, np.flatnonzero(known & upwards), peaks[signal], arcs, of_signal)
+            bounded = np.flatnonzero(known & ~upwards)
+            if len(bounded):
+                part = group.some(bounded)
+                pieces = _of_arcs(part, arcs.some(np.flatnonzero((known & ~upwards)[arcs.row]), bounded))
+                request, inputs = _evaluated(part, pieces, (signal,))
+                results = find_peaks(request, (signal,), inputs, {ONE: len(pieces.row)}, True, threads)
+                put(peaks[signal], part, _highest(part, pieces, inputs, results[signal]))
+    return np.sort(np.concatenate(others))
+
+
+class Arcs(NamedTuple):
+    """Arcs of designs, in their order: row of the design in its group, start and end [degree]."""
+
+    row: Array
+    start: Array
+    end: Array
+
+    def some(self, which: Array, rows: Array) -> Arcs:
+        """Return some arcs, of designs in these rows of the group."""
+        return Arcs(np.searchsorted(rows, self.row[which]), self.start[which], self.end[which])
+
+
+def _growth_at_toggles(group: Group, signals: tuple[str, ...], threads: int | None) -> tuple[Arcs, Array]:
+    """Return the arcs of designs, and for each (signal, end, arc) 1 where the signal tends to +∞, −1 where it tends to
+    −∞, and 0 where samples do not show it."""
+    starts, ends = arc_ends(group)
+    row, nth = np.nonzero(np.isfinite(starts))
+    arcs = Arcs(row, starts[row, nth], ends[row, nth])
+    middle, half = 0.5 * (arcs.start + arcs.end), 0.5 * (arcs.end - arcs.start)
+    away = 1.0 - np.cos(PROBES)
+    shares = np.concatenate([away - 1.0, [0.0], 1.0 - away])  # the start's, the middle's, the end's
+    angles = (middle[:, None] + half[:, None] * shares).ravel()
+    values = group.values((*signals, "status"), np.repeat(row, len(shares)), angles, threads)
+    values = np.moveaxis(values.reshape(-1, len(row), len(shares)), 2, 0)
+    moves, inside = values[2, -1] == 0.0, LARGE * np.abs(values[2, :-1])
+    growth = []
+    for probe, closer in ((values[0, :-1], values[1, :-1]), (values[3, :-1], values[4, :-1])):
+        unbounded = (np.abs(closer) > LEAST_GROWTH * np.abs(probe)) & (np.abs(closer) > inside) & moves
+        growth.append(np.where(unbounded, np.sign(closer), 0.0))
+    return arcs, np.stack(growth, axis=1)
+
+
+def _put_infinite(group: Group, rows: Array, peak: SignalPeak, arcs: Arcs, growth: Array) -> None:
+    """Write the infinite peaks of a signal of the designs in these rows: at the first end at which it grows."""
+    if not len(rows):
+        return
+    arc, end = np.nonzero((growth > 0.0).T)
+    own, first = np.unique(arcs.row[arc], return_index=True)
+    at = first[np.searchsorted(own, rows)]
+    angle = angle_in_period(np.where(end > 0, arcs.end[arc], arcs.start[arc])[at], group.scene.period)
+    known = np.zeros(len(rows))
+    put(peak, group.some(rows), (known + np.inf, angle, known, known + len(PROBES) * 2.0 + 1.0))
+
+
+def _of_arcs(group: Group, arcs: Arcs) -> Pieces:
+    """Return the pieces of arcs: between toggles, narrow near-toggles, and ends of half turns."""
+    length = arcs.end - arcs.start
+    start = np.mod(arcs.start - group.number(group.scene.mechanism.near_toggle_angle)[arcs.row], 360.0)
+    middles, widths = group.near_toggles()
+    with np.errstate(invalid="ignore"):
+        narrow = np.where(widths < NARROW, middles, np.nan)[arcs.row]
+        cuts = np.concatenate([narrow, np.broadcast_to(BORDERS, (len(length), 2))], axis=1)
+        away = np.mod(cuts - start[:, None], 360.0)
+        least = np.array([0.0, 0.0, BEYOND, BEYOND])
+        away = np.where((away > least) & (away < length[:, None] - least), away, np.nan)
+    near = 0.5 * (1.0 - np.cos(NEAREST))
+    away = np.concatenate([away, np.multiply.outer(length, [near, BESIDE_TOGGLE, 1.0 - BESIDE_TOGGLE])], axis=1)
+    arc, first, last = _between(np.sort(start[:, None] + away, axis=1), start + (1.0 - near) * length)
+    before, after = first - start[arc], start[arc] + length[arc] - last
+    widths = np.sqrt(np.minimum(np.stack([before, after]) / (last - first), 1.0))
+    return Pieces(arcs.row[arc], first, last, np.empty((0, len(arc))), widths)
 
 
 # ------------------------------------------------------------------------------------------------- pieces
@@ -182,7 +282,7 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     half = pieces.half
     start, end = (pieces.tangents(half, angle) for angle in (pieces.start, pieces.end))
     widths = _widths(start, end, group.near_toggles()[1][pieces.row, half.astype(int)])
-    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *widths), strict=True))
+    own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *np.minimum(widths, pieces.widths)), strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
     table, places = _table_on_pieces(scene.table, directions), ((ALONG, (index, ONE)), (END, (index,)))
     return group.one_by_one(table, names, pieces.row, own, places)

@@ -59,7 +59,7 @@ def test_peaks_reach_the_densest_samples_and_are_values_of_the_signal(scene):
 def test_the_slider_turns_round_and_the_guide_bears_nothing_only_at_ends_of_pieces():
     scene = engines()
     (group,) = groups(scene, ("T12",), np.arange(DESIGNS))
-    row, start, end, directions = pieces._pieces(group, None)
+    row, start, end, directions, _ = pieces._pieces(group, None)
     np.testing.assert_allclose(np.bincount(row, end - start), 360.0, rtol=1e-14)
     middle = group.number(scene.mechanism.near_toggle_angle)[row]
     signs = [
@@ -136,3 +136,29 @@ def test_zeros_also_two_between_the_same_samples(at):
 
 def bent(values: np.ndarray, kink: float) -> np.ndarray:
     return np.where(values < 0.0, kink * values, values)
+
+
+def rocking() -> ls.Scene:
+    """Four-bars of any lengths: cranks that move over part of a turn, between toggles."""
+    random = np.random.default_rng(8)
+    lengths = np.exp(random.uniform(-1.5, 1.5, (4, 12)))
+    lengths = np.minimum(lengths, 0.98 * (lengths.sum(axis=0) - lengths.max(axis=0)))
+    a, b, c, d = (xr.DataArray(length, dims="design") for length in lengths)
+    links = (ls.Link(length, 1.0, 0.1, 0.3 * length, 20.0) for length in (a, b, c))
+    return ls.Scene(ls.FourBar(*links, ground=d), 10.0, gravity=(0.0, -9.81))
+
+
+def test_what_is_unbounded_at_toggles_is_infinite_and_has_its_other_extreme_between_them():
+    """The acceleration of the rocker: unbounded at all toggles, mostly in the same direction at both."""
+    scene = rocking()
+    part = np.flatnonzero(ls.check(scene).assembly.values == 1)
+    peaks, dense = ls.peaks(scene, of=["alpha4", "F12x"]), ls.peaks(scene, of=["alpha4", "F12x"], theta2=20_000)
+    bounded = 0
+    for name, sign in (("alpha4_max", 1.0), ("alpha4_min", -1.0), ("F12x_max", 1.0), ("F12x_min", -1.0)):
+        peak, sample = (sign * ds[name].values[part] for ds in (peaks, dense))
+        finite = np.isfinite(peak)
+        excess = (peak - sample)[finite] / np.abs(peak[finite])
+        assert (peak[~finite] == np.inf).all() and (excess > -1e-10).all() and (excess < 1e-4).all()
+        bounded += finite.sum()
+    assert bounded > len(part) > 5
+    assert (peaks.alpha4_peak.values[part] == np.inf).all() and (peaks.status.values[part] == 3).all()
