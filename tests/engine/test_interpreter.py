@@ -8,6 +8,7 @@ from linksweep.engine.interpreter import machine
 from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.interpreter.machine import OPERANDS, OPERATORS, TILE
 from linksweep.engine.interpreter.program import programs
+from linksweep.engine.kernel import machine_code
 from linksweep.engine.trace.graph import Graph, Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.plan import Plan
@@ -80,7 +81,7 @@ def test_kept_code_is_used_again(tmp_path, monkeypatch):
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)
     machine._function.__wrapped__()
     (kept,) = tmp_path.iterdir()
-    monkeypatch.setattr(machine, "_module", lambda: pytest.fail("compiled again"))
+    monkeypatch.setattr(machine_code, "_compiled", lambda *_: pytest.fail("compiled again"))
     machine._function.__wrapped__()
     kept.write_bytes(kept.read_bytes()[:-1])
     with pytest.raises(pytest.fail.Exception, match="compiled again"):

@@ -42,7 +42,7 @@ def numbers(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", sorted(LOW_WORDS))
 def test_compiled_and_plain_have_equal_bits(name):
-    kernel = compile.compiled.__wrapped__(KERNEL.replace("LOW", name), "", "void(f8[::1], f8[::1], f8[::1])")
+    kernel = compile.compiled.__wrapped__(KERNEL.replace("LOW", name), signature="void(f8[::1], f8[::1], f8[::1])")
     x, y = numbers(name)
     result = np.empty(len(x))
     kernel(x, y, result)

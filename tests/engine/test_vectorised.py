@@ -113,7 +113,7 @@ def kernel(x, y, values, flags, result):
 def test_conditions_are_stored_as_one_and_zero(values):
     x, y = np.random.default_rng(3).standard_normal((2, 37))
     compiled, (flags, result) = np.array([*values, np.nan]), np.empty((2, 37))
-    kernel = compile.compiled.__wrapped__(CONDITIONS, "", "void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])")
+    kernel = compile.compiled.__wrapped__(CONDITIONS, signature="void(f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])")
     kernel(x, y, compiled, flags, result)
     above = values[0] < values[1]
     assert compiled[2] == above

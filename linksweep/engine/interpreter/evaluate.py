@@ -8,9 +8,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from linksweep.engine.blocks import block
-from linksweep.engine.interpreter.machine import TILE, address, interpret
+from linksweep.engine.interpreter.machine import TILE, interpret
 from linksweep.engine.interpreter.program import Program, programs
 from linksweep.engine.kernel.instructions import REGISTER
+from linksweep.engine.kernel.machine_code import address
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 

@@ -3,14 +3,11 @@
 A program is a table of integers, one row for each operation: its code, the register of its result, and those of its
 operands. A register holds `TILE` samples; the whole program runs on one tile after the other, so that registers stay in
 the cache, and then on the next design, whose own numbers fill the first registers. Operations are written by
-`engine.kernel.instructions`, so results have the bits of any compiled kernel. LLVM's own compiler is called directly:
-it wakes in a tenth of the time that numba takes.
+`engine.kernel.instructions`, so results have the bits of any compiled kernel.
 """
 
 from __future__ import annotations
 
-import ctypes
-import hashlib
 import inspect
 import sys
 from collections.abc import Callable
@@ -19,9 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.base.cache import keep, recall
-from linksweep.engine.kernel import instructions
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, MachineCode, address, machine_code
 from linksweep.engine.trace.graph import LOW_WORDS
 
 TILE = 8 * REGISTER
@@ -33,7 +29,7 @@ CODES = {name: code for code, name in enumerate([*OPERATORS, "load", "store"])}
 COLUMNS = 5
 """Code of the operation, register of the result, registers of up to three operands; `load` and `store` have the number
 of a row in place of their operand and their result."""
-SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
+SOURCE = inspect.getsource(sys.modules[__name__])
 
 
 def interpret(program: np.ndarray, registers: np.ndarray, numbers: np.ndarray, rows: np.ndarray, samples: int) -> None:
@@ -43,47 +39,21 @@ def interpret(program: np.ndarray, registers: np.ndarray, numbers: np.ndarray, r
     address and by how many bytes that of the next design lies behind it.
     """
     arrays = map(address, (program, registers, numbers, rows))
-    _function()(*arrays, len(program), *numbers.shape, samples)
-
-
-def address(array: np.ndarray) -> int:
-    return array.__array_interface__["data"][0]
+    _function().function(*arrays, len(program), *numbers.shape, samples)
 
 
 @cache
-def _function() -> Callable[..., None]:
-    """Return the interpreter: kept machine code, or compiled now."""
-    from llvmlite import binding
-
-    binding.initialize_native_target()
-    binding.initialize_native_asmprinter()
-    features = binding.get_host_cpu_features().flatten()
-    target = binding.Target.from_default_triple().create_target_machine(binding.get_host_cpu_name(), features, opt=3)
-    made_of = f"{binding.llvm_version_info} {target.triple} {binding.get_host_cpu_name()} {features} {SOURCE}"
-    name = f"interpreter_{hashlib.sha256(made_of.encode()).hexdigest()[:24]}"
-    code = recall(name)
-    if code is None:
-        code = target.emit_object(binding.parse_assembly(str(_module())))
-        keep(name, code)
-    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
-    engine.add_object_file(binding.ObjectFileRef.from_data(code))
-    engine.finalize_object()
-    kind = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 8)
-    function = kind(engine.get_function_address("interpret"))
-    function.engine = engine  # type: ignore[attr-defined]  # the code lives as long as that
-    return function
+def _function() -> MachineCode:
+    """Return the interpreter."""
+    return machine_code(_interpreter, (INTEGERS, ROW, ROW, INTEGERS, *[INTEGER] * 4), SOURCE)
 
 
-def _module() -> Any:
-    """Return LLVM's module with the one function."""
-    from llvmlite import ir
-
-    module, integer, double = ir.Module(), ir.IntType(64), ir.DoubleType()
-    arrays = [integer.as_pointer(), double.as_pointer(), double.as_pointer(), integer.as_pointer()]
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [*arrays, *[integer] * 4]), "interpret")
-    program, registers, numbers, rows, length, designs, kept, samples = function.args
-    builder = ir.IRBuilder(function.append_basic_block())
+def _interpreter(builder: Any, *arguments: Any) -> None:
+    """Write the one function."""
+    program, registers, numbers, rows = (array.data for array in arguments[:4])
+    length, designs, kept, samples = arguments[4:]
     write = Instructions(builder)
+    integer, double = write.integer, write.double
     last = builder.sub(samples, integer(REGISTER))
 
     def smaller(x: Any, y: Any) -> Any:
@@ -137,8 +107,6 @@ def _module() -> Any:
         _loop(builder, integer(0), length, 1, lambda row: operation(design, tile, row))
 
     _loop(builder, integer(0), designs, 1, run)
-    builder.ret_void()
-    return module
 
 
 def _loop(builder: Any, first: Any, last: Any, step: int, body: Callable[[Any], None]) -> None:

@@ -19,6 +19,7 @@ from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
 from linksweep.engine.kernel import instructions, vectors
+from linksweep.engine.kernel.machine_code import MachineCode, write_call
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -63,45 +64,29 @@ def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature
     return entry
 
 
-def compiled_vectors(emit: Callable[..., None], signature: str, text: str) -> Callable:
-    """Return a function of arrays and integers whose body `emit` writes by a builder of instructions; `text` differs
-    wherever the body does."""
-    from numba.core.sigutils import normalize_signature
-
-    names = [f"x{k}" for k in range(len(normalize_signature(signature)[0]))]
-    source = "def kernel({0}):\n    body({0})\n".format(", ".join(names))
-    body = {"body": instructions.intrinsic(emit, names)}
-    kernel = _jitted(source, body, f"{signature} {emit.__qualname__} {instructions.SOURCE} {text}")["kernel"]
-    kernel.compile(signature)
-    kernel.disable_compile()
-    return kernel
-
-
-def address(function: Callable) -> int:
-    """Return where compiled code finds a function of `compiled_vectors`; passed as it is, each costs a call 0.1 ms."""
-    (machine_code,) = function.overloads.values()  # type: ignore[attr-defined]
-    return machine_code.library.get_pointer_to_function(machine_code.fndesc.llvm_func_name)
-
-
 def compiled_call() -> Callable:
-    """Return `instructions.call` for compiled code, which has the addresses of functions."""
+    """Return `instructions.call` for compiled code, which has the addresses of `machine_code`."""
     from numba.core import cgutils, types
     from numba.extending import intrinsic
 
-    def typed(_typing_context: Any, function: Any, arguments: Any) -> tuple[Any, Callable] | None:
-        kinds = types.Tuple([types.unliteral(kind) for kind in arguments.types])
-        if not {*kinds} <= {types.float64[::1], types.float64[:, ::1], types.int64}:  # what it was compiled for
-            return None
-
+    def typed(_typing_context: Any, function: Any, arguments: Any) -> tuple[Any, Callable]:
         def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            kind = context.call_conv.get_function_type(types.void, kinds.types)
-            at, passed = builder.inttoptr(values[0], kind.as_pointer()), cgutils.unpack_tuple(builder, values[1])
-            context.call_conv.call_function(builder, at, types.void, kinds.types, passed)
+            each = zip(arguments.types, cgutils.unpack_tuple(builder, values[1]), strict=True)
+            arrays = types.Array
+            write_call(builder, values[0], *(
+                context.make_array(kind)(context, builder, x) if isinstance(kind, arrays) else x for kind, x in each
+            ))  # fmt: skip
             return context.get_dummy_value()
 
-        return types.void(function, kinds), write
+        return types.void(function, arguments), write
 
     return intrinsic(typed)
+
+
+def linked(code: MachineCode) -> Callable:
+    """Return machine code as a function for compiled code, which finds it by its symbol."""
+    names = [f"x{k}" for k in range(len(code.kinds))]
+    return instructions.intrinsic(lambda builder, *arguments: write_call(builder, code.symbol, *arguments), names)
 
 
 @cache

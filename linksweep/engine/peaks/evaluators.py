@@ -23,9 +23,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.interpreter.evaluate import evaluate
-from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
+from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
@@ -55,6 +55,11 @@ class Functions(NamedTuple):
     prepare: Callable[..., None]
     sample: Callable[..., None]
     evaluate: Callable[..., None]
+
+    @property
+    def passed(self) -> list[Any]:
+        """The three as a search takes them: compiled ones by their addresses."""
+        return [each.address if isinstance(each, MachineCode) else each for each in self[2:]]
 
 
 class Evaluators:
@@ -121,9 +126,9 @@ class Evaluators:
         return Functions(
             LANES,
             len(self.constants),
-            compiled_vectors(self._emit_prepare, "void(f8[::1], f8[::1])", text),
-            compiled_vectors(self._emit_sample, "void(f8[::1], f8[::1], f8[::1])", text),
-            compiled_vectors(self._emit_evaluate, "void(f8[::1], f8[:, ::1], i8, i8, i8, i8, i8, i8)", text),
+            machine_code(self._emit_prepare, (ROW, ROW), text),
+            machine_code(self._emit_sample, (ROW, ROW, ROW), text),
+            machine_code(self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
         )
 
     def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:

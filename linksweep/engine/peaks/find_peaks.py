@@ -17,8 +17,9 @@ from linksweep.engine.kernel.compile import (
     compiled_call,
     compiled_entry,
     compiled_functions,
+    linked,
 )
-from linksweep.engine.peaks import abreast, brackets, lanewise, search, zeros
+from linksweep.engine.peaks import abreast, brackets, search, zeros
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
     BRACKET_ROWS,
@@ -59,10 +60,10 @@ class Peak(NamedTuple):
 @cache
 def compiled_search() -> Callable:
     """Return `abreast.search` as machine code."""
-    vectors = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
-    vectors["call"] = compiled_call()
-    enters = f"{lanewise.SOURCE} {inspect.getsource(brackets)} {inspect.getsource(abreast)}"
-    return compiled_entry("search", _plain(brackets, search, abreast), vectors, SEARCH_SIGNATURE, enters)
+    code = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
+    functions = {name: linked(each) for name, each in code.items()} | {"call": compiled_call()}
+    symbols = " ".join(each.symbol for each in code.values())
+    return compiled_entry("search", _plain(brackets, search, abreast), functions, SEARCH_SIGNATURE, symbols)
 
 
 @cache

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from linksweep.engine.kernel.compile import address
 from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import abreast, search
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
@@ -68,9 +67,8 @@ class LaidOut(NamedTuple):
     def arguments(self, first: int, last: int) -> tuple[Any, ...]:
         """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in."""
         lanes, constants = self.lanes, self.functions.constants * self.lanes
-        evaluators = map(address, self.functions[2:]) if self.compiled else self.functions[2:]
         return (
-            np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *evaluators,
+            np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *self.functions.passed,
             np.zeros((max(len(self.shape), 1), lanes), dtype=np.int64), np.zeros(self.parameters[2].shape[1] * lanes),
             np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * search.PLACED * lanes),
             np.zeros((search.SAMPLES + 1) * len(self.signals) * lanes),

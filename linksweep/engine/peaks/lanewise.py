@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from linksweep.engine.kernel.compile import compiled_vectors
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
+from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.trace.graph import Graph, Node
 from linksweep.engine.trace.operators import OPERATORS, interpret
 
@@ -59,9 +59,9 @@ class Lanewise:
         for row, node in zip(self.outputs, self.results, strict=True):
             table[row, :columns] = values[node]
 
-    def compiled(self) -> Callable[..., None]:
+    def compiled(self) -> MachineCode:
         """Return the function of a table and the number of its first columns that count as machine code."""
-        return compiled_vectors(self._emit, "void(f8[:, ::1], i8)", self.text)
+        return machine_code(self._emit, (TABLE, INTEGER), self.text)
 
     @property
     def text(self) -> str:
@@ -133,8 +133,8 @@ class Around(Lanewise):
     def text(self) -> str:
         return f"{super().text} {self.start}"
 
-    def compiled(self) -> Callable[..., None]:
-        return compiled_vectors(self._emit_around, "void(f8[::1], i8, f8[:, ::1], i8)", self.text)
+    def compiled(self) -> MachineCode:
+        return machine_code(self._emit_around, (ROW, INTEGER, TABLE, INTEGER), self.text)
 
     def _emit_around(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:
         from numba.core import cgutils

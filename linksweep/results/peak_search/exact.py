@@ -108,7 +108,8 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     names, turning = (*signals, "assembly"), _turning(scene, signals)
     whole, partly = (_designs_where(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
     arcs_known = _arcs_known(scene, names, partly)
-    searched, partly = (whole, partly) if arcs_known else (np.union1d(whole, partly), partly[:0])
+    partly, also_searched = (partly, partly[:0]) if arcs_known else (partly[:0], partly)
+    searched = np.union1d(whole, also_searched) if len(also_searched) else whole
     peaks = _constants(scene, tuple(signal for signal in signals if signal not in turning), searched)
     rubbing = rubbing_signals(scene, turning)
     divided = designs_without_jams(scene, whole) if rubbing else whole[:0]
@@ -116,9 +117,9 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     peaks |= _fused(scene, free, searched, True, threads)
     others = tuple(signal for signal in turning if signal not in free)
     smooth = not (scene.jumps() or scene.mechanism.kinks())
-    peaks |= _fused(scene, others, np.setdiff1d(searched, divided, assume_unique=True), smooth, threads)
+    peaks |= _fused(scene, others, _without(searched, divided), smooth, threads)
     follow_pieces(scene, divided, {signal: peaks[signal] for signal in rubbing}, threads)
-    whole = np.setdiff1d(whole, divided, assume_unique=True)
+    whole = _without(whole, divided)
     if not smooth:
         for group in groups(scene, names, whole, WINDOWS_AT_ONCE):
             follow(group, peaks, (about_breaks,), threads)
@@ -146,6 +147,11 @@ def _designs_where(scene: Scene, field: Field, value: float) -> Array:
     """Return the designs at which a field has a value."""
     sizes = scene.inputs.sizes
     return np.flatnonzero(np.broadcast_to(aligned(field, tuple(sizes)) == value, tuple(sizes.values())))
+
+
+def _without(designs: Array, others: Array) -> Array:
+    """Return the designs that are not among others."""
+    return np.setdiff1d(designs, others, assume_unique=True) if len(others) else designs
 
 
 def peaks_where(good: Field, peaks: dict[str, SignalPeak]) -> dict[str, SignalPeak]:
