@@ -128,7 +128,7 @@ CALLS = {
     "quantities": lambda s, path: ls.quantities(s.machine, "force"),
     "regressor": lambda s, path: ls.regressor(s.machine, [s.drive], theta2=SAMPLES),
     "report": lambda s, path: ls.report(s.machine, path / "page.html"),
-    "run_down": lambda s, path: ls.run_down(s.machine, until=0.9, turns=0.1, of=[s.drive]),
+    "run_down": lambda s, path: ls.run_down(s.machine, until=0.99, turns=0.1, of=[s.drive]),
     "run_up": lambda s, path: ls.run_up(s.machine, MOTOR, until=1e-3, of=[s.drive]),
     "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
@@ -209,6 +209,7 @@ COMMANDS = {
 }
 """Arguments of each command that takes a scene; `demo` and `completion` take none."""
 
+OF_BEAMS = "size_links strength plot.moment_diagram plot.moment_diagrams command.strength"
 NO_CLOSED_FORM = """
     best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
     command.balance
@@ -219,9 +220,7 @@ LACKING: dict[str, str] = {
         best_counterweights position_equation regressor speed_limit speed_separation plot.loop size_links strength
         plot.moment_diagram plot.moment_diagrams command.strength
     """,
-    "quick-return": """
-        position_equation plot.loop size_links strength plot.moment_diagram plot.moment_diagrams command.strength
-    """,
+    "quick-return": f"position_equation plot.loop {OF_BEAMS}",
     "loop": """
         bearings best_counterweights breakdown choose_bearings command.choose-bearings counterweights coupler_curve duty
         explore flywheel geometry load_spectrum motor_load orders pin_friction position_equation regressor
@@ -229,8 +228,7 @@ LACKING: dict[str, str] = {
         plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
-        plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw
-        run_down run_up plot.run_up
+        plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw run_down run_up plot.run_up
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": NO_CLOSED_FORM,
@@ -255,8 +253,8 @@ LACKING: dict[str, str] = {
         scene_at screen sensitivities speed_limit speed_separation study sweep system tolerance with_counterweights
         plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
         plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
-        contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing
-        run_down run_up plot.run_up
+        contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing run_down run_up
+        plot.run_up
     """,
 }
 """The pairs that give a sentence, by machine."""
