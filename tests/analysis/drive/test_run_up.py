@@ -73,8 +73,10 @@ def test_run_up_against_lagrange(scene, machine):
     pins = PINS[: len(machine.joints())]
     run = ls.run_up(scene, MOTOR, ratio=RATIO, flywheel=WHEEL, start=10.0, until=0.85, of=pins)
     assert int(run.status) == 0
-    peaks_at = [float(run[f"{name}_peak_time"]) for name in pins]
-    even = np.linspace(0.0, float(run.duration), 100)[1:]
+    end = float(run.duration)
+    peaks_at = np.array([float(run[f"{name}_peak_time"]) for name in pins])
+    beside = np.minimum(np.concatenate([peaks_at - 2e-4 * end, peaks_at + 2e-4 * end]), end)
+    even = np.append(np.linspace(0.0, end, 80)[1:], beside)
     times = np.unique(np.concatenate([run.time[1:], peaks_at, even]))
     angle, speed = machine.run(torque, times, theta=np.radians(10.0))
     steps = np.searchsorted(times, run.time[1:])
@@ -86,7 +88,7 @@ def test_run_up_against_lagrange(scene, machine):
         (i,) = np.searchsorted(times, [peaks_at[k]])
         largest = machine.pin_forces(angle[i], speed[i], torque(speed[i]))[k]
         np.testing.assert_allclose(run[f"{name}_peak"], largest, rtol=1e-8)
-        assert max(sizes) <= largest * (1.0 + 1e-8)
+        assert max(sizes) <= largest * (1.0 + 1e-9)
 
 
 def test_clockwise_against_lagrange():
@@ -202,6 +204,16 @@ def test_a_weak_motor_does_not_start_or_stalls():
     assert meaning(run) == ["does_not_start", "stalls", "ok"]
     assert np.isfinite(run.duration).values.tolist() == [False, False, True]
     assert float(run.speed[1].max()) > 0.0
+
+
+def test_friction_holds_a_crank_at_rest():
+    """The slider's weight presses with 3.9 N on its guide: friction of 0.1 takes about 0.03 N m of the crank."""
+    light = [ls.Link(link[0], 0.0, 0.0) for link in (CRANK, ROD)]
+    motor = ls.DCMotor(stall_torque=0.015, no_load_speed=20.0, inertia=1e-3)
+    friction = xr.DataArray([0.0, 0.1], dims="guide")
+    scene = ls.Scene(ls.SliderCrank(*light, slider_mass=0.4, friction=friction), 1.0, gravity=(0.0, -9.81))
+    run = ls.run_up(scene, motor, start=90.0, until=0.1, of=["F32"])
+    assert meaning(run) == ["ok", "does_not_start"]
 
 
 def test_what_never_ends_is_told():
