@@ -15,7 +15,7 @@ from linksweep.plot.kit.style import grid, panels, show_lengths
 from linksweep.results.compute import angles_missing
 from linksweep.results.origin.in_shown_units import in_shown_units, results_in_shown_units
 from linksweep.results.origin.machine_of_results import machine_of_results
-from linksweep.results.peaks import peaks
+from linksweep.results.peaks import peaks, peaks_of_part
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import shown_units
@@ -96,12 +96,15 @@ def draw_force(ax: Axes, ds: xr.Dataset, scene: Scene) -> None:
 
 
 def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) -> dict[str, tuple[float, float]]:
-    """Return position and force of the extremes: exact for a whole lap, else of the samples; none of an even force."""
+    """Return position and force of the extremes, exact ones of a scene of one design; none of an even force."""
     if not np.nanmin(force, initial=np.inf) < np.nanmax(force, initial=-np.inf):
         return {}
-    if signals.full_turn(angles) and not design_labels(scene) and not angles_missing(scene):
-        worst = in_shown_units(peaks(scene, of=[name]))
-        return {end: (worst[f"{name}_{end}_at"].item(), worst[f"{name}_{end}"].item()) for end in ("max", "min")}
+    if not design_labels(scene) and not angles_missing(scene):
+        part = (float(angles[0]), float(angles[-1]))
+        worst = peaks(scene, of=[name]) if signals.full_turn(angles) else peaks_of_part(scene, [name], part)
+        worst = in_shown_units(worst)
+        places = {end: angles[0] + (worst[f"{name}_{end}_at"].item() - angles[0]) % 360.0 for end in ("max", "min")}
+        return {end: (float(at), worst[f"{name}_{end}"].item()) for end, at in places.items()}
     samples = {"max": int(np.nanargmax(force)), "min": int(np.nanargmin(force))}
     return {end: (angles[k], force[k]) for end, k in samples.items()}
 

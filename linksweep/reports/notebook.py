@@ -128,7 +128,8 @@ def _svg(shape: Shape, bars: list[tuple[str, ...]], blocks: list[str], half: flo
         return np.array([WIDTH, HEIGHT]) / 2.0 + scale * (place - middle) * [1.0, -1.0]
 
     size = f"0 0 {WIDTH:g} {HEIGHT:g}"
-    parts = [*_curve(shape, at), *_links(shape, bars, at), *_blocks(shape, blocks, half * scale, at), *_pins(shape, at)]
+    links = [*_links(shape, bars, at), *_blocks(shape, blocks, half * scale, at), *_centres(shape, at)]
+    parts = [*_curve(shape, at), *links, *_pins(shape, at)]
     look = {"width": f"{WIDTH:g}", "height": f"{HEIGHT:g}", "viewBox": size, "role": "img", "class_": "machine"}
     return tag("svg", *parts, **look)
 
@@ -162,6 +163,15 @@ def _blocks(shape: Shape, blocks: list[str], half: float, at: Any) -> Iterator[M
         turned = -float(np.degrees(np.arctan2(slide.along[1, -1], slide.along[0, -1])))
         box = {"x": f"{x - side:.1f}", "y": f"{y - side:.1f}", "width": f"{2 * side:.1f}", "height": f"{2 * side:.1f}"}
         yield tag("rect", **box, transform=f"rotate({turned:.1f} {x:.1f} {y:.1f})", fill="#DCE6EE", stroke="#3F4B55")
+
+
+def _centres(shape: Shape, at: Any) -> Iterator[Markup]:
+    """Yield the sign of each centre of gravity, a circle in black and white quarters."""
+    for place in shape.centres.values():
+        x, y = at(place)
+        rim, quarters = "M-4 0A4 4 0 0 0 4 0A4 4 0 0 0 -4 0Z", "M0 0V-4A4 4 0 0 1 4 0ZM0 0V4A4 4 0 0 1 -4 0Z"
+        sign = tag("path", d=rim, fill="white", stroke="black"), tag("path", d=quarters, fill="black")
+        yield tag("g", *sign, class_="centre", transform=f"translate({x:.1f} {y:.1f})")
 
 
 def _pins(shape: Shape, at: Any) -> Iterator[Markup]:

@@ -186,14 +186,21 @@ def test_a_lap_marks_the_extremes_between_its_samples():
     np.testing.assert_allclose(marks["_min"], [180.0, 700.0 * (1e4 / 30.0 - 9.81)], rtol=1e-12, atol=1e-4)
 
 
+def test_a_part_of_a_lap_marks_the_extremes_between_its_samples():
+    car = ls.Scene(ls.LoopTrack(radius=30.0, mass=700.0), speed=100.0, gravity=(0.0, -9.81))
+    figure = ls.sweep(car, [-100.0, -33.0, 50.0, 90.0]).linksweep.loop()
+    (ax,) = (ax for ax in figure.axes if ax.get_ylabel().startswith("force"))
+    marks = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_label() in ("_max", "_min")}
+    np.testing.assert_allclose(marks["_max"], [0.0, 700.0 * (1e4 / 30.0 + 9.81)], rtol=1e-12, atol=1e-4)
+    least = 700.0 * (1e4 / 30.0 + 9.81 * np.cos(np.radians(100.0)))
+    np.testing.assert_allclose(marks["_min"], [-100.0, least], rtol=1e-9, atol=1e-4)
+
+
 def lengths() -> ls.Scene:
-    return replace(
-        ls.example("press"),
-        mechanism=replace(
-            ls.example("press").mechanism,
-            coupler=ls.Bar(xr.DataArray([0.2, 0.22, 0.24], dims="coupler"), 0.02, 0.02, 7750.0),
-        ),
-    )
+    """Return a press with couplers of three lengths."""
+    scene = ls.example("press")
+    coupler = ls.Bar(xr.DataArray([0.2, 0.22, 0.24], dims="coupler"), 0.02, 0.02, 7750.0)
+    return replace(scene, mechanism=replace(scene.mechanism, coupler=coupler))
 
 
 def test_each_of_several_designs_has_its_exact_peak():

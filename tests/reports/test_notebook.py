@@ -38,6 +38,10 @@ def test_pins_of_the_drawing_are_those_of_the_sweep():
     assert letters == ["A", "B", "C", "D"]
     scale = np.linalg.norm(places[3] - places[0]) / 0.20
     np.testing.assert_allclose((places - places[0]) * [1.0, -1.0] / scale, expected, atol=0.1 / scale)
+    signs = [sign.get("transform") for sign in drawn.iter("g") if sign.get("class") == "centre"]
+    middles = np.array([re.findall(r"[\d.]+", sign) for sign in signs], dtype=float)
+    centres = [expected[:2].mean(axis=0), expected[1:3].mean(axis=0), expected[2:].mean(axis=0)]
+    np.testing.assert_allclose((middles - places[0]) * [1.0, -1.0] / scale, centres, atol=0.15 / scale)
 
 
 def test_several_designs_show_the_first():
