@@ -9,8 +9,8 @@ import xarray as xr
 
 from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
+from linksweep.plot.bins import STATISTICS, binned, bins_of
 from linksweep.plot.kit import scales, signals
-from linksweep.plot.kit.bins import STATISTICS, binned, bins_of
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok
 from linksweep.plot.kit.style import axes_or_new, legend_above
