@@ -236,11 +236,14 @@ def _result(task: Screening, tally: Tally, n: int, further: list[str], threads: 
     first = 0
     for name, edges in task.edges.items():
         dim, counts = f"{name}_bin", tally.bins[first : first + len(edges) + 1]
-        units = {"units": ds[name].attrs.get("units", "1")}
+        units = ds[name].attrs.get("units", "1")
         ends = {"from": [-math.inf, *edges], "to": [*edges, math.inf]}
         about = {"units": "1", "long_name": f"number of designs drawn by {name}, from {name}_from to before {name}_to"}
         variables[f"{name}_count"] = (dim, counts, about)
-        coordinates |= {f"{name}_{end}": (dim, values, units) for end, values in ends.items()}
+        coordinates |= {
+            f"{name}_{end}": (dim, values, {"units": units, "long_name": f"end of each bin of {name}, {end}"})
+            for end, values in ends.items()
+        }
         first += len(counts)
     command = f"linksweep.screen(scene, parameters, n={n}, seed={task.seed}, of={of})"
     small, large = ([name for name, sign in task.objectives.items() if sign == each] for each in (1.0, -1.0))

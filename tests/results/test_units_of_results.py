@@ -77,27 +77,3 @@ def test_says_what_it_is(machine, name):
     quantity = machine().table.quantity[name]
     assert len(quantity.long_name) > 10
     assert quantity.units
-
-
-BEARING = ls.Bearing(diameter=0.02, length=0.03, capacity=5e4)
-
-
-@pytest.mark.parametrize(
-    "result",
-    [
-        lambda: ls.sweep(ls.example("press"), 12),
-        lambda: ls.peaks(ls.sample(ls.example("engine"), {"omega2": (100.0, 200.0)}, n=3), theta2=24),
-        lambda: ls.bearings(ls.example("press"), {"B": BEARING}, theta2=24),
-        lambda: ls.flywheel(ls.example("press"), fluctuation=0.02, theta2=24),
-    ],
-)
-def test_pint_xarray_takes_every_result(result):
-    """Units are spelled so that pint and UDUNITS both read them: `ds.pint.quantify()` works."""
-    pytest.importorskip("pint_xarray")
-    plain = result()
-    quantities = plain.pint.quantify()
-    assert {name for name, values in quantities.items() if values.pint.units is not None} == {
-        name for name, values in plain.items() if "units" in values.attrs
-    }
-    for name, values in quantities.pint.dequantify(format="~").items():
-        np.testing.assert_array_equal(values.values, plain[name].values)

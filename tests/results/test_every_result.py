@@ -1,0 +1,113 @@
+"""Every result that is a Dataset: pint-xarray reads its units, and its file keeps to the CF conventions it states."""
+
+import importlib.util
+import inspect
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+
+PRESS, N = ls.example("press"), 24
+STEEL, BEARING = ls.material("S355"), ls.Bearing(diameter=0.02, length=0.03, friction=0.1, capacity=5e4)
+DESIGNS = ls.sample(PRESS, {"ground": (0.19, 0.21)}, n=3)
+
+RESULTS = {
+    "bearings": lambda path: ls.bearings(PRESS, {"B": BEARING}, theta2=N),
+    "breakdown": lambda path: ls.breakdown(PRESS, "F32", theta2=N),
+    "check": lambda path: ls.check(PRESS),
+    "choose_bearings": lambda path: ls.choose_bearings(PRESS, life="10000 h"),
+    "compare": lambda path: ls.compare(PRESS, PRESS, of=["F32_peak"], theta2=N),
+    "contact_loss": lambda path: ls.contact_loss(PRESS, 5e-5, theta2=N),
+    "coupler_curve": lambda path: ls.coupler_curve(PRESS, (0.10, 15.0), theta2=N),
+    "duty": lambda path: ls.duty(PRESS),
+    "flywheel": lambda path: ls.flywheel(PRESS, fluctuation=0.02, theta2=N),
+    "geometry": lambda path: ls.geometry(PRESS),
+    "load_spectrum": lambda path: ls.load_spectrum(ls.bearings(PRESS, theta2=N), classes=5),
+    "motor_load": lambda path: ls.motor_load(PRESS, ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01), theta2=N),
+    "open_study": lambda path: ls.study(DESIGNS, path / "opened.nc", of=["F32"], theta2=N).load(),
+    "orders": lambda path: ls.orders(ls.sweep(PRESS, N, of=["Fsx"]), ["Fsx"], n=3),
+    "pareto": lambda path: ls.pareto(ls.peaks(DESIGNS, of=["F32"], theta2=N), minimize="F32_peak"),
+    "peaks": lambda path: ls.peaks(DESIGNS, theta2=N),
+    "pin_friction": lambda path: ls.pin_friction(PRESS, {"B": BEARING}, theta2=N),
+    "position_equation": lambda path: ls.position_equation(PRESS, 45.0),
+    "regressor": lambda path: ls.regressor(PRESS, ["T12"], theta2=N),
+    "screen": lambda path: ls.screen(PRESS, {"ground": (0.19, 0.21)}, n=3, minimize="F32_peak", theta2=N),
+    "sensitivities": lambda path: ls.sensitivities(PRESS, "F32_peak", to=["ground"]),
+    "size_links": lambda path: ls.size_links(PRESS, STEEL, safety=2.0),
+    "size_pins": lambda path: ls.size_pins(PRESS, allowable={"shear": 6e7}, eye=0.02),
+    "speed_limit": lambda path: ls.speed_limit(PRESS, "F32", below=1e5),
+    "speed_separation": lambda path: ls.speed_separation(PRESS, theta2=N),
+    "strength": lambda path: ls.strength(PRESS, STEEL),
+    "study": lambda path: ls.study(DESIGNS, path / "study.nc", of=["F32"], theta2=N).load(),
+    "sweep": lambda path: ls.sweep(PRESS, N),
+    "system": lambda path: ls.system(PRESS, 45.0),
+    "tolerance": lambda path: ls.tolerance(PRESS, {"ground": "js9"}, of="F32_peak", n=4),
+}
+SLOW = {"size_links"}
+FILES = (
+    "bearings",
+    "check",
+    "choose_bearings",
+    "orders",
+    "peaks",
+    "screen",
+    "sensitivities",
+    "strength",
+    "study",
+    "sweep",
+)
+"""Results whose files are checked, of each form one. That of pin friction has coordinates named "loads[3].torque": CF
+advises against brackets."""
+CHECKER = """
+import sys
+from compliance_checker.runner import CheckSuite, ComplianceChecker
+
+CheckSuite.load_all_available_checkers()
+for file in sys.argv[1:]:
+    ComplianceChecker.run_checker(file, ["cf:1.11"], 0, "strict", "-")
+"""
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory) -> dict[str, xr.Dataset]:
+    path = tmp_path_factory.mktemp("results")
+    return {name: make(path) for name, make in RESULTS.items() if name not in SLOW}
+
+
+def test_every_function_that_returns_a_dataset_is_tried():
+    functions = {name: getattr(ls, name) for name in ls.__all__ if inspect.isfunction(getattr(ls, name))}
+    returns = {name: str(inspect.signature(each).return_annotation) for name, each in functions.items()}
+    assert {name for name, kind in returns.items() if "Dataset" in kind} <= {*RESULTS}
+
+
+@pytest.mark.long
+def test_pint_xarray_takes_every_result(results):
+    """Units are spelled so that pint and UDUNITS both read them: `ds.pint.quantify()` works."""
+    pytest.importorskip("pint_xarray")
+    for plain in results.values():
+        quantities = plain.pint.quantify()
+        assert {name for name, values in quantities.items() if values.pint.units is not None} == {
+            name for name, values in plain.items() if "units" in values.attrs
+        }
+        for name, values in quantities.pint.dequantify(format="~").items():
+            np.testing.assert_array_equal(values.values, plain[name].values)
+
+
+@pytest.mark.long
+def test_every_file_passes_a_cf_checker(results, tmp_path):
+    """IOOS's compliance-checker, test cf:1.11.
+
+    Its check of monotonic labels fails on labels that are texts, which it says itself.
+    """
+    if importlib.util.find_spec("compliance_checker") is None:
+        pytest.skip("compliance-checker is not installed")
+    for name in FILES:
+        ls.save(results[name], tmp_path / f"{name}.nc")
+    files = [f"{name}.nc" for name in FILES]
+    checker = [sys.executable, "-W", "ignore", "-c", CHECKER, *files]
+    done = subprocess.run(checker, cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout.count("All tests passed!") == len(files), done.stdout + done.stderr
