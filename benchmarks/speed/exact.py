@@ -27,6 +27,7 @@ def rows(size: Size) -> list[Row]:
             *_grids(size, 20.0, {720: 1.0, 360: 1.0}),
             *_grids(size, 0.0, {1440: 1.0}),
             _over_angle(size),
+            *_on_pieces(size),
             _lapack(size),
             *_shared(size),
             _screening(size),
@@ -98,6 +99,40 @@ def _over_angle(size: Size) -> Row:
     exact = partial(ls.peaks, designs, threads=1)
     timed = race({EXACT: exact, _grid(360): partial(exact, theta2=360)}, size)
     return timed.row(SHARE, EXACT, _grid(360), note="with a torque over theta2 that all designs share")
+
+
+def _on_pieces(size: Size) -> list[Row]:
+    """Time exact peaks of machines whose turn is searched in pieces, or which make only part of one."""
+    scenes = {
+        "slider-cranks with Coulomb friction in the guide": _slider_cranks(10 * size.designs),
+        "four-bars that move over part of a turn": _rocking(10 * size.designs),
+    }
+    races = {
+        note: race(
+            {EXACT: partial(ls.peaks, scene, threads=1), _grid(360): partial(ls.peaks, scene, theta2=360, threads=1)},
+            size,
+        )
+        for note, scene in scenes.items()
+    }
+    return [timed.row(SHARE, EXACT, _grid(360), note=note) for note, timed in races.items()]
+
+
+def _slider_cranks(count: int) -> ls.Scene:
+    rng = np.random.default_rng(3)
+    crank = rng.uniform(0.03, 0.06, count)
+    numbers = rng.uniform(0.2, 2.0, count), crank * rng.uniform(-0.3, 0.3, count), rng.uniform(0.02, 0.2, count)
+    links = _link(rng, crank), _link(rng, crank * rng.uniform(2.5, 4.5, count))
+    push = ls.Load("slider", tuple(map(_designs, rng.uniform(-50.0, 50.0, (2, count)))))
+    mechanism = ls.SliderCrank(*links, *map(_designs, numbers))
+    return ls.Scene(mechanism, _designs(rng.uniform(1.0, 30.0, count)), 5.0, (0.0, -9.81), [push])
+
+
+def _rocking(count: int) -> ls.Scene:
+    """Return random four-bars whose coupler and rocker reach less far than crank and ground together."""
+    rng = np.random.default_rng(4)
+    a, b, c, share = rng.uniform(0.5, 1.0, (4, count))
+    d = b + c - a * share
+    return ls.Scene(ls.FourBar(*(_link(rng, length) for length in (a, b, c)), _designs(d)), 10.0, gravity=(0.0, -9.81))
 
 
 def _grid(count: int) -> str:
