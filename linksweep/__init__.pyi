@@ -21,6 +21,7 @@ from linksweep.analysis.drive.motors.governed import GovernedMotor
 from linksweep.analysis.drive.motors.induction import InductionMotor
 from linksweep.analysis.drive.run_down import run_down
 from linksweep.analysis.drive.run_up import run_up
+from linksweep.analysis.drive.steady_cycle import steady_cycle
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.analysis.pins.bearings import bearings, load_spectrum
 from linksweep.analysis.pins.breakdown import breakdown
@@ -147,6 +148,7 @@ __all__ = [
     "size_pins",
     "speed_limit",
     "speed_separation",
+    "steady_cycle",
     "strength",
     "study",
     "sweep",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 
 from linksweep.tables.cells import unit_of
@@ -33,6 +34,38 @@ def drive_table(work: xr.Dataset) -> Table:
             size = abs(float(work[beside]))
             rows.append((title, without_rounding(float(work[name]), size), unit_of(work[name])))
     return Table(("the drive", "", ""), rows, right=(1,))
+
+
+STEADY = {  # title by variable
+    "speed_mean": "mean speed",
+    "speed_min": "least speed",
+    "speed_max": "largest speed",
+    "fluctuation": "fluctuation",
+    "motor_torque_rms": "motor torque, root mean square",
+    "motor_power_mean": "motor power, mean",
+    "motor_work": "work of the motor in a cycle",
+    "motor_heat_mean": "heat in the motor",
+    "cycle_time": "time of a cycle",
+}
+
+
+def steady_table(cycle: xr.Dataset) -> Table:
+    """Return the table of a machine on its motor; of one that does not keep turning, what it does."""
+    words = cycle["status"].attrs["flag_meanings"].split()[int(cycle["status"])]
+    if words != "ok":
+        return Table(("on its motor", "", ""), [("the machine", words.replace("_", " "), "")], right=(1,))
+    torque = cycle["motor_torque"]
+    peak = abs(torque).max().assign_attrs(torque.attrs)
+    work = float(peak) * 2.0 * np.pi * float(cycle["motor_speed"].max() / cycle["speed_max"])
+    sizes = {"motor_work": work, "motor_power_mean": work / float(cycle["cycle_time"])}
+    rows: list[Row] = [("motor torque, largest", f"{float(peak):.5g}", unit_of(torque))]
+    for name, title in STEADY.items():
+        number = float(cycle[name])
+        if np.isfinite(number):
+            rows.append(
+                (title, without_rounding(number, sizes.get(name, number)), unit_of(cycle[name]).removesuffix("1"))
+            )
+    return Table(("on its motor", "", ""), rows, right=(1,))
 
 
 def wheel_table(wheel: xr.Dataset) -> Table:

@@ -131,6 +131,7 @@ CALLS = {
     "run_down": lambda s, path: ls.run_down(s.machine, until=0.99, turns=0.1, of=[s.drive]),
     "run_up": lambda s, path: ls.run_up(s.machine, MOTOR, until=1e-3, of=[s.drive]),
     "sample": lambda s, path: ls.sample(s.machine, s.range, n=4),
+    "steady_cycle": lambda s, path: ls.steady_cycle(s.machine, ls.DCMotor(1e4, 5.0), theta2=SAMPLES),
     "save": lambda s, path: ls.save(s.cycle, path / "cycle.nc"),
     "save_drawing": lambda s, path: ls.save_drawing(s.machine, path / "sheet.svg"),
     "scene_at": lambda s, path: ls.scene_at(s.study, design=2),
@@ -210,10 +211,8 @@ COMMANDS = {
 """Arguments of each command that takes a scene; `demo` and `completion` take none."""
 
 OF_BEAMS = "size_links strength plot.moment_diagram plot.moment_diagrams command.strength"
-NO_CLOSED_FORM = """
-    best_counterweights counterweights position_equation regressor speed_limit speed_separation plot.loop
-    command.balance
-"""
+NO_CLOSED_FORM = """best_counterweights counterweights position_equation regressor speed_limit speed_separation
+    plot.loop command.balance"""
 LACKING: dict[str, str] = {
     "press": "plot.loop",
     "engine": """
@@ -225,7 +224,7 @@ LACKING: dict[str, str] = {
         bearings best_counterweights breakdown choose_bearings command.choose-bearings counterweights coupler_curve duty
         explore flywheel geometry load_spectrum motor_load orders pin_friction position_equation regressor
         shaking_moment speed_limit speed_separation with_counterweights plot.balance plot.bearing plot.bearings
-        plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders
+        plot.breakdown plot.flywheel plot.forces plot.hodograph plot.mechanism plot.motor_load plot.orders steady_cycle
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
         plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw run_down run_up plot.run_up
@@ -239,7 +238,7 @@ LACKING: dict[str, str] = {
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
-        run_down run_up plot.run_up
+        run_down run_up plot.run_up steady_cycle
     """,
     "whitworth": NO_CLOSED_FORM,
     "geared-five-bar": NO_CLOSED_FORM,
@@ -254,7 +253,7 @@ LACKING: dict[str, str] = {
         plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
         plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
         contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing run_down run_up
-        plot.run_up
+        plot.run_up steady_cycle
     """,
 }
 """The pairs that give a sentence, by machine."""

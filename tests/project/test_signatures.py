@@ -32,8 +32,8 @@ SUBJECTS = {
 WORK = {
     "bearings", "best_counterweights", "breakdown", "choose_bearings", "compare", "coupler_curve", "duty", "flywheel",
     "geometry", "motor_load", "peaks", "pin_friction", "position_equation", "regressor", "report", "run_down",
-    "run_up", "screen", "sensitivities", "speed_limit", "speed_separation", "study", "sweep", "system", "tolerance",
-    "MultiCylinder.sweep",
+    "run_up", "screen", "sensitivities", "speed_limit", "speed_separation", "steady_cycle", "study", "sweep", "system",
+    "tolerance", "MultiCylinder.sweep",
 }  # fmt: skip
 """Functions that compute cycles or peaks, and therefore take `threads`."""
 

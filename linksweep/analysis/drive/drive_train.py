@@ -16,7 +16,7 @@ goes in the direction of omega2: speed = dφ/dt ≥ 0, acceleration = d²φ/dt²
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -27,16 +27,16 @@ from linksweep.analysis.drive.duty import turning_problems
 from linksweep.analysis.drive.motors.motor import AnyMotor, motor_problems
 from linksweep.base.checked_number import checked_number
 from linksweep.base.fields import numbers
-from linksweep.base.frozen import bare
-from linksweep.base.validate import Number, Rule, is_array, quote, refuse
+from linksweep.base.frozen import bare, with_arrays
+from linksweep.base.validate import Number, Rule, count_problems, is_array, quote, refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.derivatives import derivative_of
-from linksweep.engine.trace.plan import Plan, plan
+from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.compute import require
 from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
+from linksweep.scene.designs.selection import Block, selected
 from linksweep.scene.dimensions import aligned
-from linksweep.scene.inputs import Inputs
 from linksweep.scene.scene import Scene
 
 RATIO = Rule("dimensionless", above=0.0)
@@ -65,6 +65,8 @@ class DriveTrain:
     scene : scene whose omega2 is the speed at which the motor no longer drives, over all designs, and alpha2 is 0
     motor, ratio, flywheel : motor, its speed per that of the crank, inertia of the flywheel on the crank's shaft
     direction : 1 for a crank that turns counter-clockwise, -1 for clockwise
+    threads : largest number of threads; None for all cores
+    plans : plans of the torque that have been made, by the forms of their inputs: one for all angles and blocks
     """
 
     scene: Scene
@@ -72,6 +74,8 @@ class DriveTrain:
     ratio: Number
     flywheel: Number
     direction: float
+    threads: int | None = None
+    plans: dict[InputForms, Plan] = field(default_factory=dict)
 
     @cached_property
     def machine(self) -> Differentiated:
@@ -113,9 +117,18 @@ class DriveTrain:
         ratio = bare(self.ratio)
         return self.over_designs(bare(self.flywheel) + ratio * ratio * bare(self.motor.inertia))
 
-    def at(self, angles: Array) -> TrainAtAngles:
-        """Return the machine at angles [degree]."""
-        return TrainAtAngles(self, self.scene.grid(np.asarray(angles, dtype=float)))
+    def at(self, angles: int | Array) -> TrainAtAngles:
+        """Return the machine at a count of even angles over the cycle, or at angles [degree]."""
+        return TrainAtAngles(self, self.scene.grid(angles))
+
+    def part(self, block: Block) -> DriveTrain:
+        """Return the machine of some designs only."""
+
+        def some(array: xr.DataArray) -> xr.DataArray:
+            return array.isel({dim: part for dim, part in block.items() if dim in array.dims})
+
+        motor, ratio, flywheel = (with_arrays(each, some) for each in (self.motor, self.ratio, self.flywheel))
+        return replace(self, scene=selected(self.scene, block), motor=motor, ratio=ratio, flywheel=flywheel)
 
     def drive_torque(self, speed: Array) -> Array:
         """Return the motor's torque on the crank's shaft, i·M(i·ω) [N m], at speeds (*designs, angles) [rad/s]."""
@@ -164,7 +177,8 @@ class TrainAtAngles:
         train, sign = self.train, self.train.direction
         dims = (*train.dims, self.grid.dim)
         motion = {name: Field(dims, sign * value) for name, value in zip(MOTION, (speed, acceleration), strict=True)}
-        fields = evaluate(self._plan, {**self._inputs.fields, **motion}, self.grid, self._inputs.sizes)
+        inputs = self._sampled.inputs
+        fields = evaluate(self._plan, {**inputs.fields, **motion}, self.grid, inputs.sizes, train.threads)
         torque, to_speed, to_acceleration = (
             np.broadcast_to(aligned(fields[name], dims), speed.shape) for name in train.names
         )
@@ -185,17 +199,20 @@ class TrainAtAngles:
         return acceleration
 
     @cached_property
-    def _inputs(self) -> Inputs:
-        return self.train.machine.at(self.grid).inputs
+    def _sampled(self) -> Scene:
+        return self.train.machine.at(self.grid)
 
-    @cached_property
+    @property
     def _plan(self) -> Plan:
         dims = (*self.train.dims, self.grid.dim)
-        forms = tuple((name, dims if name in MOTION else form) for name, form in self._inputs.forms)
-        return plan(self.train.machine.at(self.grid).table, self.train.names, forms)
+        forms = tuple((name, dims if name in MOTION else form) for name, form in self._sampled.inputs.forms)
+        plans = self.train.plans
+        if forms not in plans:
+            plans[forms] = plan(self._sampled.table, self.train.names, forms)
+        return plans[forms]
 
 
-def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any) -> DriveTrain:
+def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, threads: int | None = None) -> DriveTrain:
     """Return a scene on its motor.
 
     Raises
@@ -205,12 +222,12 @@ def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any) -> Dri
         or an inertia that is out of bounds.
     """
     require(scene, "drives")
-    refuse(_problems(scene, motor))
+    refuse(_problems(scene, motor) + count_problems("threads", threads))
     ratio, flywheel = checked_number("ratio", ratio, RATIO), checked_number("flywheel", flywheel, INERTIA)
     direction = 1.0 if np.all(np.asarray(scene.at(scene.grid(1)).omega2) > 0.0) else -1.0
     designs = sum(0.0 * number for _, number, _ in numbers(motor) if is_array(number))
     top = direction * (motor.top_speed / ratio) + 0.0 * flywheel + designs
-    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, direction)
+    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, direction, threads)
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:

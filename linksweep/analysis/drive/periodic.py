@@ -1,0 +1,218 @@
+"""The motion of a machine on its motor that repeats from cycle to cycle.
+
+The balance of torques R(φ, w, dw/dφ) of `drive_train`, with w = ½ω², is collocated in elements between angles
+(`collocation`), and Newton's method closes the cycle, w(φ + period) = w(φ). Each step is a linear equation of the first
+order, solved exactly: the change at the first angle, carried round, must come back to itself. Elements whose defect has
+more energy than the tolerance are split, so that jumps and corners of loads and friction lie in short ones.
+
+A step takes only a part of w away. Where w then still falls, step by step, to next to nothing somewhere, the machine
+cannot keep turning: it stalls.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from linksweep.analysis.drive import collocation
+from linksweep.analysis.drive.collocation import BETWEEN, BETWEEN_WEIGHTS, INTEGRALS, POINTS, WEIGHTS, Linear
+from linksweep.analysis.drive.drive_train import DriveTrain, TrainAtAngles
+
+STATUS = ("ok", "not_whole", "stalls", "runs_away", "unstable", "not_found")
+"""Words of the status: no whole turn; the motor is too weak; no speed at which it brakes the loads enough; a deviation
+would grow; no motion that repeats and to which others come, as where no torque depends on the speed."""
+OK, NOT_WHOLE, STALLS, RUNS_AWAY, UNSTABLE, NOT_FOUND = range(6)
+
+ROUNDS = 40
+CLOSE, SETTLED = 1e-14, 1e-9
+"""Newton's change of w, in its largest value, that ends the rounds; and one that must at least halve each time."""
+FALL = 0.8
+"""Part of w that a Newton step may take at most."""
+FLOOR = 1e-6
+"""Least w, in that of the first guess, at which the balance is evaluated."""
+TOLERANCE = 1e-12
+"""Energy of an element's defect, in twice the kinetic energy, above which the element is split."""
+SPLITS, PARTS = 12, 8
+"""Times that an element may be split, and into how many."""
+LONGEST, SAMPLES = 16, 2_000_000
+"""Elements for each at the start, and designs times Gauss points, beyond which no element is split."""
+END = 1e-6
+"""Places beside the ends of an element, where a jump shows that the points between them miss."""
+SEEN = 0.02
+"""Part of an element beyond its outermost point between."""
+TRIALS = np.array([2.0, 1.6, 1.3, 1.1, 1.05, 1.02, 1.01, *np.linspace(1.0, 0.8, 21), *np.linspace(0.78, 0.02, 20)])
+"""Speeds of the first guess, in that at which the motor no longer drives."""
+FEW = 180
+"""Angles at which they are tried."""
+
+Array = np.ndarray
+
+
+class Motion(NamedTuple):
+    """Motion of many designs over elements of the travel.
+
+    Parameters
+    ----------
+    travel : ends of the elements [degree], (element + 1)
+    w : ½ω² at these ends [rad²/s²], (design, element + 1)
+    a : acceleration at the Gauss points [rad/s²], (design, element, 3)
+    """
+
+    travel: Array
+    w: Array
+    a: Array
+
+    @property
+    def widths(self) -> Array:
+        """Widths of the elements [rad]."""
+        return np.radians(np.diff(self.travel))
+
+    def places(self, at: Array) -> Array:
+        """Return the travel [degree] at places 0 to 1 in every element, (element, place)."""
+        return self.travel[:-1, None] + np.diff(self.travel)[:, None] * at
+
+    def inside(self, at: Array) -> tuple[Array, Array]:
+        """Return w and a at places in every element, (design, element, place)."""
+        return collocation.between(self.w, self.a, self.widths, at)
+
+    def only(self, designs: Array) -> Motion:
+        """Return the same motion, NaN but for some designs."""
+        w = np.where(designs[:, None], self.w, np.nan)
+        return Motion(self.travel, w, np.where(designs[:, None, None], self.a, np.nan))
+
+    def split(self, which: Array) -> Motion:
+        """Return the same motion over elements of which these are cut into `PARTS`."""
+        cuts = self.places(np.arange(1, PARTS) / PARTS)[which].ravel()
+        travel = np.sort(np.concatenate([self.travel, cuts]))
+        old = np.searchsorted(self.travel, travel[:-1], side="right") - 1
+        starts, sizes = (each / np.diff(self.travel)[old] for each in (travel[:-1] - self.travel[old], np.diff(travel)))
+        values, _ = collocation.parabolas((starts[:, None] + sizes[:, None] * POINTS).ravel())
+        a = np.einsum("dej,epj->dep", self.a[:, old], values.reshape(-1, 3, 3))
+        return Motion(travel, _ends(self.w[:, 0], a, np.radians(np.diff(travel))), a)
+
+
+class Periodic(NamedTuple):
+    """Motions that repeat.
+
+    Parameters
+    ----------
+    motion : the motions, of all designs over the same elements
+    factor : factor by which a deviation of w shrinks in a cycle, (design)
+    defect : energy of the defects of all elements [J], (design)
+    status : place in `STATUS`, (design)
+    """
+
+    motion: Motion
+    factor: Array
+    defect: Array
+    status: Array
+
+
+@np.errstate(all="ignore")
+def periodic(train: DriveTrain, count: int) -> Periodic:
+    """Return the motions that repeat, over elements that end at `count` even angles and others."""
+    elements = count * math.ceil(train.scene.period / count)  # of a degree at most
+    travel = np.arange(elements + 1) * (train.scene.period / elements)
+    speed, surplus = _first_guess(train)
+    w = np.repeat(0.5 * speed[:, None] ** 2, elements + 1, axis=1)
+    motion, floor = Motion(travel, w, np.zeros((len(speed), elements, 3))), FLOOR * w[:, 0]
+    most = min(elements * LONGEST, SAMPLES // (3 * len(speed)))
+    status = np.full(len(speed), OK)
+    for number in range(SPLITS + 1):
+        motion, factor, settled = _closed(train, motion, floor)
+        status = np.where(status == OK, _status(motion, factor, settled, surplus, floor), status)
+        motion = motion.only(status == OK)
+        defect, coarse = _defect(train, motion, floor)
+        which = np.argsort(-coarse)[: max(0, (most - len(motion.widths)) // (PARTS - 1))]
+        which = which[coarse[which] > 1.0]
+        if number == SPLITS or not which.size:
+            break
+        motion = motion.split(which)
+    return Periodic(motion, factor, defect, status)
+
+
+def balance(at: TrainAtAngles, w: Array, a: Array, floor: Array) -> Linear:
+    """Return the balance of torques and its derivatives to w and a, (design, element, place)."""
+    shape = (*at.train.shape, -1)
+    speed = np.sqrt(2.0 * np.maximum(w, floor[:, None, None]))
+    lack, to_speed, to_a = (part.reshape(w.shape) for part in at.balance(speed.reshape(shape), a.reshape(shape)))
+    to_w = to_speed / speed
+    return Linear(lack + to_w * np.minimum(w - floor[:, None, None], 0.0), to_w, to_a)
+
+
+def at_travel(train: DriveTrain, travel: Array) -> TrainAtAngles:
+    """Return the machine where the crank has travelled so far from theta2 = 0 [degree]."""
+    return train.at(np.mod(train.direction * np.ravel(travel), train.scene.period))
+
+
+def _first_guess(train: DriveTrain) -> tuple[Array, Array]:
+    """Return a constant speed at which the motor's torque is about right in the mean, and where there is none, the mean
+    torque that is left over at all speeds: positive where the machine runs away, negative where it stalls; else 0."""
+    at = train.at(FEW)
+    top = train.top_speed[..., 0].ravel()
+    still = np.zeros((*train.shape, FEW))
+    lack = np.array([_mean_lack(at, still + trial * train.top_speed) for trial in TRIALS])
+    crossed = (lack[:-1] >= 0.0) & (lack[1:] < 0.0)
+    k, designs = np.argmax(crossed, axis=0), np.arange(len(top))
+    above, below = lack[k, designs], lack[k + 1, designs]
+    root = TRIALS[k] + (TRIALS[k + 1] - TRIALS[k]) * above / np.where(crossed.any(axis=0), above - below, 1.0)
+    runs_away = lack[0] < 0.0
+    best = np.where(runs_away, TRIALS[0], TRIALS[np.argmin(np.nan_to_num(lack), axis=0)])
+    known = crossed.any(axis=0)
+    return np.where(known, root, best) * top, np.where(known, 0.0, np.where(runs_away, 1.0, -1.0))
+
+
+def _mean_lack(at: TrainAtAngles, speed: Array) -> Array:
+    return at.balance(speed, np.zeros_like(speed)).lack.mean(axis=-1).ravel()
+
+
+def _closed(train: DriveTrain, motion: Motion, floor: Array) -> tuple[Motion, Array, Array]:
+    """Return the motion that repeats, by Newton's method from a motion nearby; the factor of deviations over a cycle,
+    and whether the last change was small, for each design."""
+    widths, at = motion.widths, at_travel(train, motion.places(POINTS))
+    w, a = motion.w, motion.a
+    last = np.full(len(w), np.inf)
+    for _ in range(ROUNDS):
+        inside = w[:, :-1, None] + widths[:, None] * (a @ INTEGRALS.T)
+        steps = collocation.newton_steps(balance(at, inside, a, floor), widths)
+        factors, sums = collocation.carried(steps)
+        start = (w[:, -1] - w[:, 0] + sums[:, -1]) / (1.0 - factors[:, -1])
+        change = factors * start[:, None] + sums
+        size = abs(change).max(axis=1) / abs(w).max(axis=1)
+        part = np.minimum(1.0, FALL / np.maximum((-change / abs(w)).max(axis=1), FALL))  # w stays positive
+        a = a + part[:, None, None] * (steps.own + steps.by_start * change[:, :-1, None])
+        w = _ends(w[:, 0] + part * change[:, 0], a, widths)
+        done = ~(size > CLOSE) | ~(w.min(axis=1) > floor) | ((last < SETTLED) & (size > 0.5 * last))
+        last = size
+        if done.all():
+            break
+    return Motion(motion.travel, w, a), factors[:, -1], last < SETTLED
+
+
+def _ends(start: Array, a: Array, widths: Array) -> Array:
+    """Return w at the ends of all elements, from its first value."""
+    gains = widths * (a @ WEIGHTS)
+    return start[:, None] + np.concatenate([np.zeros((len(start), 1)), np.cumsum(gains, axis=1)], axis=1)
+
+
+def _defect(train: DriveTrain, motion: Motion, floor: Array) -> tuple[Array, Array]:
+    """Return the energy of all defects [J] for each design, and the energy of each element's defect in the tolerance,
+    of the worst design."""
+    places = np.concatenate([BETWEEN, [END, 1.0 - END]])
+    lack, _, inertia = balance(at_travel(train, motion.places(places)), *motion.inside(places), floor)
+    seen, ends = lack[..., :4], lack[..., 4:]
+    jump = SEEN * np.maximum(abs(ends).max(axis=-1) - 2.0 * abs(seen).max(axis=-1), 0.0)
+    energy = motion.widths * (abs(seen @ BETWEEN_WEIGHTS) + jump)
+    size = abs(inertia[..., 0] * motion.w[:, :-1])
+    in_tolerance = np.where(energy > TOLERANCE * size, energy / (TOLERANCE * size), 0.0)
+    return energy.sum(axis=1), np.nan_to_num(in_tolerance).max(axis=0)
+
+
+def _status(motion: Motion, factor: Array, settled: Array, surplus: Array, floor: Array) -> Array:
+    """Return the status of each design."""
+    slowest = motion.w.min(axis=1)
+    stalls = (surplus < 0.0) | (slowest < floor)
+    fails = np.where(surplus > 0.0, RUNS_AWAY, np.where(stalls, STALLS, NOT_FOUND))
+    return np.where(settled & (slowest > floor), np.where(abs(factor) < 1.0, OK, UNSTABLE), fails)
