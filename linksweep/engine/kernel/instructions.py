@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
-from linksweep.base import arctangent
+from linksweep.engine.trace import arctangent
 from linksweep.engine.trace.operators import interpret, traced_arctangent
 
 REGISTER = 8
@@ -149,7 +149,7 @@ class Instructions:
         return self.builder.select(condition, x, y)
 
     def _atan2(self, y: Any, x: Any) -> Any:
-        """Write the operations of `base.arctangent`: there is no instruction."""
+        """Write the operations of `engine.trace.arctangent`: there is no instruction."""
         traced = traced_arctangent()
         values = interpret([*traced.constants, *traced.instructions], {traced.y: y, traced.x: x}, self.operators)
         return values[traced.instructions[-1]]

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.base import low_words
-from linksweep.base.arctangent import arctangent
+from linksweep.engine.trace.arctangent import arctangent
 from linksweep.engine.trace.graph import LOW_WORDS, Graph, Node
 
 OPERATORS: Mapping[str, Callable[..., Any]] = {

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from linksweep.base.arctangent import arctangent
+from linksweep.engine.trace.arctangent import arctangent
 
 
 def angle(y, x):
