@@ -81,11 +81,10 @@ def machine_code(emit: Callable[..., None], kinds: tuple[str, ...], text: str) -
 
 
 def _processor(binding: Any) -> tuple[str, str]:
-    """Return the processor to compile for, and its features: this one, or the one that numba is told to take."""
-    told = os.environ.get("NUMBA_CPU_NAME")
-    return (told, os.environ.get("NUMBA_CPU_FEATURES", "")) if told else (
-        binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
-    )  # fmt: skip
+    """Return the processor to compile for and its features: this one, or the one that numba's settings name."""
+    if name := os.environ.get("NUMBA_CPU_NAME"):
+        return name, os.environ.get("NUMBA_CPU_FEATURES", "")
+    return binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
 
 
 def write_call(builder: Any, function: Any, *arguments: Any) -> None:
