@@ -288,18 +288,17 @@ def test_the_lightest_press_keeps_its_stroke():
     best = lightest_press()
     assert best(best.x0) == pytest.approx(276.4, rel=1e-3)
     result = best.optimum(minimax=12)
-    assert result.allowed and result.fun == pytest.approx(90.326, rel=1e-5)
+    for each, near in ((result, 1e-5), (best.optimum(), 1e-5), (best.optimum(method="trust-constr"), 1e-4)):
+        assert each.allowed and each.fun == pytest.approx(90.326, rel=near)
     active = ls.peaks(best.scene(result.x), of=["transmission_angle"]), ls.geometry(best.scene(result.x))
     assert [float(active[0].transmission_angle_min), float(active[1].swing)] == pytest.approx([40.0, 50.0], rel=1e-5)
 
 
 @pytest.mark.long
-def test_other_methods_confirm_the_lightest_press():
+def test_differential_evolution_confirms_the_lightest_press():
     best = lightest_press()
-    other = search(best, constraints=best.constraints, maxiter=40, polish=False)
-    assert other.fun == pytest.approx(90.326, rel=0.01) and other.fun >= 90.326 * (1 - 1e-5)
-    assert best.optimum().fun == pytest.approx(90.326, rel=1e-5)
-    assert best.optimum(method="trust-constr").fun == pytest.approx(90.326, rel=1e-4)
+    other = search(best, constraints=best.constraints, maxiter=60, polish=False)
+    assert other.fun == pytest.approx(90.326, rel=5e-3) and other.fun >= 90.326 * (1 - 1e-5)
 
 
 @pytest.mark.parametrize(

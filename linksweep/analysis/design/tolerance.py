@@ -153,7 +153,10 @@ def _choices(scene: Scene, tolerances: Any) -> dict[str, Choice]:
             if kind != "length" or not isinstance(value, float):
                 problems.append(f"{path}: {choice!r} is a class of lengths; give it ls.Tolerance(lower, upper)")
             else:
-                choices[path] = Tolerance(*limit_deviations(str(choice), abs(value)))
+                try:
+                    choices[path] = Tolerance(*limit_deviations(str(choice), abs(value)))
+                except ValueError as error:
+                    problems.append(f"{path} = {error}")
         elif isinstance(choice, Choice):
             choices[path] = choice
         else:

@@ -129,6 +129,7 @@ def test_designs_have_each_their_own():
     [
         ({"crank.lenght": "js9"}, "did you mean"),
         ({"omega2": "h7"}, "class of lengths"),
+        ({"crank.length": "H77"}, "crank.length = 'H77': grade 77: must be from 5 to 14"),
         ({"ground": 0.1}, "must be ls.Tolerance"),
         ({"ground": ls.Normal(0.2, 0.1)}, "mean of its own"),
     ],
