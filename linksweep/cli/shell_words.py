@@ -22,6 +22,7 @@ PHRASES = {
     'ls.Tolerance(lower, upper), ls.Normal(deviation=...) or a class of ISO 286, as "h9"': (
         "two limits, or a class of ISO 286, as h9"
     ),
+    'give pins={"{}": ls.Bearing(capacity=...)}': "linksweep bearings states the life of a capacity",
     "give it ls.Tolerance(lower, upper)": "give it two limits",
     "ls.Bar(...), or as ls.Link(..., section=ls.Section(...))": 'type = "Bar", or with section = {...}',
     "declare it in guides, by an ls.Guide": "declare it in guides, as guides.slide = { through = [x, y] }",
@@ -38,7 +39,7 @@ PHRASES = {
     " of the Dataset: see its status": ": see its status",
     "ls.peaks of several designs": "linksweep peaks of several designs",
 }
-"""Phrases of messages that a command can meet, and what to say in a shell."""
+"""Phrases of messages that a command can meet, {} for any text in them, and what to say in a shell."""
 
 CALL = re.compile(r"\b(?:ls|linksweep)\.([a-z]\w*)(?:\([^()]*\))?")
 VALUE = re.compile(r"""\b([a-z]\w*)=("[^"]*"|'[^']*'|\{[^}]*\}|[\w.+-]*\w)""")
@@ -65,7 +66,7 @@ def in_shell_words(message: str, command: argparse.ArgumentParser, commands: Col
         return head[0] if name not in options else options[name] + (" " if equals else "")
 
     for phrase, instead in PHRASES.items():
-        message = message.replace(phrase, instead)
+        message = re.sub(re.escape(phrase).replace(r"\{\}", ".*?"), instead, message)
     return HEAD.sub(named, VALUE.sub(paired, CALL.sub(called, message)))
 
 

@@ -132,11 +132,15 @@ LIMITS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("limits", LIMITS, ids=str)
+@pytest.mark.parametrize(
+    "limits",
+    [LIMITS[2], *(pytest.param(each, marks=pytest.mark.long) for each in LIMITS if each is not LIMITS[2])],
+    ids=str,
+)
 def test_the_choice_is_the_smallest_that_suffices_for_each_design(limits):
-    designs = ls.grid(PRESS, {"omega2": [5.0, 30.0, 90.0], "loads[1].force[2]": [-80.0, -3e3, -1e5]})
+    designs = ls.grid(PRESS, {"omega2": [10.0, 90.0], "loads[1].force[2]": [-3e3, -2e4]})
     chosen = ls.choose_bearings(designs, life="20000 h", **limits)
-    assert chosen.choice.dims[-1] == "pin" and chosen.choice.shape == (3, 3, 4)
+    assert chosen.choice.dims[-1] == "pin" and chosen.choice.shape == (2, 2, 4)
     names = names_of(chosen)
     for place in np.ndindex(names.shape):
         pin, words = "ABCD"[place[-1]], {}

@@ -39,9 +39,14 @@ def cells(ax, shape) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("statistic", "maximize", "reduce"),
-    [("best", False, np.min), ("best", True, np.max), ("mean", False, np.mean), ("worst", False, np.max),
-     ("worst", True, np.min)],
-)  # fmt: skip
+    [
+        ("best", False, np.min),
+        ("mean", False, np.mean),
+        pytest.param("best", True, np.max, marks=pytest.mark.long),
+        pytest.param("worst", False, np.max, marks=pytest.mark.long),
+        ("worst", True, np.min),
+    ],
+)
 def test_a_bin_has_the_statistic_of_its_designs(statistic, maximize, reduce):
     ax = SAMPLE.linksweep.heat_map("F32_peak", bins=4, statistic=statistic, maximize=maximize)
     drawn, edges = cells(ax, (4, 4)), [np.linspace(v.min(), v.max(), 5) for v in (CRANK, COUPLER)]

@@ -3,11 +3,13 @@
 import copy
 import dataclasses
 import inspect
+import multiprocessing
 import pickle
 
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.optimize import differential_evolution
 
 import linksweep as ls
 from linksweep.scene.examples import names
@@ -87,3 +89,18 @@ def test_scenes_that_have_been_computed_are_copied_without_their_results(name):
 def test_an_objective_is_pickled_for_the_workers_of_an_optimizer():
     of = ls.objective(ls.example("press"), {"coupler.length": (0.2, 0.24)}, minimize="F32_peak", theta2=24)
     assert WAYS["pickle"](of)([0.22]) == of([0.22])
+
+
+@pytest.mark.long
+def test_an_objective_is_evaluated_by_other_processes():
+    """What ``differential_evolution(f, …, workers=-1)`` does, with processes that inherit nothing."""
+    may_be = {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}
+    f = ls.objective(ls.example("press"), may_be, minimize="F32_peak", subject_to={"swing": (40, None)})
+    again, x = pickle.loads(pickle.dumps(f)), np.array([0.21, 0.17])
+    assert again(x) == f(x) and (again.gradient(x) == f.gradient(x)).all()
+    assert [c.fun(x).tolist() for c in again.constraints] == [c.fun(x).tolist() for c in f.constraints]
+    words = {"updating": "deferred", "polish": False, "maxiter": 1, "popsize": 3, "rng": 1}
+    alone = differential_evolution(f, f.bounds, **words)
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        shared = differential_evolution(f, f.bounds, workers=pool.map, **words)
+    assert (shared.x == alone.x).all() and shared.fun == alone.fun

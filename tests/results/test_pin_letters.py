@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import closed_figures, plt  # noqa: F401
+from long import long_but
 
 import linksweep as ls
 
@@ -14,6 +15,7 @@ LENGTHS = {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}
 STUDY = ls.peaks(ls.sample(PRESS, LENGTHS, n=8), of=["F32", "T12"], theta2=N)
 CYCLE = ls.sweep(PRESS, N)
 MADE = {"ground": "js9"}
+MOTOR = ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01)
 
 CALLS = {
     "sweep": lambda name, path: ls.sweep(PRESS, N, of=name),
@@ -39,6 +41,8 @@ CALLS = {
     "pin_friction": lambda name, path: ls.pin_friction(
         PRESS, {"B": ls.Bearing(diameter=0.02, friction=0.1)}, of=[name], theta2=N
     ),
+    "run_down": lambda name, path: ls.run_down(PRESS, until=0.99, turns=0.1, of=[name]),
+    "run_up": lambda name, path: ls.run_up(PRESS, MOTOR, until=1e-3, of=[name]),
     "plot.bearing": lambda name, path: CYCLE.linksweep.bearing(name),
     "plot.forces": lambda name, path: CYCLE.linksweep.forces([name]),
     "plot.breakdown": lambda name, path: ls.breakdown(PRESS, "F32", theta2=N).linksweep.breakdown(name),
@@ -76,7 +80,7 @@ def numbers(result) -> str:
     return repr(lines + [np.ma.asarray(each).tolist() for each in colors if each is not None])
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("name", long_but(CALLS, "sweep", "screen", "pareto", "objective", "orders", "plot.scatter"))
 def test_a_letter_gives_what_the_force_gives(name, tmp_path):
     by_letter, by_name = (numbers(CALLS[name](word, tmp_path)) for word in ("B", "F32"))
     assert by_letter == by_name and len(by_name) > 10
