@@ -12,8 +12,7 @@ from linksweep.analysis.drive.drive_train import drive_train
 from linksweep.analysis.drive.motion_in_time import LASTS, REACHED, SETTLES, Run
 from linksweep.analysis.drive.motors.direct_current import DCMotor
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, turned
-from linksweep.base.checked_number import checked_number
+from linksweep.analysis.drive.runs import Designs, Names, checked, described, one_part, turned
 from linksweep.base.validate import Number, Rule, quote, refuse
 from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
@@ -98,8 +97,8 @@ def run_down(
     (0, True)
     """
     require(scene, "drives")
-    scene, until = in_memory(scene), checked_number("until", until, UNTIL)
-    refuse([f"until = {quote(until)}: must be less than 1"] if np.any(until >= 1.0) else [])
+    scene, until = in_memory(scene), one_part(until, UNTIL)
+    refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
     start, turns, names = checked(scene, start, turns, of, threads)
     train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel)
     designs = Designs(scene, train, start, threads)

@@ -12,8 +12,7 @@ from linksweep.analysis.drive.drive_train import drive_train
 from linksweep.analysis.drive.motion_in_time import LASTS, NOT_STARTED, REACHED, SETTLES, STOPS, Run
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.operating_point import operating_speed
-from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, turned
-from linksweep.base.checked_number import checked_number
+from linksweep.analysis.drive.runs import Designs, Names, checked, described, fed, one_part, turned
 from linksweep.base.validate import Number, Rule
 from linksweep.engine.time_steps import GIVEN_UP
 from linksweep.results.compute import require
@@ -105,7 +104,7 @@ def run_up(
     ('s', True, 0)
     """
     require(scene, "drives")
-    scene, until = in_memory(scene), checked_number("until", until, UNTIL)
+    scene, until = in_memory(scene), one_part(until, UNTIL)
     start, turns, names = checked(scene, start, turns, of, threads)
     designs = Designs(scene, drive_train(scene, motor, ratio, flywheel), start, threads)
     usual, top = operating_speed(designs), designs.top_speed

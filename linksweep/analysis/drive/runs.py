@@ -96,10 +96,18 @@ class Designs:
 def checked(scene: Scene, start: Any, turns: Any, of: Names, threads: Any) -> tuple[Number, float, tuple[str, ...]]:
     """Return the start [degree], the most turns and the names of quantities, as they are to be."""
     start, turns = checked_number("start", start, START), checked_number("turns", turns, TURNS)
+    refuse([f"turns: has {np.ndim(turns)} dims: give one number for all designs"] if np.ndim(turns) else [])
     names = requested("of", pins_and_torque(scene) if of is None else of, scene)
     unknown = [problem for name in names for problem in quantity_problems("of", name, scene.table.quantity, scene)]
     refuse(unknown + count_problems("threads", threads))
     return start, turns, tuple(names)
+
+
+def one_part(until: Any, rule: Rule) -> float:
+    """Return the part of a speed until which cranks run, one number for all designs."""
+    until = checked_number("until", until, rule)
+    refuse([f"until: has {np.ndim(until)} dims: give one number for all designs"] if np.ndim(until) else [])
+    return until
 
 
 def pins_and_torque(scene: Scene) -> list[str]:

@@ -206,6 +206,12 @@ def test_a_weak_motor_does_not_start_or_stalls():
     assert float(run.speed[1].max()) > 0.0
 
 
+def test_a_machine_that_does_not_turn_fully_breaks_off():
+    rocking = replace(FOUR_BAR, mechanism=replace(FOUR_BAR.mechanism, ground=0.35))
+    run = ls.run_up(rocking, MOTOR, ratio=RATIO, start=120.0, of=["F32"])
+    assert meaning(run) == ["breaks_off"] and np.isnan(run.operating_speed)
+
+
 def test_friction_holds_a_crank_at_rest():
     """The slider's weight presses with 3.9 N on its guide: friction of 0.1 takes about 0.03 N m of the crank."""
     light = [ls.Link(link[0], 0.0, 0.0) for link in (CRANK, ROD)]
@@ -255,6 +261,8 @@ def test_a_batch_is_its_designs():
     [
         (lambda: ls.run_up(FOUR_BAR, 3.0), "motor = 3"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, until=1.5), "until = 1.5"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, until=xr.DataArray([0.5, 0.6], dims="part")), "until: has 1 dims"),
+        (lambda: ls.run_up(FOUR_BAR, MOTOR, turns=xr.DataArray([5.0, 6.0], dims="part")), "turns: has 1 dims"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, ratio=0.0), "ratio = 0"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, turns=0.0), "turns = 0"),
         (lambda: ls.run_up(FOUR_BAR, MOTOR, of=["F23z"]), "F23z"),
