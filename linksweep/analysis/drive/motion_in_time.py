@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.time_steps import GOES_ON, LANDING, Level, Systems, Trace
+from linksweep.engine.time_steps import GIVEN_UP, GOES_ON, LANDING, Level, Systems, Trace
 from linksweep.scene.pairs import Array, Pairs
 from linksweep.scene.scene import Scene
 
@@ -31,6 +31,8 @@ LONGEST = np.radians(30.0)
 """Angle of the longest step."""
 AT_REST = 1e-30
 """Speed [rad/s] in place of 0: a crank that is about to turn has friction against it."""
+ANGLES = 96
+"""Angles of a turn at which a machine is looked at before it runs."""
 STEPS = 1_000_000
 """Steps of a run, at most."""
 ROUNDS = 40
@@ -62,8 +64,8 @@ class Crank:
     threads: int | None = None
 
     def at(self, rows: Array, angle: Array) -> Pairs:
-        """Return pairs of a design and φ [rad]."""
-        return Pairs(self.scene, rows, self.angles(rows, angle))
+        """Return pairs of a design and φ [rad]; beyond a failure, where φ is no number, at the start."""
+        return Pairs(self.scene, rows, self.angles(rows, np.where(np.isfinite(angle), angle, 0.0)))
 
     def values(self, names: tuple[str, ...], pairs: Pairs, speed: Array, rise: Array) -> Array:
         """Return values (names, pairs) of quantities at w [rad/s] and dw/dt [rad/s²]."""
@@ -156,8 +158,17 @@ class Run:
         start = np.zeros((len(rows), 4))
         start[:, SPEED] = self.speeds
         starts = (self.speeds > 0.0) | ~(self.crank.slopes(rows, start)[:, SPEED] <= 0.0)
-        trace = self.systems.integrate(start, np.where(starts, GOES_ON, NOT_STARTED), STEPS)
+        outcome = np.where(self._turns_fully(), np.where(starts, GOES_ON, NOT_STARTED), GIVEN_UP)
+        trace = self.systems.integrate(start, outcome, STEPS)
         return trace._replace(outcome=np.where(trace.outcome == GOES_ON, LASTS, trace.outcome))
+
+    def _turns_fully(self) -> Array:
+        """Return which designs are ok at every angle of a cycle at their usual speeds."""
+        count, n = len(self.target), ANGLES * round(self.crank.scene.period / 360.0)
+        rows, angles = np.repeat(np.arange(count), n), np.tile(np.arange(n) * (self.cycle / n), count)
+        pairs = self.crank.at(rows, angles)
+        (status,) = self.crank.values(("status",), pairs, self.usual[rows], np.zeros(len(rows)))
+        return np.all(status.reshape(count, n) == 0.0, axis=1)
 
     def _outcome(self, rows: Array, state: Array) -> Array:
         """Return what has become of some designs after a step, and set their next whole cycle."""
