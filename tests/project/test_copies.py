@@ -98,7 +98,7 @@ def test_an_objective_is_evaluated_by_other_processes():
     f = ls.objective(ls.example("press"), may_be, minimize="F32_peak", subject_to={"swing": (40, None)})
     again, x = pickle.loads(pickle.dumps(f)), np.array([0.21, 0.17])
     assert again(x) == f(x) and (again.gradient(x) == f.gradient(x)).all()
-    assert [c.fun(x).tolist() for c in again.constraints] == [c.fun(x).tolist() for c in f.constraints]
+    assert [float(c.fun(x)) for c in again.constraints] == [float(c.fun(x)) for c in f.constraints]
     words = {"updating": "deferred", "polish": False, "maxiter": 1, "popsize": 3, "rng": 1}
     alone = differential_evolution(f, f.bounds, **words)
     with multiprocessing.get_context("spawn").Pool(2) as pool:
