@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.design.bins import STATISTICS, binned, bins_of
 from linksweep.analysis.design.pareto import variable_problems
 from linksweep.base.validate import choice_problems, count_problems, name_problems, quote, refuse
-from linksweep.plot.bins import STATISTICS, binned, bins_of
 from linksweep.plot.kit import scales, signals
 from linksweep.plot.kit.colors import BLACK, GREY, SHADE
 from linksweep.plot.kit.designs import column, heading, in_words, none_ok

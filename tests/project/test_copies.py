@@ -93,7 +93,7 @@ def test_an_objective_is_pickled_for_the_workers_of_an_optimizer():
 
 @pytest.mark.long
 def test_an_objective_is_evaluated_by_other_processes():
-    """What ``differential_evolution(f, …, workers=-1)`` does, with processes that inherit nothing."""
+    """As by ``differential_evolution(f, …, workers=-1)``, with processes that inherit nothing."""
     may_be = {"coupler.length": (0.2, 0.24), "rocker.length": (0.16, 0.2)}
     f = ls.objective(ls.example("press"), may_be, minimize="F32_peak", subject_to={"swing": (40, None)})
     again, x = pickle.loads(pickle.dumps(f)), np.array([0.21, 0.17])
