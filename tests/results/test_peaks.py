@@ -1,6 +1,7 @@
 """peaks: against dense sweeps and against a reference of a few lines, row by row; names, dims, status, bits."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -285,3 +286,11 @@ def test_peaks_do_not_depend_on_the_number_of_threads(monkeypatch):
     one, two, many = (ls.peaks(batch(), of=["F32", "T12"], theta2=90, threads=n) for n in (1, 2, 7))
     xr.testing.assert_identical(one, two)
     xr.testing.assert_identical(one, many)
+
+
+def test_a_damper_on_a_machine_whose_cylinders_are_moved_changes_nothing_without_a_coefficient():
+    """Where its ends come closest depends on the lengths of the cylinders, which change with theta2."""
+    scene = ls.example("excavator")
+    idle = ls.Damper(("ground", 1.0, 3.0), ("bucket", 0.3, 10.0), 0.0)
+    plain, more = (ls.peaks(s, of=["force_c2"]) for s in (scene, replace(scene, loads=[*scene.loads, idle])))
+    np.testing.assert_allclose(more.force_c2_max, plain.force_c2_max, rtol=1e-10)

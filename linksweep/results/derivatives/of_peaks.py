@@ -48,6 +48,8 @@ SETTLED = 1e-9
 """Step of the last secant [rad] below which a peak counts as smooth."""
 BESIDE = 1e-6
 """Distance from a jump [degree] at which one-sided derivatives are taken."""
+SAME = 1e-8
+"""Difference of a peak and its polished one, relative to it, beyond which they are not the same."""
 APART = 1e-3
 """Least distance of two rises [degree]: those on the two sides of a kink are one."""
 EQUAL = 1e-10
@@ -102,7 +104,8 @@ def rise_derivatives(
     known; where it is not, as at an angle that stays, they are those at the angle itself."""
     polished, smooth = _polished(pairs, name, angles)
     held, jumps, moves = _at_jumps(pairs, angles, to)
-    smooth &= ~jumps
+    (polished_heights,) = pairs.at((name,), polished)
+    smooth &= ~jumps & (np.abs(polished_heights - heights) <= SAME * np.abs(heights))  # not in the middle of a jump
     place = np.where(smooth, polished, _side(pairs, name, angles, heights))
     values = pairs.at(tuple(derivative_of(name, path) for path in (*to, ANGLE)), place)
     slopes, steep = values[:-1], values[-1]
