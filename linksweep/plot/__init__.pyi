@@ -6,6 +6,7 @@ from linksweep.plot.curves import torque as torque
 from linksweep.plot.cycle_page import cycle as cycle
 from linksweep.plot.drives import flywheel as flywheel
 from linksweep.plot.drives import motor_load as motor_load
+from linksweep.plot.drives import run_up as run_up
 from linksweep.plot.drives import torque_with_flywheel as torque_with_flywheel
 from linksweep.plot.films.animation import animate as animate
 from linksweep.plot.heat_maps import heat_map as heat_map
@@ -14,7 +15,6 @@ from linksweep.plot.load_analysis import over_speed as over_speed
 from linksweep.plot.load_diagrams import bearing as bearing
 from linksweep.plot.load_diagrams import bearings as bearings
 from linksweep.plot.machine import mechanism as mechanism
-from linksweep.plot.runs import run_up as run_up
 from linksweep.plot.shaking_force import hodograph as hodograph
 from linksweep.plot.shaking_force import orders as orders
 from linksweep.plot.study_plots import parallel_coordinates as parallel_coordinates
