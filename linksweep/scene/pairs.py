@@ -67,7 +67,8 @@ def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
     """
     if scene.steady:
         return scene.inputs, scene.grid(angles), np.empty(0, dtype=int)
-    different, sample = np.unique(angles, return_inverse=True)
+    different = np.unique(angles)
+    sample = np.searchsorted(different, angles)  # faster than numpy's own inverse, for few different angles
     known = scene.grid(different)
     folded, first, place = np.unique(in_period(different, scene.period), return_index=True, return_inverse=True)
     inputs = scene.at(known._replace(angles=folded, table=known.table.take(first, axis=1))).inputs

@@ -69,8 +69,9 @@ def compiled_search() -> Callable:
 @cache
 def compiled_zeros() -> Callable:
     """Return `zeros.find_zeros` as machine code."""
-    source, enters = _plain(search, abreast, zeros), inspect.getsource(zeros)
-    return compiled_entry("find_zeros", source, {"call": compiled_call()}, ZEROS_SIGNATURE, enters)
+    enters = inspect.getsource(compiled_call)  # how it calls evaluators
+    functions = {"call": compiled_call()}
+    return compiled_entry("find_zeros", _plain(search, abreast, zeros), functions, ZEROS_SIGNATURE, enters)
 
 
 def _plain(*modules: ModuleType) -> str:
