@@ -53,14 +53,14 @@ def near_pins(scene: ls.Scene, angles: Array) -> dict[str, Array]:
     def of_designs(name: str) -> Array:
         return over_designs(cycle[name], len(angles), theta2=len(own))[np.arange(len(angles)), place]
 
-    found = {n[:-1]: of_designs(n) + 1j * of_designs(f"{n[:-1]}y") for n in names if n.endswith("x")}
+    places = {n[:-1]: of_designs(n) + 1j * of_designs(f"{n[:-1]}y") for n in names if n.endswith("x")}
     with fifty_digits():
         ground = _ground(Numbers(scene, ("gravity[1]",)))
     fixed = {pin: (x.astype(float) + 1j * y.astype(float))[::2] for pin, (x, y) in ground.items()}
-    found |= {pin: place - fixed["A"] for pin, place in fixed.items()}
+    places |= {pin: place - fixed["A"] for pin, place in fixed.items()}
     if turning:
-        found["E"] = found["D"] + np.exp(1j * np.radians(of_designs("theta4")))
-    return found
+        places["E"] = places["D"] + np.exp(1j * np.radians(of_designs("theta4")))
+    return places
 
 
 def results(numbers: Numbers, theta2: Array, pins: Mapping[str, Array]) -> dict[str, Array]:

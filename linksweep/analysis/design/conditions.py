@@ -1,4 +1,4 @@
-"""What some results depend on besides the scene: the speed fluctuation that is allowed, the bearings in the pins."""
+"""Hold the numbers besides a scene on which some results depend: the allowed speed fluctuation, bearings in pins."""
 
 from __future__ import annotations
 

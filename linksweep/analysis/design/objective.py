@@ -55,7 +55,7 @@ class Objective:
         1 where it is minimized, -1 where it is maximized [1].
     subject_to : mapping of str to pair, default empty
         Bounds of results by name, each in its result's unit [any].
-    conditions : Conditions
+    conditions : Conditions, default Conditions(fluctuation=0.02, pins=None)
         Speed fluctuation and bearings on which some of these results depend.
 
     Examples

@@ -44,13 +44,13 @@ class Integrated(NamedTuple):
 
 
 def integral_derivatives(
-    scene: Scene, wanted: Mapping[str, Integral], to: tuple[str, ...], threads: int | None = None
+    scene: Scene, requests: Mapping[str, Integral], to: tuple[str, ...], threads: int | None = None
 ) -> Integrated:
     """Return integrals over the cycle with their derivatives to parameters, each over the design dims."""
-    every = tuple(dict.fromkeys(name for integral in wanted.values() for name in integral.names))
+    every = tuple(dict.fromkeys(name for integral in requests.values() for name in integral.names))
     own = differentiated(scene, every, to)
     integrands: dict[tuple[str, str], Integrand] = {}
-    for key, integral in wanted.items():
+    for key, integral in requests.items():
         integrands[key, ""] = Integrand(integral.names, partial(_known, integral.height))
         for path in to:
             slopes = tuple(derivative_of(name, path) for name in integral.names)
@@ -59,10 +59,10 @@ def integral_derivatives(
         key: xr.DataArray(field.values, dims=field.dims)
         for key, field in integrals(own, integrands, threads=threads).items()
     }
-    for key, integral in wanted.items():
+    for key, integral in requests.items():
         for path, jumped in _jumped(own, integral).items():
             total[key, path] = total[key, path] + jumped
-    values = {key: total[key, ""] for key in wanted}
+    values = {key: total[key, ""] for key in requests}
     return Integrated(values, {key: array for key, array in total.items() if key[1]})
 
 

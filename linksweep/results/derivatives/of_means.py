@@ -23,11 +23,11 @@ def mean_derivatives(
 ) -> dict[str, xr.DataArray]:
     """Return the derivatives of the mean over time of a power (1 or 2) of a quantity, by parameter."""
     names = (name, *changing_pace(scene.at_one_angle))
-    wanted = {
+    requests = {
         "sum": Integral(names, partial(_weighted, power), partial(_slope_of_weighted, power)),
         "time": Integral(names, partial(_weighted, 0), partial(_slope_of_weighted, 0)),
     }
-    total = integral_derivatives(scene, wanted, to, threads)
+    total = integral_derivatives(scene, requests, to, threads)
     whole, time = total.values["sum"], total.values["time"]
     with np.errstate(all="ignore"):
         return {path: (total.slopes["sum", path] - whole / time * total.slopes["time", path]) / time for path in to}

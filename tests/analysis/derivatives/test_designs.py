@@ -33,10 +33,10 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_designs_have_the_derivatives_of_each_alone(case):
     scene, values, path = CASES[case]
-    asked = {"of": ["F32x", "T12"], "to": [path], "theta2": [33.0, 213.0]}
-    both = ls.sensitivities(replaced(scene, values), **asked)
+    request = {"of": ["F32x", "T12"], "to": [path], "theta2": [33.0, 213.0]}
+    both = ls.sensitivities(replaced(scene, values), **request)
     for k in range(2):
-        alone = ls.sensitivities(replaced(scene, {p: float(array[k]) for p, array in values.items()}), **asked)
+        alone = ls.sensitivities(replaced(scene, {p: float(array[k]) for p, array in values.items()}), **request)
         for name in ("F32x_derivative", "T12_derivative"):
             own = both[name].isel(design=k, missing_dims="ignore").transpose(*alone[name].dims)
             np.testing.assert_array_equal(own, alone[name])
@@ -50,7 +50,7 @@ def test_a_load_that_does_not_act_has_no_derivative_there():
 
 
 def test_peaks_under_a_load_that_is_a_function_have_derivatives():
-    """Of a torque on the crank of a machine without mass, which the drive alone balances: T12 = −(3 + cos 2θ2)·1."""
+    """The drive alone balances a torque on the crank of a machine without mass: T12 = −(3 + cos 2θ2)·1."""
     crank, coupler, rocker = (ls.Link(length, 0.0, 0.0) for length in (0.08, 0.22, 0.18))
     torque = ls.Load("crank", torque=lambda theta2: 3.0 + np.cos(np.radians(2.0 * theta2)))
     more = ls.Load("crank", torque=2.0)

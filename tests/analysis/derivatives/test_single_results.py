@@ -21,7 +21,7 @@ def slider_crank(offset: float, crank: ls.Link | None = None, **numbers) -> ls.S
 
 @pytest.mark.parametrize("bearing", [BALL, ROLLER])
 def test_the_life_under_a_force_that_turns_with_the_crank(bearing):
-    """Of a crank with its centre of gravity at r from A, F = m r ω²: L10 = (C/F)^p, L10h = L10·10⁶·2π/(3600 ω)."""
+    """A crank with its centre of gravity at r from A bears F = m r ω²: L10 = (C/F)^p, L10h = L10·10⁶·2π/(3600 ω)."""
     r, p = 0.05, bearing.exponent
     scene = slider_crank(0.0, ls.Link(A, MASS, 0.01, cg_distance=r))
     paths = ["crank.mass", "crank.cg_distance", "omega2"]
@@ -70,7 +70,7 @@ def test_the_life_of_a_bearing_takes_its_capacity():
 
 
 def ram(offset: float) -> ls.Scene:
-    """The same slider-crank as a linkage."""
+    """Return that slider-crank as a linkage."""
     guides = {"slide": ls.Guide(through=(0.0, offset))}
     parts = {"crank": ls.Link(A, **NOTHING), "rod": ls.Link(B, **NOTHING), "ram": ls.Slider(0.0)}
     machine = ls.Linkage("crank A-B, rod B-C, ram C on slide", ground={"A": (0, 0)}, guides=guides, **parts)
@@ -137,10 +137,10 @@ RESULTS = {
 @pytest.mark.parametrize("machine", long_but(RESULTS, "press"))
 def test_single_results_have_the_derivatives_of_differences(machine):
     scene, names, path = RESULTS[machine]
-    asked = {"of": names, "to": [path], "pins": dict.fromkeys(scene.mechanism.pins, BALL)}
-    ds, value = ls.sensitivities(scene, **asked), free(scene)[path][0]
+    request = {"of": names, "to": [path], "pins": dict.fromkeys(scene.mechanism.pins, BALL)}
+    ds, value = ls.sensitivities(scene, **request), free(scene)[path][0]
     step = 1e-3 * value
-    moved = {k: ls.sensitivities(replaced(scene, {path: value + k * step}), **asked) for k in (-2, -1, 1, 2)}
+    moved = {k: ls.sensitivities(replaced(scene, {path: value + k * step}), **request) for k in (-2, -1, 1, 2)}
     for name in names:
         two, one = (float(moved[k][name] - moved[-k][name]) for k in (2, 1))
         assert int(ds[f"{name}_status"]) == 0, name
