@@ -20,7 +20,7 @@ from linksweep.base.memory import require_memory
 from linksweep.engine.blocks import block as new_block
 from linksweep.engine.interpreter import evaluate as interpreter
 from linksweep.engine.kernel import reduce
-from linksweep.engine.kernel.compile import compiled
+from linksweep.engine.kernel.compile import SIGNATURE, compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
@@ -208,7 +208,9 @@ def _execute(
     streamed = 8 * block_rows * room >= STREAMED_FROM
     if streamed:  # whole vectors, each of whole lines of the caches
         samples = room = -(-room // LANES) * LANES
-    kernel = compiled(fused.source, REDUCTIONS_SOURCE if ready.reductions else "", "block" if streamed else "")
+    kernel = compiled(
+        fused.source, REDUCTIONS_SOURCE if ready.reductions else "", SIGNATURE, "block" if streamed else ""
+    )
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
     profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
     missing = room - len(grid.angles)

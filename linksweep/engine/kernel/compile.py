@@ -42,7 +42,7 @@ ZEROS_SIGNATURE = (
 
 
 @cache
-def compiled(kernel_source: str, helpers_source: str = "", streamed: str = "", signature: str = SIGNATURE) -> Callable:
+def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGNATURE, streamed: str = "") -> Callable:
     """Return the kernel of this source as machine code: of this process, from the user's cache, or compiled now.
 
     It writes the array that is `streamed` past the caches.
