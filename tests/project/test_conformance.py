@@ -352,7 +352,7 @@ def sentence(call: Callable[[], object]) -> str:
 def about(machine: Subject, name: str, line: str) -> bool:
     """Return whether a line names the machine, begins with a parameter of it, or is about a quantity or a Dataset."""
     path = re.findall(r"\w+", line.split()[0])
-    of_results = name.startswith(OF_RESULTS) and ("Dataset" in line or path[0] in ("ds", "pin", "of"))
+    of_results = name.startswith(OF_RESULTS) and ("Dataset" in line or path[0] in ("ds", "pin", "of", "x", "y"))
     of_request = "nothing is named" in line or path[0].startswith((machine.force, machine.drive))
     return machine.kind in line or bool({*path} & machine.numbers) or of_request or of_results
 
