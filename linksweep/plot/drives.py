@@ -92,7 +92,7 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     Raises
     ------
     ValueError
-        For a Dataset without speed at every angle, and more than one design.
+        For a Dataset without speed at every angle, more than one design, and an engine of several cylinders.
 
     Examples
     --------
@@ -101,6 +101,9 @@ def torque_with_flywheel(ds: xr.Dataset) -> Figure:
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['torque on the crank [N m]', 'crank speed $\\\\omega_2$ [rad/s]']
     """
+    require_dataset(ds, "ls.flywheel")
+    alone = "ds holds no scene of one machine, as of an engine of several cylinders: draw its speed with plot.flywheel"
+    refuse([] if "scene" in ds.attrs else [alone])
     with panels(2, 1, figsize=(7.1, 5.4)) as (figure, (above, below)):
         flywheel(ds, ax=below)
         _torques(above, ds)

@@ -72,6 +72,22 @@ def test_a_limit_off_the_axis_is_stated_in_the_legend(below, message):
     assert ax.get_ylim()[1] > max(below, line(ax, "peak of $F_{32}$").get_ydata().max())
 
 
+def test_an_unbounded_force_is_written_as_infinity_in_its_load_diagram():
+    written = "\n".join(texts(ls.sweep(SWING).linksweep.bearing("F12")))
+    assert "= ∞ N" in written
+    assert "e+" not in written
+    at = float(ls.peaks(SWING, of=["F12"]).F12_peak_at)
+    beside = ls.sweep(SWING, [at, at + 1e-6, at - 1e-6], of=["F12x", "F12y"]).dropna("theta2").isel(theta2=0)
+    direction = np.degrees(np.arctan2(beside.F12y, beside.F12x))
+    assert f"direction {float(direction):.1f}°".replace("-", "−") in written
+
+
+def test_the_torque_of_several_cylinders_names_the_plot_of_their_speed():
+    twin = ls.MultiCylinder(ls.example("engine"), crank_angles=[0, 360])
+    with pytest.raises(ValueError, match="several cylinders: draw its speed with plot.flywheel"):
+        ls.plot.torque_with_flywheel(ls.flywheel(twin, fluctuation=0.02))
+
+
 def test_unbounded_peaks_are_still_plotted():
     with pytest.raises(ValueError, match="F32 grows without bound at every speed"):
         ls.plot.over_speed(SWING, "F32", speeds=[10.0, 20.0])

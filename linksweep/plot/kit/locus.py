@@ -20,17 +20,30 @@ BEYOND = 1.1  # of the largest force on the scale: larger forces are off it
 
 
 def draw_locus(
-    ax: Axes, name: str, angles: np.ndarray, x: np.ndarray, y: np.ndarray, units: str, last: float | None = None
+    ax: Axes,
+    name: str,
+    angles: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    units: str,
+    last: float | None = None,
+    size: np.ndarray | None = None,
 ) -> None:
-    """Draw the locus of a force, dots on it up to the last angle, and an arrow from the origin to the largest force."""
-    size = np.hypot(x, y)
+    """Draw the locus of a force, dots on it up to the last angle, and an arrow from the origin to the largest force.
+
+    A `size` that is infinite where x and y are large beside a toggle says that the force has no bound there.
+    """
+    size = np.hypot(x, y) if size is None else size
     largest = signals.peak(angles, size)
     usual = signals.scale([size], [largest])
     draw_cross(ax)
     ax.plot(x, y, color=BLUE, label=f"_locus {name}")
     tip = np.zeros(2)
     if largest and largest.value > 0.0:
-        tip = _arrow(ax, name, largest, signals.tip(x, y), units, usual)
+        k = int(np.nanargmax(size))
+        force = np.array([x[k], y[k]])
+        force = force if np.isfinite(force).all() else signals.tip(x, y)
+        tip = _arrow(ax, name, largest, force, units, usual)
     _ticks(ax, angles, x, y, usual, angles[-1] if last is None else last)
     near = size <= BEYOND * usual
     set_limits(ax, np.append(x[near], tip[0]), np.append(y[near], tip[1]))
