@@ -170,7 +170,7 @@ def unit_problems(path: str, stated: Any, kind: str) -> list[str]:
     if not stated or stated == unit or (len(str(stated)) <= LONGEST_UNIT and _is_si(str(stated), kind)):
         return []
     there = f'{path} has attrs["units"] = {as_toml(str(stated))}'
-    return [f'{there}: must be in {unit}; convert its values, and say units="{unit}"']
+    return [f'{there}: must be in {unit}; convert its values, and say units="{unit}", or make it an array of pint']
 
 
 def as_toml(value: object) -> str:
