@@ -84,7 +84,7 @@ def test_an_unbounded_force_is_written_as_infinity_in_its_load_diagram():
 
 def test_the_torque_of_several_cylinders_names_the_plot_of_their_speed():
     twin = ls.MultiCylinder(ls.example("engine"), crank_angles=[0, 360])
-    with pytest.raises(ValueError, match="several cylinders: draw its speed with plot.flywheel"):
+    with pytest.raises(ValueError, match="several cylinders: draw its speed"):
         ls.plot.torque_with_flywheel(ls.flywheel(twin, fluctuation=0.02))
 
 
