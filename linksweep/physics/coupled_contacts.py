@@ -24,7 +24,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
-from linksweep.physics.algebra.arithmetic import NOISE, Number, where
+from linksweep.physics.algebra.arithmetic import NOISE, Number, marked_low, where
 from linksweep.physics.algebra.planar import identity
 from linksweep.physics.coulomb import CONTACT_NOISE, friction, has_sign
 
@@ -66,8 +66,9 @@ def without_drive(
 
 
 def cleared(x: Number, noise: Number) -> Number:
-    """Return a number, or 0 where it may be noise."""
-    return where(abs(x) < noise, 0.0, x)
+    """Return a number, or 0 where it may be noise: its derivative stays, since what bears nothing here may bear
+    something under other parameters."""
+    return x - marked_low(where(abs(x) < noise, x, 0.0))
 
 
 def coupled_contacts(

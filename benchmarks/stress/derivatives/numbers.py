@@ -93,6 +93,12 @@ class Numbers:
         above, below = np.moveaxis(results.reshape(self.shape), 2, 0)
         return (above - below) / (2 * np.stack([self.away(path) for path in self.moved], axis=1))
 
+    def sides(self, results: Array) -> Array:
+        """Return the derivatives (side, design, parameter) to either side of the scene itself."""
+        middle, away = self.middle(results)[:, None], np.stack([self.away(path) for path in self.moved], axis=1)
+        above, below = np.moveaxis(results.reshape(self.shape), 2, 0)
+        return np.stack([(above - middle) / away, (middle - below) / away])
+
     def middle(self, results: Array) -> Array:
         """Return the results (design,) of the scene itself."""
         return results.reshape(self.shape)[:, 0].sum(axis=1) / 2

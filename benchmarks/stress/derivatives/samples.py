@@ -15,6 +15,11 @@ from benchmarks.stress.linkages.errors import KINDS, kind
 from linksweep.scene.derivatives.differentiated import number_problem
 from linksweep.scene.parameters import free
 
+BENT = 1e-6
+"""Difference of the derivatives to two sides, relative to them, from which a result has a corner there."""
+NOTHING = 1e-13
+"""Part of its change with a parameter that is as large again, below which a magnitude is zero but for rounding."""
+
 
 class Errors(NamedTuple):
     """Errors of each design that is ok; `value` and `derivative` are of the largest of their kind in the machine, a
@@ -62,9 +67,20 @@ def errors_of(scene: ls.Scene, theta2: float, random: np.random.Generator, most:
             derivative = over_designs(ds[f"{name}_derivative"], numbers.designs, theta2=1, parameter=len(paths))[:, 0]
             values[name], slopes[name] = np.abs(middle.astype(float)), np.abs(slope.astype(float))
             own[name] = np.abs((exactly(ours) - middle).astype(float))
-            errors[name] = np.abs((exactly(derivative) - slope).astype(float))
+            errors[name] = _off(exactly(derivative), slope, numbers.sides(exact[name]))
+            if scene.table.quantity[name].squared:  # the magnitude of no force has no derivative
+                errors[name][values[name] < NOTHING * (slopes[name] * sizes).max(axis=1)] = 0.0
     own = {name: _turned(name, error) for name, error in own.items()}
     return _relative(values, slopes, own, errors, sizes, (drawn, paths))._replace(designs=count)
+
+
+def _off(ours: Array, slope: Array, sides: Array) -> Array:
+    """Return the errors of derivatives, where a slide bears nothing, or a magnitude is zero, from the nearer of those
+    to its two sides."""
+    right, left = sides
+    off, nearer = (abs(x).astype(float) for x in (ours - slope, np.minimum(abs(ours - right), abs(ours - left))))
+    bent = abs(right - left).astype(float) > BENT * (abs(right) + abs(left)).astype(float)
+    return np.where(bent, nearer, off)
 
 
 def _turned(name: str, error: Array) -> Array:

@@ -83,8 +83,9 @@ def sensitivities(
     Notes
     -----
     Derivatives are exact: of the operations themselves, to rounding. A peak has that of its quantity at its own angle,
-    to 1e-8. Friction, jumps and magnitudes have one-sided derivatives. Equations and sources:
-    `linksweep.engine.trace.gradient`, `linksweep.results.derivatives.of_peaks`.
+    to 1e-8. Friction, jumps and magnitudes have one-sided derivatives: where a slide bears nothing, those of the side
+    on which its normal force is positive. Equations and sources: `linksweep.engine.trace.gradient`,
+    `linksweep.results.derivatives.of_peaks`.
 
     Examples
     --------

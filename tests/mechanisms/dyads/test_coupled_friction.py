@@ -89,6 +89,22 @@ def test_by_hand(friction):
             assert abs(rubs[k]) == pytest.approx(friction * abs(normal), rel=1e-12)
 
 
+def test_a_slide_that_bears_nothing_has_the_derivatives_of_its_friction():
+    """A balanced crank at constant speed loads its block with nothing. When it accelerates, the block's force has the
+    moment J·α about A, and friction is μ times its normal force."""
+    inertia, friction = 0.02, 0.3
+    scene = quick_return(friction, gravity=(0.0, -9.81))
+    parts = {"crank": ls.Link(CRANK, 0.0, inertia), "arm": ls.Link(0.5, 2.0, 0.1, cg_distance=0.3)}
+    scene = replace(scene, mechanism=replace(scene.mechanism, **parts))
+    names = ("F32x", "F32y", "F32n", "F32t")
+    cycle = ls.sensitivities(scene, of=[*names, "v_arm"], to=["alpha2"], theta2=STROKE)
+    assert all(abs(cycle[name]).max() < 1e-12 for name in names)
+    x, y, normal, rubs = (cycle[f"{name}_derivative"].isel(parameter=0) for name in names)
+    angle = np.radians(STROKE)
+    np.testing.assert_allclose(CRANK * (y * np.cos(angle) - x * np.sin(angle)), inertia, rtol=1e-12)
+    np.testing.assert_allclose(rubs, -friction * normal * np.sign(cycle.v_arm), rtol=1e-12)
+
+
 @pytest.mark.parametrize("friction", [0.05, 0.4, 1.2])
 def test_named_machine_with_the_rocker_as_drive(friction):
     """The inverted slider-crank solves the same contact by the crank's own moments."""
