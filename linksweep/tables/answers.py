@@ -51,7 +51,7 @@ KINDS: Mapping[str, Kind] = {
     "run_down": _kind(run_parts, "duration time speed", "step"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
     "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
-    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), "motor_torque speed_mean motor_work", "theta2"),
+    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), "speed_mean motor_torque_max motor_work", "theta2"),
     "strength": _kind(strength_parts, "stress goodman_safety buckling_safety", "link plane"),
     "system": _kind(system_parts, "matrix rhs", "theta2 equation unknown"),
     "orders": _kind(lambda ds: iter([order_table(ds)]), "", "order"),

@@ -36,16 +36,20 @@ def drive_table(work: xr.Dataset) -> Table:
     return Table(("the drive", "", ""), rows, right=(1,))
 
 
-STEADY = {  # title by variable
-    "speed_mean": "mean speed",
-    "speed_min": "least speed",
-    "speed_max": "largest speed",
-    "fluctuation": "fluctuation",
-    "motor_torque_rms": "motor torque, root mean square",
-    "motor_power_mean": "motor power, mean",
-    "motor_work": "work of the motor in a cycle",
-    "motor_heat_mean": "heat in the motor",
-    "cycle_time": "time of a cycle",
+STEADY = {  # title by variable, and the variable beside which less than 1e-12 is rounding
+    "speed_mean": ("mean speed", "speed_mean"),
+    "speed_min": ("least speed", "speed_max"),
+    "speed_max": ("largest speed", "speed_max"),
+    "fluctuation": ("fluctuation", "fluctuation"),
+    "motor_torque_max": ("motor torque, largest", "motor_torque_min"),
+    "motor_torque_min": ("motor torque, least", "motor_torque_max"),
+    "motor_torque_rms": ("motor torque, root mean square", "motor_torque_max"),
+    "motor_power_max": ("motor power, largest", "motor_power_min"),
+    "motor_power_min": ("motor power, least", "motor_power_max"),
+    "motor_power_mean": ("motor power, mean", "motor_power_max"),
+    "motor_work": ("work of the motor in a cycle", "motor_power_max"),
+    "motor_heat_mean": ("heat in the motor", "motor_power_max"),
+    "cycle_time": ("time of a cycle", "cycle_time"),
 }
 
 
@@ -54,17 +58,12 @@ def steady_table(cycle: xr.Dataset) -> Table:
     words = cycle["status"].attrs["flag_meanings"].split()[int(cycle["status"])]
     if words != "ok":
         return Table(("on its motor", "", ""), [("the machine", words.replace("_", " "), "")], right=(1,))
-    torque = cycle["motor_torque"]
-    peak = abs(torque).max().assign_attrs(torque.attrs)
-    work = float(peak) * 2.0 * np.pi * float(cycle["motor_speed"].max() / cycle["speed_max"])
-    sizes = {"motor_work": work, "motor_power_mean": work / float(cycle["cycle_time"])}
-    rows: list[Row] = [("motor torque, largest", f"{float(peak):.5g}", unit_of(torque))]
-    for name, title in STEADY.items():
-        number = float(cycle[name])
+    rows: list[Row] = []
+    for name, (title, beside) in STEADY.items():
+        number, size = float(cycle[name]), abs(float(cycle[beside]))
         if np.isfinite(number):
-            rows.append(
-                (title, without_rounding(number, sizes.get(name, number)), unit_of(cycle[name]).removesuffix("1"))
-            )
+            size *= float(cycle["cycle_time"]) if name == "motor_work" else 1.0
+            rows.append((title, without_rounding(number, size), unit_of(cycle[name]).removesuffix("1")))
     return Table(("on its motor", "", ""), rows, right=(1,))
 
 

@@ -26,6 +26,15 @@ TOGETHER = 32
 """Designs that are solved together, over the same elements."""
 ROUNDING = 1e-9
 """Degrees by which the ends of elements may miss the angles of the results."""
+EXTREMES = {
+    "motor_torque_max": (1.0, False),
+    "motor_torque_min": (-1.0, False),
+    "motor_power_max": (1.0, True),
+    "motor_power_min": (-1.0, True),
+}
+"""Sign that makes each a largest value, and whether it is one of the power."""
+PLACES, NARROWINGS = 33, 13
+"""Speeds among which an extreme is sought, and times that their range is narrowed: to 1e-15 of the first."""
 COMMAND = "linksweep.steady_cycle(scene, ...)"
 OVER_ANGLES = ("omega2", "alpha2", "motor_speed", "motor_torque", "motor_power", "slip", "drive_torque")
 TEXTS = {
@@ -42,8 +51,12 @@ TEXTS = {
     "fluctuation": ("1", "coefficient of fluctuation of the speed: (largest - least)/mean of the two"),
     "cycle_time": ("s", "time of a cycle"),
     "motor_work": ("J", "work of the motor in a cycle, which loads and friction take"),
-    "motor_power_mean": ("W", "mean power of the motor over time"),
+    "motor_torque_max": ("N m", "largest torque of the motor"),
+    "motor_torque_min": ("N m", "least torque of the motor, negative where it brakes"),
     "motor_torque_rms": ("N m", "root mean square over time of the motor's torque"),
+    "motor_power_max": ("W", "largest power of the motor"),
+    "motor_power_min": ("W", "least power of the motor, negative where the machine drives it"),
+    "motor_power_mean": ("W", "mean power of the motor over time"),
     "motor_heat_mean": ("W", "mean power over time that turns into heat in the motor (induction: in its rotor alone)"),
     "deviation_factor": ("1", "factor by which a deviation of the speed shrinks from cycle to cycle"),
     "energy_residual": ("J", "energy of a cycle that the computed motion leaves unbalanced, at most"),
@@ -86,6 +99,7 @@ def steady_cycle(
         - `motor_speed` [rad/s], `motor_torque` [N m], `motor_power` [W]; of an induction motor `slip` [1]
         - `drive_torque` [N m] on the crank: what inverse dynamics asks for
         - `speed_mean` over time, `speed_max` and `speed_min` [rad/s], `fluctuation` [1], `cycle_time` [s]
+        - `motor_torque_max` and `motor_torque_min` [N m], `motor_power_max` and `motor_power_min` [W]: exact extremes
         - `motor_work` [J] in a cycle; over time `motor_power_mean` [W], `motor_torque_rms` [N m] and `motor_heat_mean`
           [W], which is NaN for motors that do not tell it
         - `deviation_factor` [1]: a deviation of the speed shrinks by it from cycle to cycle
@@ -190,7 +204,7 @@ def _over_cycle(train: DriveTrain, motion: Motion) -> dict[str, Array]:
     time, work = integral(1.0 / speed, widths), integral(torque, widths)
     w = turning_points(motion.w, motion.a, widths)
     fastest, slowest = (np.sqrt(2.0 * extreme(w, axis=(1, 2))) for extreme in (np.max, np.min))
-    return {
+    return _motor_extremes(train, slowest, fastest) | {
         "speed_mean": widths.sum() / time,
         "speed_max": fastest,
         "speed_min": slowest,
@@ -201,6 +215,26 @@ def _over_cycle(train: DriveTrain, motion: Motion) -> dict[str, Array]:
         "motor_torque_rms": np.sqrt(integral(torque * torque / speed, widths) / time) / ratio,
         "motor_heat_mean": integral(heat / speed, widths) / time,
     }
+
+
+def _motor_extremes(train: DriveTrain, slowest: Array, fastest: Array) -> dict[str, Array]:
+    """Return the extremes of the motor's torque and power: those over all speeds between the least and the largest.
+
+    The machine runs through all of these. The range around the best of evenly spaced ones is narrowed until it is a
+    point, which may be a corner of the motor's curve.
+    """
+    low, high = (np.repeat(each.reshape(*train.shape, 1), len(EXTREMES), axis=-1) for each in (slowest, fastest))
+    sign, of_power = (np.array(each)[:, None] for each in zip(*EXTREMES.values(), strict=True))
+    for _ in range(NARROWINGS):
+        speed = low[..., None] + (high - low)[..., None] * np.linspace(0.0, 1.0, PLACES)
+        torque = train.drive_torque(speed.reshape(*train.shape, -1)).reshape(speed.shape)
+        values = sign * np.where(of_power, torque * speed, torque / train.over_designs(bare(train.ratio))[..., None])
+        best = np.argmax(values, axis=-1, keepdims=True)
+        low, high = (
+            np.take_along_axis(speed, np.clip(best + step, 0, PLACES - 1), axis=-1)[..., 0] for step in (-1, 1)
+        )
+    extremes = (sign * np.take_along_axis(values, best, axis=-1)).reshape(-1, len(EXTREMES))
+    return dict(zip(EXTREMES, extremes.T, strict=True))
 
 
 def _described(train: DriveTrain, numbers: dict[str, Array], count: int) -> xr.Dataset:

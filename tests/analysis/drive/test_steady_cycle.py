@@ -140,6 +140,29 @@ def test_the_extremes_are_those_of_a_finer_cycle():
     assert float(fine.speed_max) == pytest.approx(float(fine.omega2.max()), rel=1e-5)
 
 
+def test_the_extremes_of_torque_and_power_are_those_of_the_speeds():
+    """The torque of this motor falls over the speed; its power is largest at half its no-load speed, or beside it."""
+    scene = ls.example("press")
+    brake = ls.TorsionDamper("ground", "crank", xr.DataArray([0.0, 0.8, 2.5], dims="brake"))
+    cycle = ls.steady_cycle(replace(scene, loads=[*scene.loads, brake]), DC, ratio=5.0, flywheel=0.2, theta2=90)
+    slow, fast = 5.0 * cycle.speed_min, 5.0 * cycle.speed_max
+    speeds = [slow, fast, np.clip(80.0, slow, fast)]
+    powers = xr.concat([6.0 * (1.0 - speed / 160.0) * speed for speed in speeds], "speed")
+    assert [int(each) for each in (slow < 80.0)] == [0, 1, 1] and [int(each) for each in (fast < 80.0)] == [0, 0, 1]
+    np.testing.assert_allclose(cycle.motor_torque_max, 6.0 * (1.0 - slow / 160.0), rtol=1e-12)
+    np.testing.assert_allclose(cycle.motor_torque_min, 6.0 * (1.0 - fast / 160.0), rtol=1e-12)
+    np.testing.assert_allclose(cycle.motor_power_max, powers.max("speed"), rtol=1e-12)
+    np.testing.assert_allclose(cycle.motor_power_min, powers.min("speed"), rtol=1e-12)
+
+
+def test_the_largest_torque_is_at_a_corner_of_the_curve():
+    press, brake = ls.example("press"), ls.TorsionDamper("ground", "crank", 0.8)
+    curve = ls.Motor((0.0, 151.234567, 170.0), (4.9, 5.0, 0.0))
+    cycle = ls.steady_cycle(replace(press, loads=[*press.loads, brake]), curve, ratio=5.0, flywheel=0.2, theta2=90)
+    assert 5.0 * float(cycle.speed_min) < 151.234567 < 5.0 * float(cycle.speed_max)
+    assert float(cycle.motor_torque_max) == pytest.approx(5.0, rel=1e-12)
+
+
 def test_a_load_that_jumps_is_followed():
     """A torque on the crank that ends at 100.1°, between angles; beyond the jump w is what energy says."""
     on = 100.1
