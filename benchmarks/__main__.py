@@ -25,6 +25,7 @@ from benchmarks.speed import (
     peaks,
     run_up,
     skipping,
+    steady_cycle,
     threads,
     unknowns,
 )
@@ -53,6 +54,7 @@ GROUPS = {
     "derivatives": Group("Derivatives to ten parameters, a tenth of {angles:,} angles, one core", derivatives.rows),
     "linkages": Group("All unknowns of linkages, a tenth of {angles:,} angles, one core", linkages.rows),
     "run_up": Group("Run-up on a motor, {designs} designs, one core", run_up.rows),
+    "steady_cycle": Group("Steady cycle on a motor, {turn} angles, one core", steady_cycle.rows),
     "warm": Group("One warm call, {turn} angles, one core", latency.warm_calls),
     "first": Group("The first minutes, in fresh processes", latency.first_minutes, one_core=False),
     "threads": Group("Two threads against one", threads.rows, one_core=False),
