@@ -79,6 +79,10 @@ def add_plot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plot", type=a_file(PICTURES), help="figure to write: .png, .pdf or .svg")
 
 
+def add_angles(parser: argparse.ArgumentParser, text: str, default: int | None = None) -> None:
+    parser.add_argument("--theta2", "--theta", dest="angles", type=int, default=default, metavar="N", help=text)
+
+
 def add_part(parser: argparse.ArgumentParser, text: str) -> None:
     parser.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=text)
 

@@ -11,6 +11,7 @@ from linksweep.base.version import installed_version
 from linksweep.cli.commands import add_commands
 from linksweep.cli.completion import add_completion
 from linksweep.cli.designs import add_design_commands
+from linksweep.cli.motors import add_motor_commands
 from linksweep.cli.options import Commands
 from linksweep.cli.pages import add_page_commands
 from linksweep.cli.results import add_result_commands
@@ -33,7 +34,8 @@ class Program(argparse.ArgumentParser):
         self.add_argument("--version", action="version", version=f"linksweep {installed_version()}")
         self.set_defaults(run=lambda options: self.print_help(), parser=self)
         self.commands = Commands(self)
-        for add in (add_result_commands, add_commands, add_design_commands, add_page_commands, add_completion):
+        tasks = add_result_commands, add_commands, add_motor_commands, add_design_commands, add_page_commands
+        for add in (*tasks, add_completion):
             add(self.commands)
 
     def format_help(self) -> str:

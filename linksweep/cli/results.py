@@ -16,6 +16,7 @@ from linksweep.cli.options import (
     SCENES,
     Commands,
     a_file,
+    add_angles,
     add_of,
     add_plot,
 )
@@ -35,24 +36,20 @@ def add_result_commands(commands: Commands) -> None:
     demo.add_argument("-o", "--output", type=_stem, dest="stem", metavar="NAME", default=Path("demo"), help=without)
 
     worst = add("peaks", _peaks, "the worst of each pin force and of the torque")
-    _add_angles(worst, "number of angles: the largest of these samples, not the exact peaks")
+    add_angles(worst, "number of angles: the largest of these samples, not the exact peaks")
     add_of(worst)
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc, .csv or .xlsx")
 
     add("check", _check, "assembly, Grashof class, limits, toggles")
 
     cycle = add("sweep", _sweep, "one revolution to a file, and to a figure")
-    _add_angles(cycle, "number of angles (720)", default=720)
+    add_angles(cycle, "number of angles (720)", default=720)
     cycle.add_argument("-o", "--output", type=a_file(RESULTS), required=True, help="file to write: .nc, .csv or .xlsx")
     add_plot(cycle)
     add_of(cycle, "--outputs")
 
     listed = add("quantities", _quantities, "all quantities of sweep and peaks: names, units, meanings")
     listed.add_argument("words", nargs="*", help="only those with these words in name, unit or meaning, such as force")
-
-
-def _add_angles(parser: argparse.ArgumentParser, text: str, default: int | None = None) -> None:
-    parser.add_argument("--theta2", "--theta", dest="angles", type=int, default=default, metavar="N", help=text)
 
 
 def _demo(options: argparse.Namespace) -> None:

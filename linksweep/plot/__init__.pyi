@@ -7,6 +7,7 @@ from linksweep.plot.cycle_page import cycle as cycle
 from linksweep.plot.drives import flywheel as flywheel
 from linksweep.plot.drives import motor_load as motor_load
 from linksweep.plot.drives import run_up as run_up
+from linksweep.plot.drives import steady_cycle as steady_cycle
 from linksweep.plot.drives import torque_with_flywheel as torque_with_flywheel
 from linksweep.plot.films.animation import animate as animate
 from linksweep.plot.heat_maps import heat_map as heat_map
@@ -43,6 +44,7 @@ __all__ = [
     "parallel_coordinates",
     "run_up",
     "scatter",
+    "steady_cycle",
     "tornado",
     "torque",
     "torque_with_flywheel",

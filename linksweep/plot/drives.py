@@ -1,4 +1,4 @@
-"""Plots of a drive: its speed with a flywheel, a run-up, and a motor's torque–speed points beside its curve."""
+"""Plots of a drive: the speed with a flywheel and on a motor, a run-up, and a motor's load beside its curve."""
 
 from __future__ import annotations
 
@@ -27,6 +27,20 @@ ROUNDING = 1e-9  # of the largest torque: the mean of one that does no work
 BETWEEN = 20
 """Points drawn from the end of a step of a run to that of the next."""
 TICK = 90.0  # degrees of the crank between named points
+ON_MOTOR = {
+    "speed": "crank speed $|\\omega_2|$",
+    "motor_torque": "motor torque",
+    "motor_power": "motor power",
+}
+"""Words on the axes of a steady cycle, by the stem of the extremes."""
+NO_SPEED = {
+    "not_whole": "the machine does not turn fully",
+    "stalls": "on its motor the machine stalls",
+    "runs_away": "on its motor the machine runs away",
+    "unstable": "the motion on its motor is unstable",
+    "not_found": "no motion was found that repeats",
+}
+"""What each status of a steady cycle that is not ok says."""
 
 
 def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
@@ -137,7 +151,85 @@ def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray, unit: str) -> Non
 
     for end, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
         ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{end}")
-        label(ax, angles[k], speed[k], (f"{end} {speed[k]:#.5g} {unit}", BLUE))
+        label(ax, angles[k], speed[k], (f"{end} {_five_digits(speed[k])} {unit}", BLUE))
+
+
+def steady_cycle(ds: xr.Dataset) -> Figure:
+    """Plot a machine on its motor over the cycle that repeats: the crank's speed, and the motor's torque and power.
+
+    Parameters
+    ----------
+    ds : Dataset
+        Result of `linksweep.steady_cycle`, of one design.
+
+    Returns
+    -------
+    matplotlib Figure
+        Panels of speed, torque and power over the crank angle, the largest and least of each marked with their exact
+        values, and dashed the means over time of speed and power.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset without a steady cycle, a machine that does not keep turning, and more than one design.
+
+    Examples
+    --------
+    >>> import linksweep as ls
+    >>> motor = ls.DCMotor(stall_torque=10.0, no_load_speed=160.0, inertia=0.004)
+    >>> cycle = ls.steady_cycle(ls.example("press"), motor, ratio=5.0, flywheel=0.2, theta2=72)
+    >>> [ax.get_ylabel() for ax in ls.plot.steady_cycle(cycle).axes]
+    ['crank speed $|\\\\omega_2|$ [rad/s]', 'motor torque [N m]', 'motor power [W]']
+    """
+    require_dataset(ds, "ls.steady_cycle")
+    known = {"omega2", "motor_torque_max", "motor_power_max", "speed_max"} <= ds.keys()
+    refuse([] if known else ["ds has no cycle on a motor: take what ls.steady_cycle returns"])
+    signals.require_angles(ds)
+    signals.require_one_design([ds["speed_max"]])
+    word = ds["status"].attrs["flag_meanings"].split()[int(ds["status"])]
+    refuse([] if word == "ok" else [f"ds has no speed: {NO_SPEED[word]}"])
+    curves = abs(ds["omega2"]), ds["motor_torque"], ds["motor_power"]
+    angles, *rows = signals.revolution(ds, *curves)
+    with panels(3, 1, sharex=True, figsize=(7.1, 6.6)) as (figure, axes):
+        for ax, name, row in zip(axes, ON_MOTOR, rows, strict=True):
+            _on_motor(ax, ds, name, angles, row)
+        crank_angles(axes[-1], angles)
+        axes[0].set_title(f"fluctuation {100.0 * float(ds['fluctuation']):.3g} %", loc="left")
+    return figure
+
+
+def _on_motor(ax: Axes, ds: xr.Dataset, name: str, angles: np.ndarray, values: np.ndarray) -> None:
+    """Draw a curve of a steady cycle, with its mean over time and its exact extremes."""
+    from linksweep.plot.kit.labels import label
+
+    system, of = units_of(ds), ds[f"{name}_max"].attrs["units"]
+    unit, row = system.unit(of), system.value(values, of)
+    grid(ax)
+    ax.plot(angles, row, color=BLUE, label=f"_{name}")
+    if f"{name}_mean" in ds:
+        mean = float(system.value(float(ds[f"{name}_mean"]), of))
+        mean = mean if abs(mean) > ROUNDING * np.max(np.abs(row)) else 0.0
+        ax.axhline(mean, color=GREY, linestyle="--", linewidth=1.0, label=f"mean {_five_digits(mean)} {unit}")
+        legend_above(ax, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+    for end, sign in (("max", 1.0), ("min", -1.0)):
+        value = float(system.value(float(ds[f"{name}_{end}"]), of))
+        place = _summit(angles, sign * row)
+        ax.plot([place], [value], "o", color=BLUE, markersize=4.5, label=f"_{end}")
+        label(ax, place, value, (f"{end} {_five_digits(value)} {unit}", BLUE))
+    ax.margins(y=0.2)
+    ax.set_ylabel(f"{ON_MOTOR[name]} [{unit}]")
+
+
+def _five_digits(value: float) -> str:
+    return f"{value:#.5g}".rstrip(".").replace("-", "−") if value else "0"
+
+
+def _summit(angles: np.ndarray, values: np.ndarray) -> float:
+    """Return the angle of the largest value [degree]: of the parabola through the largest sample and those beside."""
+    k = int(np.argmax(values[:-1]))
+    before, top, after = values[k - 1 if k else -2], values[k], values[k + 1]
+    bend = before - 2.0 * top + after
+    return float(angles[k] + (0.5 * (before - after) / bend * (angles[1] - angles[0]) if bend < 0.0 else 0.0))
 
 
 def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Axes:

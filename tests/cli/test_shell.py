@@ -219,6 +219,7 @@ ARGUMENTS = {
     "strength": ["--material", "S355"],
     "breakdown": ["F32"],
     "balance": ["--radius", "6 cm"],
+    "steady": ["--motor", "dc", "stall_torque=6", "no_load_speed=160"],
     "draw": ["-o", "press.svg"],
     "tolerance": ["--of", "F32_peak", "--tol", "ground", "js9"],
 }

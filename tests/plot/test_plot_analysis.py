@@ -1,5 +1,7 @@
 """Plots of analyses in awkward cases: unbounded peaks, limits off the axis, zero forces."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn import closed_figures, line, texts  # noqa: F401
@@ -31,6 +33,42 @@ def test_a_flywheel_that_does_not_turn_fully_is_refused():
     wheel = ls.flywheel(SWING, fluctuation=0.02)
     with pytest.raises(ValueError, match="ds has no speed at some angle: it stalls, or does not turn fully"):
         ls.plot.flywheel(wheel)
+
+
+def test_a_cycle_on_its_motor_has_its_exact_extremes():
+    """An engine that runs through half the no-load speed of its motor, at which this gives the most power."""
+    engine = ls.example("engine")
+    brake = ls.TorsionDamper("ground", "crank", 0.3)
+    engine = replace(engine, omega2=-30.0, loads=[*engine.loads, brake], units="in, lbf, rpm")
+    cycle = ls.steady_cycle(engine, ls.DCMotor(60.0, 160.0), ratio=5.0, flywheel=0.05, theta2=360)
+    fine = ls.steady_cycle(engine, ls.DCMotor(60.0, 160.0), ratio=5.0, flywheel=0.05, theta2=2880)
+    rpm, pound_inch, hp = 30.0 / np.pi, 1.0 / (4.4482216152605 * 0.0254), 1.0 / 745.6998715822702
+    curves = abs(fine.omega2) * rpm, fine.motor_torque * pound_inch, fine.motor_power * hp
+    speed, torque, power = ls.plot.steady_cycle(cycle).axes
+    for ax, of in zip((speed, torque, power), curves, strict=True):
+        for end, k in (("max", int(np.argmax(of.values))), ("min", int(np.argmin(of.values)))):
+            (at,), (value,) = line(ax, f"_{end}").get_data()
+            assert at == pytest.approx(float(of.theta2[k]), abs=0.3)
+            assert value == pytest.approx(float(of[k]), rel=1e-5)
+            assert f"{end} {value:#.5g}".replace("-", "−") in " ".join(texts(ax))
+    assert power.get_ylabel() == "motor power [hp]"
+    assert line(power, "_max").get_ydata()[0] == pytest.approx(60.0 * 160.0 / 4.0 * hp, rel=1e-12)
+    time = (1.0 / abs(fine.omega2)).mean()
+    mean = next(drawn for drawn in speed.lines if drawn.get_label().startswith("mean 295.2"))
+    assert mean.get_ydata()[0] == pytest.approx(float(rpm / time), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ds: ds.drop_vars("speed_max"), "ds has no cycle on a motor: take what ls.steady_cycle returns"),
+        (lambda ds: ds.assign(status=ds.status.copy(data=2)), "ds has no speed: on its motor the machine stalls"),
+        (lambda ds: ds.expand_dims(design=2), "there are several designs, over design"),
+    ],
+)
+def test_refused_cycles_on_a_motor(change, message):
+    with pytest.raises(ValueError, match=message):
+        ls.plot.steady_cycle(change(ls.steady_cycle(PRESS, ls.DCMotor(10.0, 160.0), ratio=5.0, theta2=24)))
 
 
 @pytest.mark.parametrize("frame", ["ground", "journal"])

@@ -32,6 +32,7 @@ DRAWN = {
     "cycle": lambda: ls.sweep(SHOP).linksweep.cycle(),
     "bearings": lambda: ls.sweep(SHOP).linksweep.bearings(),
     "torque_with_flywheel": lambda: ls.plot.torque_with_flywheel(ls.flywheel(SHOP, fluctuation=0.02, theta2=72)),
+    "steady_cycle": lambda: ls.plot.steady_cycle(ls.steady_cycle(SHOP, ls.DCMotor(10.0, 160.0), ratio=5.0, theta2=72)),
     "over_speed": lambda: ls.plot.over_speed(SHOP, "F32", speeds=["100 rpm", "900 rpm"], below="150 lbf").figure,
     "balance": lambda: ls.plot.balance(SHOP, SHOP, theta2=72),
     "breakdown": lambda: ls.plot.breakdown(ls.breakdown(SHOP, "F32", theta2=72)).figure,

@@ -168,6 +168,7 @@ CALLS = {
     "plot.parallel_coordinates": lambda s, path: s.study.linksweep.parallel_coordinates(),
     "plot.run_up": lambda s, path: CALLS["run_down"](s, path).linksweep.run_up(),
     "plot.scatter": lambda s, path: s.study.linksweep.scatter(x=f"{s.force}_peak", y=f"{s.drive}_peak"),
+    "plot.steady_cycle": lambda s, path: CALLS["steady_cycle"](s, path).linksweep.steady_cycle(),
     "plot.tornado": lambda s, path: ls.tolerance(
         s.machine, {s.word: ls.Tolerance(0.0, 0.1)}, of=s.force, n=0
     ).linksweep.tornado(),
@@ -203,10 +204,9 @@ COMMANDS = {
     "orders": lambda s, path: ["orders", written(s, path)],
     "explore": lambda s, path: ["explore", written(s, path)],
     "flywheel": lambda s, path: ["flywheel", written(s, path)],
+    "steady": lambda s, path: ["steady", written(s, path), "--motor", "dc", "stall_torque=1e4", "no_load_speed=5"],
     "sensitivities": lambda s, path: ["sensitivities", written(s, path), "--of", s.force, "--to", s.word],
-    "tolerance": lambda s, path: [
-        *("tolerance", written(s, path), "--of", s.force, "--tol", s.word, "0", "0.1", "-n", 4)
-    ],
+    "tolerance": lambda s, path: ["tolerance", written(s, path), "--of", s.force, "--tol", s.word, 0, 0.1, "-n", 4],
 }
 """Arguments of each command that takes a scene; `demo` and `completion` take none."""
 
@@ -228,6 +228,7 @@ LACKING: dict[str, str] = {
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
         plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw run_down run_up plot.run_up
+        plot.steady_cycle command.steady
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": NO_CLOSED_FORM,
@@ -238,7 +239,7 @@ LACKING: dict[str, str] = {
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
-        run_down run_up plot.run_up steady_cycle
+        run_down run_up plot.run_up steady_cycle plot.steady_cycle command.steady
     """,
     "whitworth": NO_CLOSED_FORM,
     "geared-five-bar": NO_CLOSED_FORM,
@@ -253,7 +254,7 @@ LACKING: dict[str, str] = {
         plot.balance plot.bearing plot.bearings plot.tornado plot.breakdown plot.cycle plot.forces plot.loop
         plot.mechanism plot.motor_load plot.over_speed plot.torque_with_flywheel accessor.mechanism accessor.scene
         contact_loss size_links size_pins strength plot.moment_diagram plot.moment_diagrams save_drawing run_down run_up
-        plot.run_up steady_cycle
+        plot.run_up steady_cycle plot.steady_cycle
     """,
 }
 """The pairs that give a sentence, by machine."""
