@@ -21,5 +21,5 @@ def pytest_configure(config):
 
 
 def pytest_terminal_summary(terminalreporter, config):
-    if config.option.markexpr == "not long":
-        terminalreporter.write_line("Tests marked long were left out; -m '' runs all.")
+    if config.option.markexpr == "not long and not nightly":
+        terminalreporter.write_line("Tests marked long or nightly were left out; -m '' runs all.")

@@ -294,7 +294,7 @@ def test_the_lightest_press_keeps_its_stroke():
     assert [float(active[0].transmission_angle_min), float(active[1].swing)] == pytest.approx([40.0, 50.0], rel=1e-5)
 
 
-@pytest.mark.long
+@pytest.mark.nightly
 def test_differential_evolution_confirms_the_lightest_press():
     best = lightest_press()
     other = search(best, constraints=best.constraints, maxiter=60, polish=False)
