@@ -171,7 +171,7 @@ def steady_cycle(ds: xr.Dataset) -> Figure:
     Raises
     ------
     ValueError
-        For a Dataset without a steady cycle, a machine that does not keep turning, and more than one design.
+        For a Dataset without a whole steady cycle, a machine that does not keep turning, and more than one design.
 
     Examples
     --------
@@ -190,6 +190,8 @@ def steady_cycle(ds: xr.Dataset) -> Figure:
     refuse([] if word == "ok" else [f"ds has no speed: {NO_SPEED[word]}"])
     curves = abs(ds["omega2"]), ds["motor_torque"], ds["motor_power"]
     angles, *rows = signals.revolution(ds, *curves)
+    whole = np.ptp(angles) >= 360.0
+    refuse([] if whole else ["ds has a part of the cycle: take all angles of ls.steady_cycle, at least three"])
     with panels(3, 1, sharex=True, figsize=(7.1, 6.6)) as (figure, axes):
         for ax, name, row in zip(axes, ON_MOTOR, rows, strict=True):
             _on_motor(ax, ds, name, angles, row)
@@ -211,12 +213,15 @@ def _on_motor(ax: Axes, ds: xr.Dataset, name: str, angles: np.ndarray, values: n
         mean = mean if abs(mean) > ROUNDING * np.max(np.abs(row)) else 0.0
         ax.axhline(mean, color=GREY, linestyle="--", linewidth=1.0, label=f"mean {_five_digits(mean)} {unit}")
         legend_above(ax, loc="lower right", bbox_to_anchor=(1.0, 1.0))
-    for end, sign in (("max", 1.0), ("min", -1.0)):
+    steady = np.ptp(row) <= ROUNDING * np.max(np.abs(row))
+    for end, sign in () if steady else (("max", 1.0), ("min", -1.0)):
         value = float(system.value(float(ds[f"{name}_{end}"]), of))
         place = _summit(angles, sign * row)
         ax.plot([place], [value], "o", color=BLUE, markersize=4.5, label=f"_{end}")
         label(ax, place, value, (f"{end} {_five_digits(value)} {unit}", BLUE))
     ax.margins(y=0.2)
+    if steady:
+        ax.set_ylim(*sorted((0.0, 1.2 * row[0] or 1.0)))
     ax.set_ylabel(f"{ON_MOTOR[name]} [{unit}]")
 
 

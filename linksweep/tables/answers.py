@@ -14,7 +14,7 @@ from linksweep.results.origin.machine_of_results import machine_of_results
 from linksweep.tables.of_any import parts_of_any, parts_to_compute
 from linksweep.tables.of_balance import balance_table, order_table
 from linksweep.tables.of_check import check_table
-from linksweep.tables.of_drive import drive_table, steady_table, wheel_table
+from linksweep.tables.of_drive import STEADY, drive_table, steady_table, wheel_table
 from linksweep.tables.of_peaks import study_parts
 from linksweep.tables.of_pins import bearing_parts, choice_parts, share_parts
 from linksweep.tables.of_runs import run_parts
@@ -51,7 +51,7 @@ KINDS: Mapping[str, Kind] = {
     "run_down": _kind(run_parts, "duration time speed", "step"),
     "sensitivities": _kind(sensitivity_parts, "parameter_unit", "parameter"),
     "tolerance": _kind(tolerance_parts, "parameter_unit", "parameter"),
-    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), "speed_mean motor_torque_max motor_work", "theta2"),
+    "steady_cycle": _kind(lambda ds: iter([steady_table(ds)]), " ".join(("status", *STEADY)), "theta2"),
     "strength": _kind(strength_parts, "stress goodman_safety buckling_safety", "link plane"),
     "system": _kind(system_parts, "matrix rhs", "theta2 equation unknown"),
     "orders": _kind(lambda ds: iter([order_table(ds)]), "", "order"),

@@ -64,11 +64,24 @@ def test_a_cycle_on_its_motor_has_its_exact_extremes():
         (lambda ds: ds.drop_vars("speed_max"), "ds has no cycle on a motor: take what ls.steady_cycle returns"),
         (lambda ds: ds.assign(status=ds.status.copy(data=2)), "ds has no speed: on its motor the machine stalls"),
         (lambda ds: ds.expand_dims(design=2), "there are several designs, over design"),
+        (lambda ds: ds.isel(theta2=slice(5, 9)), "ds has a part of the cycle: take all angles of ls.steady_cycle"),
     ],
 )
 def test_refused_cycles_on_a_motor(change, message):
     with pytest.raises(ValueError, match=message):
         ls.plot.steady_cycle(change(ls.steady_cycle(PRESS, ls.DCMotor(10.0, 160.0), ratio=5.0, theta2=24)))
+
+
+def test_a_cycle_of_constant_speed_has_no_extremes():
+    """A disk whose damper takes all that the motor gives: 6 (1 − ω/160) = 0.3 ω."""
+    weightless = [ls.Link(length, 0.0, 0.0, 0.0) for length in (0.08, 0.22, 0.18)]
+    disk = ls.FourBar(replace(weightless[0], inertia=0.5), *weightless[1:], ground=0.2)
+    scene = ls.Scene(disk, 1.0, loads=[ls.TorsionDamper("ground", "crank", 0.3)])
+    speed, torque, _ = ls.plot.steady_cycle(ls.steady_cycle(scene, ls.DCMotor(6.0, 160.0), theta2=24)).axes
+    omega = 6.0 / (0.3 + 6.0 / 160.0)
+    np.testing.assert_allclose(line(speed, "_speed").get_ydata(), omega, rtol=1e-12)
+    assert texts(speed) == texts(torque) == []
+    assert speed.get_ylim() == pytest.approx((0.0, 1.2 * omega))
 
 
 @pytest.mark.parametrize("frame", ["ground", "journal"])
