@@ -16,6 +16,7 @@ from linksweep.cli.options import (
     STRENGTHS,
     Commands,
     a_number,
+    add_capacity,
     add_names,
     add_part,
     add_plot,
@@ -59,10 +60,9 @@ def _add_pins_and_links(add: Callable[..., argparse.ArgumentParser]) -> None:
     pins = add("bearings", _bearings, "load, rotation, pressure and life of the bearing in each pin")
     pins.add_argument("--diameter", type=a_number("length"), help='diameter of all journals, such as "20 mm"')
     pins.add_argument("--length", type=a_number("length"), help='length of all bushes, such as "30 mm"')
-    pins.add_argument("--capacity", type=a_number("force"), help='dynamic load rating of all bearings, such as "5 kN"')
-    kinds, frames = "of rolling bearings: %(choices)s (ball)", "of load diagrams: %(choices)s (ground)"
-    pins.add_argument("--kind", choices=KINDS, default="ball", metavar="KIND", help=kinds)
+    add_capacity(pins)
     add_part(pins, "crank angles [degree] of a machine that moves over part of a turn")
+    frames = "of load diagrams: %(choices)s (ground)"
     pins.add_argument("--frame", choices=FRAMES, default="ground", metavar="AXES", help=frames)
     add_plot(pins)
 

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import linksweep as ls
-from linksweep.cli.options import TABLES, Commands, a_file, add_names, add_of, add_plot, number_or_text
+from linksweep.cli.options import TABLES, Commands, a_file, add_capacity, add_names, add_of, add_plot, number_or_text
 from linksweep.cli.running import one_design, print_answer, scene_named, show
 
 
@@ -22,9 +22,10 @@ def add_design_commands(commands: Commands) -> None:
     many.add_argument("--chunk", type=int, metavar="N", help=chunks)
 
     which = add("sensitivities", _sensitivities, "derivatives of results to the scene's parameters")
-    names = "results, such as F32_peak T12_rms swing"
+    names = "results, such as F32_peak T12_rms swing time_ratio L10_B"
     add_names(which, "--of", text=f"{names} (peaks of all pins and the drive)")
     add_names(which, "--to", metavar="PATH", text="parameters, such as coupler.length (all)")
+    add_capacity(which)
 
     made = add("tolerance", _tolerance, "what tolerances of parameters do to results")
     add_names(made, "--of", required=True, text=names)
@@ -32,6 +33,7 @@ def add_design_commands(commands: Commands) -> None:
     made.add_argument(
         "--tol", nargs="+", action="append", required=True, dest="tolerances", metavar=("PATH", "LIMIT"), help=text
     )
+    add_capacity(made)
     made.add_argument("-n", type=int, default=1024, help="designs drawn for exact results beside (1024)")
     add_plot(made)
 
@@ -49,7 +51,8 @@ def _study(options: argparse.Namespace) -> None:
 
 
 def _sensitivities(options: argparse.Namespace) -> None:
-    print_answer(ls.sensitivities(one_design(options.scene), options.of, to=options.to))
+    scene = one_design(options.scene)
+    print_answer(ls.sensitivities(scene, options.of, to=options.to, pins=_rolling_bearings(scene, options)))
 
 
 def _tolerance(options: argparse.Namespace) -> None:
@@ -58,9 +61,16 @@ def _tolerance(options: argparse.Namespace) -> None:
             form = "must be a parameter with two limits, or with one class, as ground js9"
             raise ValueError(f"--tol {' '.join(words)}: {form}")
     tolerances = {path: _limits(limits) for path, *limits in options.tolerances}
-    ds = ls.tolerance(one_design(options.scene), tolerances, of=options.of, n=options.n)
+    scene = one_design(options.scene)
+    ds = ls.tolerance(scene, tolerances, of=options.of, n=options.n, pins=_rolling_bearings(scene, options))
     print_answer(ds)
     show(options, lambda: ls.plot.tornado(ds))
+
+
+def _rolling_bearings(scene: ls.Scene, options: argparse.Namespace) -> dict[str, ls.Bearing]:
+    """Return the bearings of a machine, in every pin the same."""
+    bearing = ls.Bearing(capacity=options.capacity, kind=options.kind)
+    return dict.fromkeys(getattr(scene.mechanism, "pins", ()), bearing)
 
 
 def _limits(words: list[str]) -> str | ls.Tolerance:

@@ -83,6 +83,14 @@ def add_angles(parser: argparse.ArgumentParser, text: str, default: int | None =
     parser.add_argument("--theta2", "--theta", dest="angles", type=int, default=default, metavar="N", help=text)
 
 
+def add_capacity(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the rolling bearings in all pins."""
+    rating = 'dynamic load rating of all bearings, such as "5 kN"'
+    parser.add_argument("--capacity", type=a_number("force"), help=rating)
+    kinds = "of rolling bearings: %(choices)s (ball)"
+    parser.add_argument("--kind", choices=KINDS, default="ball", metavar="KIND", help=kinds)
+
+
 def add_part(parser: argparse.ArgumentParser, text: str) -> None:
     parser.add_argument("--theta2", nargs=2, type=float, metavar=("FIRST", "LAST"), help=text)
 

@@ -22,7 +22,7 @@ PHRASES = {
     'ls.Tolerance(lower, upper), ls.Normal(deviation=...) or a class of ISO 286, as "h9"': (
         "two limits, or a class of ISO 286, as h9"
     ),
-    'give pins={"{}": ls.Bearing(capacity=...)}': "linksweep bearings states the life of a capacity",
+    'give pins={"{}": ls.Bearing(capacity=...)}': "give --capacity",
     "give it ls.Tolerance(lower, upper)": "give it two limits",
     "ls.Bar(...), or as ls.Link(..., section=ls.Section(...))": 'type = "Bar", or with section = {...}',
     "declare it in guides, by an ls.Guide": "declare it in guides, as guides.slide = { through = [x, y] }",

@@ -147,3 +147,15 @@ def test_commands_print_the_tables(capsys):
     main(["tolerance", "press", "--of", "F32_peak", "--tol", "ground", "js9", *limits, "-n", "16"])
     text = capsys.readouterr().out
     assert "sigma" in text and "of the variance" in text and "drawn designs" in text
+
+
+def test_commands_take_the_capacity_of_bearings(capsys):
+    pins = dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0, kind="roller"))
+    expected = ls.sensitivities(PRESS, of=["L10_B"], to=["ground"], pins=pins)
+    asked = ["--capacity", "5 kN", "--kind", "roller"]
+    main(["sensitivities", "press", "--of", "L10_B", "--to", "ground", *asked])
+    assert f"L10_B = {float(expected.L10_B):.6g}" in capsys.readouterr().out
+    main(["tolerance", "press", "--of", "L10_B", "--tol", "ground", "js9", *asked, "-n", "0"])
+    assert f"{float(expected.L10_B):.6g}" in capsys.readouterr().out
+    assert main(["sensitivities", "press", "--of", "L10_B"]) == 2
+    assert "give --capacity" in capsys.readouterr().err
