@@ -14,9 +14,9 @@ HANDY = {"Pa": ("MPa", 1e6), "Pa m/s": ("MPa m/s", 1e6), "degree": ("°", 1.0)}
 """Units of which the numbers are neither very large nor very small, and their number of SI units."""
 
 
-def digits(value: float) -> str:
-    """Return a number with six significant digits."""
-    return f"{value:.6g}"
+def digits(value: float, significant: int = 6) -> str:
+    """Return a number with so many significant digits."""
+    return f"{value:.{significant}g}"
 
 
 def number(value: float) -> str:
@@ -46,10 +46,10 @@ def unit_of(values: xr.DataArray) -> str:
     return str(values.attrs.get("units", ""))
 
 
-def with_unit(value: float, units: str) -> str:
+def with_unit(value: float, units: str, significant: int = 6) -> str:
     """Return a number with its unit, "12.3 N m" or "45°"."""
     unit = PLAIN_UNITS.get(units, units)
-    return digits(value) + (unit if unit in ("", "°") else f" {unit}")
+    return digits(value, significant) + (unit if unit in ("", "°") else f" {unit}")
 
 
 def at(values: xr.DataArray, place: Mapping[Any, int]) -> float:

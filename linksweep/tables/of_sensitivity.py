@@ -7,14 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from linksweep.tables.cells import unit_of
+from linksweep.tables.cells import PLAIN_UNITS, digits, unit_of, with_unit
 from linksweep.tables.table import Part, Row, Table
 
 
 def sensitivity_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield a table for each result: derivatives and elasticities by parameter, the largest elasticity first."""
     for name in _results(ds, "_derivative"):
-        yield f"{name} = {float(ds[name]):.6g} {unit_of(ds[name])}{_remark(ds, name)}"
+        yield f"{name} = {with_unit(float(ds[name]), unit_of(ds[name]))}{_remark(ds, name)}"
         slopes, elasticity = (ds[f"{name}_{word}"].values for word in ("derivative", "elasticity"))
         order = np.argsort(-np.nan_to_num(np.abs(elasticity)), kind="stable")
         rows: list[Row] = [
@@ -32,16 +32,17 @@ def sensitivity_parts(ds: xr.Dataset) -> Iterator[Part]:
 def tolerance_parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield a table for each result: its spread, and the share of each parameter, the largest first."""
     for name in _results(ds, "_share"):
-        unit, value = unit_of(ds[name]), float(ds[name])
-        yield f"{name} = {value:.6g} {unit}, sigma {float(ds[f'{name}_sigma']):.3g} {unit}{_remark(ds, name)}"
-        numbers = {word: float(ds[f"{name}_{word}"]) for word in ("worst_least", "worst_largest")}
-        yield f"worst case, linear: {numbers['worst_least']:.6g} to {numbers['worst_largest']:.6g} {unit}"
-        if f"{name}_drawn_sigma" in ds:
-            sigma, least, most = (float(ds[f"{name}_drawn_{word}"]) for word in ("sigma", "least", "largest"))
-            yield f"drawn designs, exact: sigma {sigma:.3g}, {least:.6g} to {most:.6g} {unit}"
+        unit, number = unit_of(ds[name]), _numbers(ds, name)
+        plain = PLAIN_UNITS.get(unit, unit)
+        sigma = with_unit(number["sigma"], unit, 3)
+        yield f"{name} = {with_unit(float(ds[name]), unit)}, sigma {sigma}{_remark(ds, name)}"
+        yield f"worst case, linear: {digits(number['worst_least'])} to {with_unit(number['worst_largest'], unit)}"
+        if "drawn_sigma" in number:
+            least, most = digits(number["drawn_least"]), with_unit(number["drawn_largest"], unit)
+            yield f"drawn designs, exact: sigma {digits(number['drawn_sigma'], 3)}, {least} to {most}"
         share, lower, upper = (ds[f"{name}_{word}"].values for word in ("share", "lower", "upper"))
         rows: list[Row] = [
-            (str(ds["parameter"].values[k]), f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", unit)
+            (str(ds["parameter"].values[k]), f"{100.0 * share[k]:.1f} %", f"{lower[k]:+.3g}", f"{upper[k]:+.3g}", plain)
             for k in np.argsort(-np.nan_to_num(share), kind="stable")
         ]
         yield Table(("parameter", "of the variance", "at lower", "at upper limit", ""), rows, right=(1, 2, 3))
@@ -49,6 +50,12 @@ def tolerance_parts(ds: xr.Dataset) -> Iterator[Part]:
 
 def _results(ds: xr.Dataset, ending: str) -> list[str]:
     return [str(key).removesuffix(ending) for key in ds.data_vars if str(key).endswith(ending)]
+
+
+def _numbers(ds: xr.Dataset, name: str) -> dict[str, float]:
+    """Return the numbers that stand beside a result without a parameter, by the rest of their names."""
+    beside = {str(key).removeprefix(f"{name}_"): ds[key] for key in ds.data_vars if str(key).startswith(f"{name}_")}
+    return {word: float(values) for word, values in beside.items() if not values.dims}
 
 
 def _remark(ds: xr.Dataset, name: str) -> str:

@@ -289,7 +289,7 @@ def test_peaks_do_not_depend_on_the_number_of_threads(monkeypatch):
 
 
 def test_a_damper_on_a_machine_whose_cylinders_are_moved_changes_nothing_without_a_coefficient():
-    """Where its ends come closest depends on the lengths of the cylinders, which change with theta2."""
+    """The angle at which its ends come closest depends on the lengths of the cylinders, which change with theta2."""
     scene = ls.example("excavator")
     idle = ls.Damper(("ground", 1.0, 3.0), ("bucket", 0.3, 10.0), 0.0)
     plain, more = (ls.peaks(s, of=["force_c2"]) for s in (scene, replace(scene, loads=[*scene.loads, idle])))

@@ -20,7 +20,7 @@ LONG = {
 @pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")
 @pytest.mark.parametrize("family", long_but(QUICK | LONG, *QUICK))
 def test_derivatives_of_random_scenes_are_those_of_50_digits(family):
-    """Of the yoke whose lever drives, peaks stand at jumps of friction, whose middle has no derivative to it."""
+    """A lever that drives a yoke has its peaks at jumps of friction, and the middle of a jump has no derivative."""
     errors = stress.checked(family, (QUICK | LONG)[family], seed=1)
     assert stress.missed(family, errors) == []
     assert len(errors.samples.derivative) and len(errors.peaks.error) and not errors.peaks.unknown

@@ -144,18 +144,20 @@ def test_commands_print_the_tables(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("F32_peak = 354.5") and any(line.startswith("ground") for line in lines)
     limits = ["--tol", "crank.length", "-20 um", "20 um"]
-    main(["tolerance", "press", "--of", "F32_peak", "--tol", "ground", "js9", *limits, "-n", "16"])
+    names = ["--of", "F32_peak", "swing", "time_ratio"]
+    main(["tolerance", "press", *names, "--tol", "ground", "js9", *limits, "-n", "8"])
     text = capsys.readouterr().out
+    assert "\nswing = 61.3156°, sigma" in text and "time_ratio = 1.32804, sigma" in text
     assert "sigma" in text and "of the variance" in text and "drawn designs" in text
 
 
 def test_commands_take_the_capacity_of_bearings(capsys):
     pins = dict.fromkeys("ABCD", ls.Bearing(capacity=5000.0, kind="roller"))
     expected = ls.sensitivities(PRESS, of=["L10_B"], to=["ground"], pins=pins)
-    asked = ["--capacity", "5 kN", "--kind", "roller"]
-    main(["sensitivities", "press", "--of", "L10_B", "--to", "ground", *asked])
+    rating = ["--capacity", "5 kN", "--kind", "roller"]
+    main(["sensitivities", "press", "--of", "L10_B", "--to", "ground", *rating])
     assert f"L10_B = {float(expected.L10_B):.6g}" in capsys.readouterr().out
-    main(["tolerance", "press", "--of", "L10_B", "--tol", "ground", "js9", *asked, "-n", "0"])
+    main(["tolerance", "press", "--of", "L10_B", "--tol", "ground", "js9", *rating, "-n", "0"])
     assert f"{float(expected.L10_B):.6g}" in capsys.readouterr().out
     assert main(["sensitivities", "press", "--of", "L10_B"]) == 2
     assert "give --capacity" in capsys.readouterr().err
