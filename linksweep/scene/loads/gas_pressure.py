@@ -33,8 +33,8 @@ class GasPressure(ChangingLoad):
     bore : float or DataArray
         Diameter of the cylinder [m].
     pressure : float, DataArray, function, OttoCycle or DieselCycle
-        Absolute pressure in the cylinder [Pa]; a function is one of theta2 [degree]. An ideal cycle is for a
-        `SliderCrank`.
+        Absolute pressure in the cylinder [Pa]; a function is one of theta2 [degree], its slope as that of a `Load`. An
+        ideal cycle is for a `SliderCrank`.
     crankcase : float, DataArray or function, default 101325.0
         Absolute pressure on the other side of the piston [Pa].
     breaks : list of float, default ()
