@@ -47,7 +47,8 @@ def read_isolated(path: Path) -> xr.Dataset:
 
 def _run(command: list[str], longest: float) -> tuple[subprocess.Popen[bytes], bytes, bytes]:
     """Run the process; return it with its output and its errors. TimeoutExpired counts from when it is ready."""
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    # unbuffered: else the first line's reader may take more of the output, which communicate() would not see
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0) as process:
         try:
             if process.stdout:
                 process.stdout.readline()  # READY, or nothing where it ended before

@@ -3,6 +3,7 @@
 import random
 import re
 import subprocess
+import sys
 from dataclasses import replace
 
 import netCDF4
@@ -213,3 +214,10 @@ def test_missing_and_changed_variables_and_scenes_are_refused(change, message, t
     ls.save(change(ls.sweep(batch(), 12)), path)
     with pytest.raises(ValueError, match=rf"^{re.escape(str(path))}:{message}"):
         ls.load_scene(path)
+
+
+def test_output_that_comes_with_the_first_line_is_not_lost():
+    """A busy reader finds both at once."""
+    both = f"import sys\nsys.stdout.buffer.write({isolated.READY!r} + b'x' * 1000)"
+    _, output, _ = isolated._run([sys.executable, "-c", both], 60.0)
+    assert output == b"x" * 1000

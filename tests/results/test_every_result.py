@@ -4,6 +4,7 @@ import importlib.util
 import inspect
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ import linksweep as ls
 
 PRESS, N = ls.example("press"), 24
 STEEL, BEARING = ls.material("S355"), ls.Bearing(diameter=0.02, length=0.03, friction=0.1, capacity=5e4)
+MOTOR = ls.InductionMotor("1500 rpm", "15 N m", rated_torque="6 N m", rated_speed="1425 rpm", inertia=0.004)
+DRAGGED = replace(PRESS, loads=[ls.TorsionDamper("ground", "crank", coefficient=0.5)])
 DESIGNS = ls.sample(PRESS, {"ground": (0.19, 0.21)}, n=3)
 
 RESULTS = {
@@ -35,12 +38,15 @@ RESULTS = {
     "pin_friction": lambda path: ls.pin_friction(PRESS, {"B": BEARING}, theta2=N),
     "position_equation": lambda path: ls.position_equation(PRESS, 45.0),
     "regressor": lambda path: ls.regressor(PRESS, ["T12"], theta2=N),
+    "run_down": lambda path: ls.run_down(DRAGGED, of=["F32"]),
+    "run_up": lambda path: ls.run_up(PRESS, MOTOR, ratio=5.0, of=["F32"]),
     "screen": lambda path: ls.screen(PRESS, {"ground": (0.19, 0.21)}, n=3, minimize="F32_peak", theta2=N),
     "sensitivities": lambda path: ls.sensitivities(PRESS, "F32_peak", to=["ground"]),
     "size_links": lambda path: ls.size_links(PRESS, STEEL, safety=2.0),
     "size_pins": lambda path: ls.size_pins(PRESS, allowable={"shear": 6e7}, eye=0.02),
     "speed_limit": lambda path: ls.speed_limit(PRESS, "F32", below=1e5),
     "speed_separation": lambda path: ls.speed_separation(PRESS, theta2=N),
+    "steady_cycle": lambda path: ls.steady_cycle(PRESS, MOTOR, ratio=5.0, flywheel=0.2, theta2=N),
     "strength": lambda path: ls.strength(PRESS, STEEL),
     "study": lambda path: ls.study(DESIGNS, path / "study.nc", of=["F32"], theta2=N).load(),
     "sweep": lambda path: ls.sweep(PRESS, N),

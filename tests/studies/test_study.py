@@ -197,8 +197,8 @@ def test_the_command_of_one_design_prints_its_peaks(folder, capsys):
     [
         (["scene.toml", "-o", "scene.toml"], "scene.toml: its ending must be .nc: a study file is NetCDF"),
         (["scene.toml", "-o", "no/study.nc"], "no/study.nc: there is no folder no; make it first"),
-        (["scene.toml", "-o", "study.nc", "--of", "F33"], "of: nothing is named 'F33'"),
-        (["scene.toml", "-o", "study.nc", "--chunk", "0"], "chunk = 0: must be a whole number"),
+        (["scene.toml", "-o", "study.nc", "--of", "F33"], "--of: nothing is named 'F33'"),
+        (["scene.toml", "-o", "study.nc", "--chunk", "0"], "--chunk 0: must be a whole number"),
         (["scen.toml", "-o", "study.nc"], "scen.toml: there is no such file; did you mean"),
     ],
 )

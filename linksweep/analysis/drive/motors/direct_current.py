@@ -73,8 +73,9 @@ class DCMotor(AnyMotor):
         Examples
         --------
         >>> import linksweep as ls
-        >>> ls.DCMotor.from_winding("24 V", "0.6 ohm", "0.05 N m/A")
-        DCMotor(stall_torque=2.0, no_load_speed=480.0)
+        >>> motor = ls.DCMotor.from_winding("24 V", "0.6 ohm", "0.05 N m/A")
+        >>> print(f"{motor.stall_torque:.3f} N m, {motor.no_load_speed:.3f} rad/s")
+        2.000 N m, 480.000 rad/s
         """
         voltage = checked_number("voltage", voltage, VOLTAGE)
         resistance = checked_number("resistance", resistance, RESISTANCE)
