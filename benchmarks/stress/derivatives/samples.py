@@ -75,12 +75,12 @@ def errors_of(scene: ls.Scene, theta2: float, random: np.random.Generator, most:
 
 
 def _off(ours: Array, slope: Array, sides: Array) -> Array:
-    """Return the errors of derivatives, where a slide bears nothing, or a magnitude is zero, from the nearer of those
-    to its two sides."""
+    """Return the errors of derivatives, where a slide bears nothing, or a magnitude is zero, from the nearest of those
+    to its two sides; where a derivative is next to nothing, the sides differ only by their own errors."""
     right, left = sides
     off, nearer = (abs(x).astype(float) for x in (ours - slope, np.minimum(abs(ours - right), abs(ours - left))))
     bent = abs(right - left).astype(float) > BENT * (abs(right) + abs(left)).astype(float)
-    return np.where(bent, nearer, off)
+    return np.where(bent, np.minimum(off, nearer), off)
 
 
 def _turned(name: str, error: Array) -> Array:
