@@ -128,7 +128,7 @@ def names_of(chosen: xr.Dataset) -> np.ndarray:
 
 LIMITS = [
     {}, {"bore": "20 mm"}, {"bore": {"A": 0.03, "C": "35 mm"}}, {"outside": "50 mm"}, {"series": ["63"]},
-    {"bore": 0.025, "outside": {"B": 0.06}, "series": ("60", "62")}, {"static_safety": 40.0},
+    {"bore": 0.025, "outside": {"B": 0.06}, "series": ("60", "62")}, {"static_safety": 4.0},
 ]  # fmt: skip
 
 

@@ -23,7 +23,8 @@ def test_derivatives_of_random_scenes_are_those_of_50_digits(family):
     """A lever that drives a yoke has its peaks at jumps of friction, and the middle of a jump has no derivative."""
     errors = stress.checked(family, (QUICK | LONG)[family], seed=1)
     assert stress.missed(family, errors) == []
-    assert len(errors.samples.derivative) and len(errors.peaks.error) and not errors.peaks.unknown
+    assert len(errors.samples.derivative) and not errors.peaks.unknown
+    assert len(errors.peaks.error) or {*errors.peaks.statuses} <= {"moving_jump", "arc_end"}
 
 
 def test_every_kind_of_load_and_every_example_is_drawn():
