@@ -28,7 +28,15 @@ extensions = [
     "numpydoc",
     "myst_nb",
 ]
-exclude_patterns = ["_build", "conf.py", "generators", "pictures", "templates", "generated/scene_keys.md"]
+exclude_patterns = [
+    "_build",
+    "jupyter_execute",
+    "conf.py",
+    "generators",
+    "pictures",
+    "templates",
+    "generated/scene_keys.md",
+]
 templates_path = ["templates"]
 default_role = "py:obj"  # `linksweep.sweep` is a link, any other word in backticks is code
 
