@@ -40,7 +40,7 @@ NO_SPEED = {
     "unstable": "the motion on its motor is unstable",
     "not_found": "no motion was found that repeats",
 }
-"""What each status of a steady cycle that is not ok says."""
+"""Text of each status of a steady cycle that is not ok."""
 
 
 def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:

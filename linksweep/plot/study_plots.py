@@ -244,7 +244,7 @@ def _objective(
     names = {"minimize": minimize} | ({} if isinstance(maximize, bool) else {"maximize": maximize})
     chosen = {path: name for path, name in names.items() if name is not None}
     refuse([p for path, name in chosen.items() for p in variable_problems(ds, path, name, numbers="fiu")])
-    refuse(["minimize and maximize are both given: the best is so by one of them"] if len(chosen) > 1 else [])
+    refuse(["state minimize or maximize, not both: the best is so by one of them"] if len(chosen) > 1 else [])
     if chosen:
         ((path, name),) = chosen.items()
         return name, path == "maximize" or maximize is True

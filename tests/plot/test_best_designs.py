@@ -151,7 +151,7 @@ def test_a_front_and_a_screening_know_what_was_asked_for():
     lengths = {"coupler.length": (0.2, 0.24)}
     kept = ls.screen(PRESS, lengths, n=16, maximize="transmission_angle_min", of=["F32"], theta2=36)
     assert kept.attrs["maximize"] == "transmission_angle_min" and "minimize" not in kept.attrs
-    with pytest.raises(ValueError, match=r"^minimize and maximize are both given"):
+    with pytest.raises(ValueError, match=r"^state minimize or maximize, not both"):
         SAMPLE.linksweep.parallel_coordinates(minimize="F32_peak", maximize="F32_peak")
     with pytest.raises(ValueError, match=r"^minimize: nothing is named 'F33_peak'"):
         SAMPLE.linksweep.parallel_coordinates(minimize="F33_peak")
