@@ -62,7 +62,7 @@ def choose_bearings(
     """Choose the smallest deep-groove ball bearing of each pin that reaches a life and a static safety.
 
     Bores from 10 to 50 mm with dimensions of ISO 15, and load ratings by the formulas of ISO 281 and ISO 76, as of
-    `linksweep.analysis.pins.catalogue`: a size to begin with, for makers' own ratings differ by a tenth and more.
+    `linksweep.analysis.pins.catalogue`: a size to begin with, for makers' own ratings differ by up to 15 %.
 
     Parameters
     ----------
