@@ -23,9 +23,9 @@ FAILURES = {
     "does_not_start": "The motor does not start it: at rest it does not overcome weights, loads and friction.",
     "stalls": "The crank comes to rest on its way: the motor is too weak there.",
     "settles_below": "Its speed settles below the one that is sought.",
-    "keeps_turning": "It keeps turning: nothing in the scene takes its energy away, such as friction or a damper.",
-    "takes_more_turns": "It takes more turns: give turns= a larger number.",
-    "breaks_off": "It breaks off: the machine does not turn fully, or jams; ls.check says why.",
+    "keeps_turning": "It keeps turning: over a cycle, friction, dampers and loads take no energy away.",
+    "takes_more_turns": "It takes more turns than it was allowed.",
+    "breaks_off": "It breaks off: the machine does not turn fully, or jams; a check of the scene says why.",
 }
 """Sentence for each status that is not ok."""
 

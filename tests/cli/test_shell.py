@@ -20,6 +20,21 @@ from linksweep.cli.shell_words import PHRASES, in_shell_words
 PACKAGE = Path(ls.__file__).parent
 PROGRAM = Program()
 COMMANDS = PROGRAM.commands.by_name
+ARGUMENTS = {
+    "study": ["-o", "s.nc"],
+    "sweep": ["-o", "c.nc", "--plot", "c.png"],
+    "report": ["-o", "page.html"],
+    "animate": ["-o", "film.gif"],
+    "choose-bearings": ["--life", "10000 h"],
+    "strength": ["--material", "S355"],
+    "breakdown": ["F32"],
+    "balance": ["--radius", "6 cm"],
+    "steady": ["--motor", "dc", "stall_torque=6", "no_load_speed=160"],
+    "run-up": ["--motor", "dc", "stall_torque=6", "no_load_speed=160"],
+    "draw": ["-o", "press.svg"],
+    "tolerance": ["--of", "F32_peak", "--tol", "ground", "js9"],
+}
+"""Arguments that commands need after the scene."""
 
 
 @pytest.fixture(autouse=True)
@@ -87,10 +102,8 @@ LISTS = [
 
 @pytest.mark.parametrize(("name", "option"), LISTS)
 def test_names_are_listed_with_spaces_or_commas(name, option):
-    required = {"sweep": ["-o", "c.nc"], "study": ["-o", "s.nc"], "tolerance": ["--tol", "ground", "js9"]}.get(name, [])
-    required += ["--of", "F32"] if name == "tolerance" and option != "--of" else []
     forms = (["F32", "T12"], ["F32,T12"], ["F32,", "T12"], ["F32, T12"])
-    read = [vars(PROGRAM.parse_args([name, "press", *required, option, *form])) for form in forms]
+    read = [vars(PROGRAM.parse_args([name, "press", *ARGUMENTS.get(name, []), option, *form])) for form in forms]
     assert [each[option[2:]] for each in read] == [["F32", "T12"]] * len(forms)
 
 
@@ -211,18 +224,6 @@ def test_messages_are_in_words_of_the_command(command, message, advice):
     assert in_shell_words(message, COMMANDS[command], COMMANDS) == advice
 
 
-ARGUMENTS = {
-    "sweep": ["-o", "c.nc", "--plot", "c.png"],
-    "report": ["-o", "page.html"],
-    "animate": ["-o", "film.gif"],
-    "choose-bearings": ["--life", "10000 h"],
-    "strength": ["--material", "S355"],
-    "breakdown": ["F32"],
-    "balance": ["--radius", "6 cm"],
-    "steady": ["--motor", "dc", "stall_torque=6", "no_load_speed=160"],
-    "draw": ["-o", "press.svg"],
-    "tolerance": ["--of", "F32_peak", "--tol", "ground", "js9"],
-}
 MANY = {"peaks", "study", "check", "quantities"}
 """Commands that take several designs."""
 

@@ -205,6 +205,11 @@ COMMANDS = {
     "explore": lambda s, path: ["explore", written(s, path)],
     "flywheel": lambda s, path: ["flywheel", written(s, path)],
     "steady": lambda s, path: ["steady", written(s, path), "--motor", "dc", "stall_torque=1e4", "no_load_speed=5"],
+    "run-up": lambda s, path: [
+        *("run-up", written(s, path), "--of", s.drive, "--until", 1e-3),
+        *("--motor", "curve", "speeds=0,1e4", "torques=1e6,0", "inertia=0.01"),
+    ],
+    "run-down": lambda s, path: [*("run-down", written(s, path), "--of", s.drive, "--until", 0.99, "--turns", 0.1)],
     "sensitivities": lambda s, path: ["sensitivities", written(s, path), "--of", s.force, "--to", s.word],
     "tolerance": lambda s, path: ["tolerance", written(s, path), "--of", s.force, "--tol", s.word, 0, 0.1, "-n", 4],
 }
@@ -228,7 +233,7 @@ LACKING: dict[str, str] = {
         plot.over_speed plot.torque plot.torque_with_flywheel accessor.mechanism command.bearings command.breakdown
         command.balance command.orders command.explore command.flywheel contact_loss size_pins size_links strength
         plot.moment_diagram plot.moment_diagrams command.strength save_drawing command.draw run_down run_up plot.run_up
-        plot.steady_cycle command.steady
+        plot.steady_cycle command.steady command.run-up command.run-down
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": NO_CLOSED_FORM,
@@ -239,7 +244,7 @@ LACKING: dict[str, str] = {
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
-        run_down run_up plot.run_up steady_cycle plot.steady_cycle command.steady
+        run_down run_up plot.run_up steady_cycle plot.steady_cycle command.steady command.run-up command.run-down
     """,
     "whitworth": NO_CLOSED_FORM,
     "geared-five-bar": NO_CLOSED_FORM,
