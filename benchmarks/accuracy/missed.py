@@ -99,6 +99,7 @@ def _short(exact: xr.Dataset, dense: xr.Dataset, name: str) -> Array:
     sign = -1.0 if name.endswith("_min") else 1.0
     peak, sample = sign * exact[name].values, sign * dense[name].values
     scale = np.abs(exact[f"{name.rsplit('_', 1)[0]}_peak"].values)
+    scale = np.where(np.isfinite(scale), scale, np.abs(peak))  # one extreme is finite, the other is not
     with np.errstate(invalid="ignore"):
         short = np.where(sample > peak, (sample - peak) / scale, 0.0)
     return np.where(np.isnan(peak) & ~np.isnan(sample), np.inf, short)

@@ -53,9 +53,8 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flag
         j = flags[k] if summits else k
         if row[j] > top:
             top, at = row[j], j
-    quarter = n // 4  # a few samples suffice for the signal's magnitude
-    floor = NOISE * max(abs(top), abs(row[0]), abs(row[quarter]), abs(row[2 * quarter]), abs(row[3 * quarter]))
-    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
+    around_top = neighbour(row, at, -1, joined), top, neighbour(row, at, 1, joined)
+    best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * noise(*around_top)
     best[PEAK_X, tag] = x[at]
     if abs(top) == math.inf:
         return count
@@ -66,6 +65,7 @@ def open_on_path(row, x, before, after, joined, tag, brackets, count, best, flag
             first -= 1
         left, value, right = neighbour(row, first, -1, joined), row[j], neighbour(row, j, 1, joined)
         ratio = (after[j] - x[j]) / (x[j] - before[first])
+        floor = noise(left, value, right)
         if might_reach(left, value, right, ratio) > top + 10.0 * floor:
             brackets[XA, count], brackets[FA, count] = before[first], left
             brackets[XB, count], brackets[FB, count] = x[j], value
@@ -85,6 +85,11 @@ def might_reach(left, value, right, ratio):
     """Return an upper estimate of the peak about a sample above its neighbours: add the rises that both extended
     secants allow. The right neighbour is `ratio` times as far away as the left one."""
     return value + ((value - left) * ratio + (value - right) / ratio)
+
+
+def noise(left, value, right):
+    """Return the rounding noise of a signal about a sample, by its size there: elsewhere it may tend to −∞."""
+    return NOISE * max(abs(left) if left > -math.inf else 0.0, abs(value), abs(right) if right > -math.inf else 0.0)
 
 
 def find_summits(row, joined, flags):
