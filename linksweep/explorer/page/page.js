@@ -13,17 +13,18 @@ class Page {
     this.ask({ask: "start"});
   }
 
-  // Commands wait in line; of changes only the latest counts; exact peaks come when nothing newer waits.
-  ask(question) { this.queue.push(question); this.next(); }
+  // Questions wait in line; of changes that wait only the latest counts; exact peaks come when nothing newer waits.
+  ask(question) { this.settle(); this.queue.push(question); this.next(); }
   change(question) { this.latest = question; this.next(); }
+  settle() { if (this.latest) this.queue.push(this.latest); this.latest = null; }
   next() {
     if (this.busy) return;
-    let question = this.queue.shift();
-    if (!question && this.latest) { question = this.latest; this.latest = null; }
-    if (!question && this.exact) { question = {ask: "exact"}; this.exact = false; }
-    if (!question) { this.root.classList.remove("busy"); return; }
-    this.busy = true;
-    this.model.send_msg(question);
+    this.settle();
+    if (!this.queue.length && this.exact) { this.queue.push({ask: "exact"}); this.exact = false; }
+    this.busy = this.queue.length > 0;
+    this.root.setAttribute("aria-busy", this.busy);
+    if (!this.busy) return;
+    this.model.send_msg(this.queue.shift());
     this.late = setTimeout(() => this.say("Waiting for Python …"), 4000);
   }
 
@@ -40,14 +41,16 @@ class Page {
     if ("refusal" in reply && this.cycle) this.controls.show(this.values, this.branches, this.pinned?.values);
     if ("pinned" in reply) this.pinned = reply.pinned;
     if (reply.cycle) {
-      Object.assign(this, {cycle: reply.cycle, values: reply.values, branches: reply.branches, exact: true});
+      Object.assign(this, {cycle: reply.cycle, values: reply.values, branches: reply.branches, exact: true, peaks: null});
+      this.table.classList.add("old");
       this.undo.disabled = !reply.undo;
       this.redo.disabled = !reply.redo;
     }
     if (reply.angle !== undefined) this.angle = reply.angle;
-    if (reply.peaks) { this.peaks = reply.peaks; this.checks = reply.checks; this.tables(); }
+    if (reply.peaks) Object.assign(this, {peaks: reply.peaks, checks: reply.checks});
     if (reply.cycle || "pinned" in reply) this.show();
-    if (reply.peaks || "pinned" in reply) { this.curves(); this.tables(); }
+    if (reply.peaks) this.curves();
+    if (reply.peaks || "pinned" in reply) this.tables();
     if (reply.text) save(reply);
   }
 
@@ -124,8 +127,6 @@ class Page {
     this.back.hidden = !pinned;
     this.root.classList.toggle("compares", !!pinned);
     this.machine.show(cycle, pinned?.cycle);
-    this.peaks = null; // of another design
-    this.table.classList.add("old");
     this.curves();
     this.loads.forEach(load => load.show(cycle.forces[load.force.name], pinned?.cycle.forces[load.force.name]));
     this.turnTo(this.angle);
