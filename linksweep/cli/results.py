@@ -37,6 +37,8 @@ def add_result_commands(commands: Commands) -> None:
 
     worst = add("peaks", _peaks, "the worst of each pin force and of the torque")
     add_angles(worst, "number of angles: the largest of these samples, not the exact peaks")
+    part = "first and last angle [degree] of a part of the cycle: the exact peaks of that part, ends included"
+    worst.add_argument("--between", nargs=2, type=float, metavar=("FIRST", "LAST"), help=part)
     add_of(worst)
     worst.add_argument("-o", "--output", type=a_file(RESULTS), help="file to write: .nc, .csv or .xlsx")
 
@@ -80,7 +82,7 @@ def _sweep(options: argparse.Namespace) -> None:
 
 def _peaks(options: argparse.Namespace) -> None:
     scene = scene_named(options.scene)
-    ds = ls.peaks(scene, of=options.of, **{scene.mechanism.index: options.angles})
+    ds = ls.peaks(scene, of=options.of, between=options.between, **{scene.mechanism.index: options.angles})
     print_answer(ds)
     if options.output:
         ls.save(ds, options.output)

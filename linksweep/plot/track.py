@@ -15,7 +15,7 @@ from linksweep.plot.kit.style import grid, panels, show_lengths
 from linksweep.results.compute import angles_missing
 from linksweep.results.origin.in_shown_units import in_shown_units, results_in_shown_units
 from linksweep.results.origin.machine_of_results import machine_of_results
-from linksweep.results.peaks import peaks, peaks_of_part
+from linksweep.results.peaks import peaks
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import shown_units
@@ -100,8 +100,8 @@ def _extremes(scene: Scene, name: str, angles: np.ndarray, force: np.ndarray) ->
     if not np.nanmin(force, initial=np.inf) < np.nanmax(force, initial=-np.inf):
         return {}
     if not design_labels(scene) and not angles_missing(scene):
-        part = (float(angles[0]), float(angles[-1]))
-        worst = peaks(scene, of=[name]) if signals.full_turn(angles) else peaks_of_part(scene, [name], part)
+        part = None if signals.full_turn(angles) else (float(angles[0]), float(angles[-1]))
+        worst = peaks(scene, of=[name], between=part)
         worst = in_shown_units(worst)
         places = {end: angles[0] + (worst[f"{name}_{end}_at"].item() - angles[0]) % 360.0 for end in ("max", "min")}
         return {end: (float(at), worst[f"{name}_{end}"].item()) for end, at in places.items()}

@@ -17,8 +17,7 @@ from typing import Any
 import xarray as xr
 
 from linksweep.analysis.strength.material import Material
-from linksweep.base.fields import PairField
-from linksweep.base.validate import Rule, refuse
+from linksweep.base.validate import refuse
 from linksweep.files.atomic import ending_of
 from linksweep.files.netcdf import write_text
 from linksweep.reports import checks as page_checks
@@ -29,6 +28,7 @@ from linksweep.reports.cylinder_page import parts_of
 from linksweep.reports.markup import Markup, joined, safe, section, tag
 from linksweep.reports.results_of_page import Range, Results, Steel, results_of
 from linksweep.reports.scene_tables import degrees
+from linksweep.results.compute import part_of
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.file.writing import write_scene
@@ -106,9 +106,10 @@ def report(
         write_text(page_of_cylinders(scene.in_memory, title, threads), path)
         return
     one = scene if isinstance(scene, Scene) else scene_at(scene)
-    refuse(_design_problems(one) + _part_problems(theta2, one.period))
-    refuse(["material: strength is of the whole cycle; leave out theta2"] if material and theta2 else [])
-    text = page(one, title, theta2, threads, material)
+    refuse(_design_problems(one))
+    part = part_of("theta2", theta2, one)
+    refuse(["material: strength is of the whole cycle; leave out theta2"] if material and part else [])
+    text = page(one, title, part, threads, material)
     write_text(text.encode(errors="replace").decode(), path)  # a title may have bytes that are no letters
 
 
@@ -165,17 +166,6 @@ def _right(results: Results) -> Iterator[Markup]:
     yield section("Drive", page_tables.drive(results))
     yield section("Motion", page_tables.highlights(results))
     yield section("Shaking, by the inertia of the links", page_tables.shaking(results))
-
-
-def _part_problems(part: Any, period: float) -> list[str]:
-    if part is None:
-        return []
-    problems = PairField(Rule("angle"), Rule("angle"), "(first, last) crank angle in degrees").problems("theta2", part)
-    if problems:
-        return problems
-    first, last = part
-    bounds = f"must be a pair (first, last), first less than last by at most {period:g} degrees"
-    return [] if first < last <= first + period else [f"theta2 = ({first:g}, {last:g}): {bounds}"]
 
 
 def _design_problems(scene: Scene) -> list[str]:

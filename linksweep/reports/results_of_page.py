@@ -14,7 +14,7 @@ from linksweep.analysis.drive.flywheel import flywheel
 from linksweep.analysis.strength.material import Material
 from linksweep.analysis.strength.strength import strength
 from linksweep.results.check import check
-from linksweep.results.peaks import peaks, peaks_of_part
+from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.scene import Scene
 from linksweep.scene.shown_units import UnitSystem, shown_units
@@ -99,7 +99,7 @@ def results_of(
     if part is not None:
         theta2 = np.linspace(*part, round((part[1] - part[0]) * STEPS) + 1)
     cycle = sweep(scene, theta2, of=_outputs(scene), threads=threads)
-    worst = _exact(scene, threads) if part is None else peaks_of_part(scene, _peaks_of(scene), part, threads=threads)
+    worst = _exact(scene, threads) if part is None else peaks(scene, _peaks_of(scene), between=part, threads=threads)
     results = Results(scene, part, threads, cycle, worst, check(scene))
     if material is not None:
         results = results._replace(strength=strength(scene, material, threads=threads))

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.base.validate import name_problems, quote, refuse
+from linksweep.base.fields import PairField
+from linksweep.base.validate import Rule, name_problems, quote, refuse
 from linksweep.chains.between_links import force_name
 from linksweep.chains.rows.pins import Pins
 from linksweep.engine.run import Field, Grid, evaluate
@@ -72,6 +73,22 @@ def angles_of(scene: Scene, **angles: Any) -> Any:
     foreign = value is not None and name not in ("angles", index)
     refuse([f"{name} = {quote(value)}: the results of a {kind} are over {index}: write {index}="] if foreign else [])
     return value
+
+
+def part_of(path: str, value: Any, scene: Scene) -> tuple[float, float] | None:
+    """Return the first and the last angle [degree] of a part of the cycle; ValueError where they are not its ends."""
+    if value is None:
+        return None
+    pair = PairField(Rule("angle"), Rule("angle"), f"(first, last) {scene.mechanism.spot} in degrees")
+    ends = pair.converted(value)
+    refuse(pair.problems(path, ends))
+    refuse([f"{path} is over designs: must be the same for all"] if any(map(np.ndim, ends)) else [])
+    first, last = map(float, ends)
+    bounds = f"must be a pair (first, last), first less than last by at most {scene.period:g} degrees"
+    return_way = f"; from {first:g} on to {last:g} is ({first:g}, {last + scene.period:g})"
+    way = return_way if first - scene.period <= last < first else ""
+    refuse([] if first < last <= first + scene.period else [f"{path} = ({first:g}, {last:g}): {bounds}{way}"])
+    return first, last
 
 
 def quantity_problems(path: str, name: str, known: Iterable[str], scene: Scene) -> list[str]:

@@ -9,17 +9,17 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.base.validate import choice_problems, count_problems, quote, refuse
-from linksweep.results.compute import angles_of, either, requested, require_scene
+from linksweep.results.compute import angles_of, either, part_of, requested, require_scene
 from linksweep.results.cylinders.cylinder_peaks import peaks_of_cylinders
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder
 from linksweep.results.dask_blocks import by_blocks
-from linksweep.results.peak_search.paths import Part
 from linksweep.results.scene_peaks import peaks_of_scene
 from linksweep.scene.scene import Scene
 
 SOLVERS = ("fast", "superposed")
 WORDS = ("peak", "max", "min", "peak_at", "max_at", "min_at")
 """Endings of the names of peaks, behind the name of the quantity."""
+OF_CYLINDERS = "must be left out: peaks of several cylinders are those of the whole cycle"
 
 
 @by_blocks(of_samples=False)
@@ -29,6 +29,7 @@ def peaks(
     *,
     theta2: ArrayLike | None = None,
     theta: ArrayLike | None = None,
+    between: tuple[float, float] | None = None,
     solver: str = "fast",
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -48,6 +49,9 @@ def peaks(
         Count of crank angles, or angles [degree]: the largest of these samples is returned instead.
     theta : int or array_like, default None
         Count of positions of a car in a loop, or positions [degree], in place of theta2.
+    between : (float, float), default None
+        First and last crank angle (position of a car) [degree] of the part of the cycle whose exact peaks and means are
+        returned, both ends included; None for the whole cycle.
     solver : {"fast", "superposed"}, default "fast"
         As in `linksweep.sweep`; "superposed" needs a count of angles or angles.
     threads : int, default None
@@ -59,12 +63,15 @@ def peaks(
         Over the design dims. A magnitude gives `F32_peak` [N] and `F32_peak_at` [degree]; a signed quantity `T12_max`,
         `T12_max_at`, `T12_min`, `T12_min_at` and `T12_peak` (largest magnitude). `status`: ok, partial_revolution
         (peaks are those of the angles that are ok), cannot_assemble (NaN) or unbounded (some peak or mean is inf).
+        Between two angles it is that of these alone, and `F32_peak_at_end` says of each extreme whether it stands at an
+        end: inside (0), first (1), last (2) or no_peak (3).
 
     Raises
     ------
     ValueError
         If a name is unknown, an angle is no finite number, `theta` is passed for a machine with a crank or `theta2`
-        for a car in a loop, or exact peaks are to be superposed.
+        for a car in a loop, `between` is no part of the cycle or stands beside samples or several cylinders, or exact
+        peaks are to be superposed.
 
     Notes
     -----
@@ -85,22 +92,25 @@ def peaks(
     >>> worst = ls.peaks(scene, of=["F32"])
     >>> sorted(worst.data_vars)
     ['F32_peak', 'F32_peak_at', 'status']
+
+    Over a part of the turn, from whose first angle on this force decreases:
+
+    >>> ls.peaks(scene, of=["F12"], between=(-60.0, 60.0)).F12_peak_at_end.item()
+    1
     """
     word, angles = either(theta2=theta2, theta=theta)
     refuse([*count_problems("threads", threads), *_solver_problems(solver, angles)])
     names = None if of is None else requested("of", of, scene)
+    samples = f"is of exact peaks, {word} of samples: give one of them"
+    refuse([] if angles is None or between is None else [f"between = {quote(between)}: {samples}"])
     if isinstance(scene, MultiCylinder):
+        refuse([] if between is None else [f"between = {quote(between)}: {OF_CYLINDERS}"])
         exact = "must be left out: peaks of several cylinders are exact"
         refuse([] if angles is None else [f"{word} = {quote(angles)}: {exact}"])
         return peaks_of_cylinders(scene.in_memory, names, threads)
     require_scene(scene)
-    return peaks_of_scene(scene, names, threads, angles_of(scene, theta2=theta2, theta=theta), solver)
-
-
-@by_blocks(of_samples=False)
-def peaks_of_part(scene: Scene, of: Iterable[str], part: Part, *, threads: int | None = None) -> xr.Dataset:
-    """Return exact peaks as `peaks` does, between two crank angles [degree] alone, their ends included."""
-    return peaks_of_scene(scene, requested("of", of, scene), threads, part=part)
+    sampled, part = angles_of(scene, theta2=theta2, theta=theta), part_of("between", between, scene)
+    return peaks_of_scene(scene, names, threads, sampled, solver, part)
 
 
 def quantity_of(name: str) -> str:

@@ -28,7 +28,7 @@ from linksweep.results.compute import (
 from linksweep.results.dataset import design_coordinates, flags, plain, provenance, variable
 from linksweep.results.direct_dataset import dataset_of
 from linksweep.results.peak_search.along_paths import SignalPeak
-from linksweep.results.peak_search.between import NEVER
+from linksweep.results.peak_search.between import EVERYWHERE, NEVER
 from linksweep.results.peak_search.exact import exact_peaks, peaks_where, peaks_within
 from linksweep.results.peak_search.limits import assembly_of
 from linksweep.results.peak_search.paths import Part
@@ -42,6 +42,8 @@ from linksweep.scene.scene import Scene
 SUMMARIES = ("mean", "rms", "bound", "samples")
 STATUS_ANGLES = 720
 """Angles of a turn at which the status is computed, if the mechanism's numbers do not show that it is always ok."""
+AT_END = ("inside", "first", "last", "no_peak")
+"""Whether an extreme of a part of the cycle stands at an end of it."""
 PARTIAL, UNBOUNDED = 1, 3
 CANNOT_ASSEMBLE, TOGGLE = 1, 2
 """Statuses of a sample at which a design does not close."""
@@ -60,11 +62,13 @@ Averages = dict[Power, Field]
 
 
 class Result(NamedTuple):
-    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design."""
+    """Largest values and means, the scene at the angles that decide its status, and the assembly of each design, which
+    the samples alone decide where `by_samples`."""
 
     sampled: Scene
     grid: Grid
     assembly: Field
+    by_samples: bool
     largest: dict[str, SignalPeak]
     averages: Averages
 
@@ -85,9 +89,12 @@ def peaks_of_scene(
         result = _of_samples(scene, angles, items, threads, solver)
     grid = "" if angles is None else f", {result.grid.dim}={len(result.grid.angles)}"
     by = "" if solver == "fast" else f", solver={solver!r}"
-    command = f"linksweep.peaks(scene{'' if of is None else f', of={of}'}{grid}{by})"
+    between = "" if part is None else f", between={part}"
+    command = f"linksweep.peaks(scene{'' if of is None else f', of={of}'}{grid}{between}{by})"
     status, coordinates = status_of(scene, result, threads), design_coordinates(result.sampled)
-    variables = labelled(items, result) | {"status": status}
+    variables = labelled(items, result)
+    variables |= {} if part is None else _at_ends(variables, part)
+    variables |= {"status": status}
     return dataset_of(variables, coordinates, provenance(scene, command, coordinates))
 
 
@@ -95,6 +102,17 @@ def labelled(items: list[Request], result: Result) -> dict[str, xr.Variable]:
     """Return the variables of all requests, with units and meanings."""
     order, named = tuple(result.sampled.inputs.sizes), chain.from_iterable(_named(item, result) for item in items)
     return {name: variable(field, units, meaning, order) for name, field, units, meaning in named}
+
+
+def _at_ends(variables: Mapping[str, xr.Variable], part: Part) -> dict[str, xr.Variable]:
+    """Return for the angle of each extreme whether it is an end of the part: beyond it there may be more."""
+    flagged = {}
+    for name, angle in variables.items():
+        if name.endswith("_at"):
+            at = np.select([np.isnan(angle.values), *(angle.values == end for end in part)], [3, 1, 2])
+            words = flags(f"end of the part, if any, that is the {angle.attrs['long_name']}", AT_END)
+            flagged[f"{name}_end"] = plain(Field(tuple(map(str, angle.dims)), at.astype(np.int8)), words)
+    return flagged
 
 
 def parsed_requests(
@@ -145,22 +163,30 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     grid = scene.grid(angles)
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
     names = tuple(dict.fromkeys((*signals, *(name for name, _ in powers))))
-    known = known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
-    searched = tuple(known[signal] for signal in signals)
-    if part is not None:
-        peaks = peaks_within(scene, searched, part, threads)
+    own = known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
+    searched = tuple(own[signal] for signal in signals)
+    if not signals:
+        peaks = {}
+    elif part is None:
+        peaks = exact_peaks(scene, searched, assembly, threads)
     else:
-        peaks = exact_peaks(scene, searched, assembly, threads) if signals else {}
-    largest = {signal: peaks[known[signal]] for signal in signals}
+        peaks = peaks_within(scene, searched, part, threads)
+    largest = {signal: peaks[own[signal]] for signal in signals}
     sampled = scene.at_one_angle
-    averages = _means(scene, powers, known, threads) if part is None else {}
-    return Result(sampled, grid, with_dead_centres(scene, assembly), largest, averages)
+    averages = _means(scene, powers, own, part, threads)
+    if part is None:
+        known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None
+    else:
+        known, by_samples = Field(assembly.dims, np.where(assembly.values == NEVER, NEVER, EVERYWHERE)), True
+    return Result(sampled, grid, known, by_samples, largest, averages)
 
 
-def _means(scene: Scene, powers: tuple[Power, ...], known: Mapping[str, str], threads: int | None) -> Averages:
+def _means(
+    scene: Scene, powers: tuple[Power, ...], known: Mapping[str, str], part: Part | None, threads: int | None
+) -> Averages:
     """Return the means over time of powers of quantities, whose known values have other names."""
     named = {power: (known[power[0]], power[1]) for power in powers}
-    averages = means(scene, tuple(named.values()), changing_pace(scene.at_one_angle), threads) if powers else {}
+    averages = means(scene, tuple(named.values()), changing_pace(scene.at_one_angle), part, threads) if powers else {}
     return {power: averages[name] for power, name in named.items()}
 
 
@@ -187,9 +213,9 @@ def _of_samples(scene: Scene, angles: ArrayLike, items: list[Request], threads: 
     averaged = {power: reduced[reduction][0] for power, reduction in averages.items()}
     averaged |= _over_time(sampled, grid, powers, pace[0], threads, solver) if pace else {}
     # a search for where designs close takes longer than samples, whose status shows enough
-    known = scene.table.limits is None
-    assembly = assembly_of(scene, threads) if known else Field((), np.zeros(()))
-    return Result(sampled, grid, assembly, extremes, averaged)
+    by_samples = scene.table.limits is not None
+    assembly = Field((), np.zeros(())) if by_samples else assembly_of(scene, threads)
+    return Result(sampled, grid, assembly, by_samples, extremes, averaged)
 
 
 def _over_time(
@@ -213,12 +239,12 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
 
     Peaks and means of designs without any sample that is ok become NaN.
     """
-    sampled, grid, assembly, largest, averages = result
+    sampled, grid, assembly, by_samples, largest, averages = result
     order = tuple(sampled.inputs.sizes)
     status = variable(assembly, "1", "", order)
     if not surely_ok(scene):
         least, worst = _extremes_of_status(scene, sampled, grid, threads)
-        closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (scene.table.limits is None)
+        closes = (least < CANNOT_ASSEMBLE) | (worst > TOGGLE) | (not by_samples)
         status = xr.where((worst > 0.0) & (status == 0.0), xr.where(closes, float(PARTIAL), NEVER), status)
         # on an arc these samples do not decide: the search along paths has looked at it more closely
         _blank((least == 0.0) | (status == float(PARTIAL)) & (grid.period > 0.0), largest, averages)

@@ -57,7 +57,14 @@ def _remarks(ds: xr.Dataset, machine: type[Mechanism] | Mechanism) -> list[str]:
         f"{never} of {status.size} designs: no result at any {machine.spot}, {machine.round_meanings[2]}.": never,
         f"Some quantity{which} {infinite}": unbounded,
     }
-    return [line for line, count in lines.items() if count]
+    ends = [str(name).removesuffix("_at_end") for name in ds.data_vars if _at_an_end(ds, str(name))]
+    beyond = f"At an end of the part, beyond which there may be more: {', '.join(ends)}."
+    return [*(line for line, count in lines.items() if count), *([beyond] if ends else [])]
+
+
+def _at_an_end(ds: xr.Dataset, name: str) -> bool:
+    """Return whether a variable says of an extreme that it stands at an end of a part, in some design."""
+    return name.endswith("_at_end") and bool(ds[name].isin((1, 2)).any())
 
 
 def _best(ds: xr.Dataset, name: str) -> Row:

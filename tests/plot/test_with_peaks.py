@@ -13,7 +13,6 @@ import linksweep as ls
 from linksweep.plot.kit.signals import angle_text, number
 from linksweep.plot.kit.with_peaks import with_peaks
 from linksweep.reports.results_of_page import results_of
-from linksweep.results.peaks import peaks_of_part
 
 mpl.use("Agg")
 
@@ -112,13 +111,13 @@ def test_a_part_that_ends_at_a_toggle_or_beyond():
     """A part that ends beside the toggle has its largest forces at its last angle."""
     scene = double_rocker()
     toggle = float(np.degrees(np.arccos((0.2**2 + 0.25**2 - 0.27**2) / (2.0 * 0.2 * 0.25))))
-    beyond = peaks_of_part(scene, ["F32", "T12"], (10.0, toggle + 20.0))
+    beyond = ls.peaks(scene, ["F32", "T12"], between=(10.0, toggle + 20.0))
     assert np.isposinf(beyond.F32_peak) and float(beyond.F32_peak_at) == pytest.approx(toggle, abs=1e-6)
     assert int(beyond.status) == 3
-    beside = peaks_of_part(scene, ["F32"], (10.0, toggle - 1e-3))
+    beside = ls.peaks(scene, ["F32"], between=(10.0, toggle - 1e-3))
     last = ls.sweep(scene, [toggle - 1e-3], of=["F32"]).F32
     assert float(beside.F32_peak) == pytest.approx(float(last[0]), rel=1e-9)
-    assert float(beside.F32_peak_at) == pytest.approx(toggle - 1e-3, abs=1e-9)
+    assert float(beside.F32_peak_at) == toggle - 1e-3 and int(beside.F32_peak_at_end) == 2
 
 
 @pytest.mark.parametrize("count", [36, 37, 720])
@@ -143,7 +142,7 @@ def test_a_part_of_a_cycle_of_two_turns():
     """A four-stroke engine has gas pressure also in its second turn."""
     scene = ls.example("engine")
     whole = ls.peaks(scene, ["F32"])
-    parts = [peaks_of_part(scene, ["F32"], (first, first + 0.5 * scene.period)) for first in (0.0, 0.5 * scene.period)]
+    parts = [ls.peaks(scene, ["F32"], between=(first, first + 360.0)) for first in (0.0, 360.0)]
     assert max(float(part.F32_peak) for part in parts) == pytest.approx(float(whole.F32_peak), rel=1e-9)
 
 

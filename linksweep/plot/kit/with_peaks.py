@@ -17,7 +17,7 @@ from linksweep.plot.kit.signals import INDEX, WHOLE_TURN, full_turn, require_ang
 from linksweep.results.compute import angles_missing
 from linksweep.results.origin.in_shown_units import results_in_shown_units
 from linksweep.results.peak_search.paths import Part
-from linksweep.results.peaks import peaks, peaks_of_part
+from linksweep.results.peaks import peaks
 from linksweep.results.sweep import sweep
 from linksweep.scene.designs.choose import design_labels
 from linksweep.scene.scene import Scene
@@ -116,5 +116,4 @@ def _equal(one: xr.Dataset, other: xr.Dataset) -> bool:
 
 @lru_cache(maxsize=8)
 def _peaks(scene: Scene, more: tuple[str, ...], part: Part | None) -> xr.Dataset:
-    names = [*scene.mechanism.peak_quantities(scene.drive), *more]
-    return peaks(scene, names) if part is None else peaks_of_part(scene, names, part)
+    return peaks(scene, [*scene.mechanism.peak_quantities(scene.drive), *more], between=part)

@@ -48,8 +48,11 @@ def _of_sums(machine: MultiCylinder, sums: list[Request], threads: int | None) -
     """Return the peaks and means of sums over the cylinders."""
     (signals, powers), grid = needed(sums), crank_grid(STATUS_ANGLES, machine.period)
     largest = exact_peaks_of_sums(machine, signals, threads) if signals else {}
-    averages = means(machine, powers, (), threads) if powers else {}
-    results = [Result(s.at_one_angle, grid, assembly_of(s, threads), largest, averages) for s in machine.cylinders]
+    averages = means(machine, powers, (), None, threads) if powers else {}
+    results = [
+        Result(s.at_one_angle, grid, assembly_of(s, threads), s.table.limits is not None, largest, averages)
+        for s in machine.cylinders
+    ]
     # sums become NaN where none of a cylinder's samples is ok
     each = [status_of(*pair, threads) for pair in zip(machine.cylinders, results, strict=True)]
     worst = xr.Variable(each[0].dims, np.max([status.values for status in each], axis=0), each[0].attrs)

@@ -34,7 +34,7 @@ from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.groups import ONE, assembled_groups, empty, groups
-from linksweep.results.peak_search.paths import Part, about_approaches, about_breaks, turns
+from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import (
     AT_ONCE,
     designs_without_jams,
@@ -66,13 +66,15 @@ def exact_peaks(
 def peaks_within(
     scene: Scene, signals: tuple[str, ...], part: Part, threads: int | None = None
 ) -> dict[str, SignalPeak]:
-    """Return the peak of each signal between two angles [degree], ends included; angles of peaks lie between them."""
+    """Return the peak of each signal between two angles [degree], ends included; angles of peaks lie between them, and
+    are equal to an end where the peak stands there."""
     peaks = _by_paths(scene, signals, threads, (partial(arcs_within, part),))
     _raise_to_poles(scene, peaks, threads, part)
     middle, half = 0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])
     for *_, angle, _bound, _samples in peaks.values():
         away = np.mod(angle.values - middle + 0.5 * scene.period, scene.period) - 0.5 * scene.period
-        angle.values[...] = middle + np.clip(away, -half, half)
+        ends = [away < ASIDE - half, away > half - ASIDE]
+        angle.values[...] = np.select(ends, part, middle + away)
     return peaks
 
 

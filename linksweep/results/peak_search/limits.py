@@ -273,7 +273,7 @@ def graded_samples(angles: Array, widths: Array) -> Array:
     scale = np.frexp(np.nan_to_num(np.maximum(widths, 1e-30), nan=1.0))[1]
     after = 2.0 * np.degrees(np.arctan(grades()))[np.clip(1 - scale, 0, GRADES - 1)]
     steps = np.concatenate([-after[..., :0:-1], after[..., :-1]], axis=-1)
-    return (angles[..., None] + steps).reshape(len(angles), -1)
+    return (angles[..., None] + steps).reshape(len(angles), angles.shape[1] * steps.shape[2])
 
 
 def _filled(along: Array) -> Array:

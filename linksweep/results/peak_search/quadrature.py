@@ -106,14 +106,17 @@ class Rules(NamedTuple):
     blur: Array
 
 
-def means(scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], threads: int | None) -> dict[Power, Field]:
-    """Return the mean over time of each power of a quantity, for every design; NaN where no angle is ok.
+def means(
+    scene: Any, powers: tuple[Power, ...], pace: tuple[str, ...], part: Part | None, threads: int | None
+) -> dict[Power, Field]:
+    """Return the mean over time of each power of a quantity, over the cycle or a part of it, for every design; NaN
+    where no angle is ok.
 
     `pace` names the quantity that is the rate of the crank angle, if it changes over the revolution.
     """
     weighted = {(power, True): Integrand((power[0], *pace), partial(_weighted, power[1])) for power in powers}
     times = {(power, False): Integrand((power[0], *pace), _time) for power in powers}
-    totals = integrals(scene, weighted | times, threads=threads)
+    totals = integrals(scene, weighted | times, part, threads)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = {power: totals[power, True].values / totals[power, False].values for power in powers}
     return {power: Field(totals[power, True].dims, values) for power, values in mean.items()}
