@@ -16,6 +16,7 @@ from benchmarks.speed.kernel import kernel_of, way
 from benchmarks.timing import SHARE, Row, race
 from linksweep.engine.peaks.search import SAMPLES
 from linksweep.engine.trace.derivatives import derivative_of
+from linksweep.engine.trace.plan import plan
 from linksweep.results.compute import compute
 from linksweep.scene.derivatives.differentiated import ANGLE, differentiated, number_problem
 from linksweep.scene.parameters import free
@@ -44,7 +45,7 @@ def _newton_step(size: Size) -> Row:
     search, of random crank-rockers."""
     taken = ls.peaks(crank_rockers(max(size.designs // 10, 1), 20.0), of=["F32_samples"]).F32_samples.values
     note = f"a search takes {SAMPLES} samples and {np.mean(taken) - SAMPLES:.1f} evaluations after them"
-    return _against_itself(ls.example("press"), "F32_squared", (ANGLE,), "its slope", None, size, "press", note=note)
+    return _against_itself(ls.example("press"), "F32_squared", (ANGLE,), "its slope", None, size, "press", note)
 
 
 def _against_itself(
@@ -55,7 +56,7 @@ def _against_itself(
     goal: float | None,
     size: Size,
     name: str,
-    **more: str,
+    *notes: str,
 ) -> Row:
     """Return the row of a quantity and its derivatives against the quantity alone."""
     angles = max(size.angles // 10, 1)
@@ -67,4 +68,10 @@ def _against_itself(
         alone = kernel_of(partial(compute, sampled, grid, (force,), 1))
         both = kernel_of(partial(compute, own, grid, every, 1))
         timed = race({slopes: both.call, plain: alone.call}, size, angles)
-    return timed.row(SHARE, slopes, plain, goal, **more)
+    ours, theirs = _instructions(own, every), _instructions(sampled, (force,))
+    return timed.row(SHARE, slopes, plain, goal, note="; ".join([f"{ours} against {theirs} instructions", *notes]))
+
+
+def _instructions(scene: ls.Scene, names: tuple[str, ...]) -> int:
+    """Return the number of instructions per angle of a scene's quantities."""
+    return plan(scene.table, names, scene.inputs.forms).instructions(scene.mechanism.index)

@@ -8,8 +8,11 @@ import xarray as xr
 
 import linksweep as ls
 from linksweep.engine.quantity import Row, Table
+from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
+from linksweep.scene.derivatives.differentiated import differentiated
+from linksweep.scene.parameters import free
 
 KINEMATICS = ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")
 UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
@@ -180,6 +183,18 @@ def test_operations_of_a_design_are_done_once():
     assert once == {"J2", "J3", "J4"}
     heavy = planned(scene(coupler=links()["coupler"]), "J3")
     assert heavy.operations("theta2").total() == 0
+
+
+@pytest.mark.parametrize("name", ["press", "watt-2"])
+def test_ten_derivatives_take_at_most_five_times_the_operations_and_few_divisions(name):
+    """Adjoints divide only by what changes with the angle: by each square root once, and by what a quotient is over."""
+    machine, force = ls.example(name), "F32_squared"
+    paths = tuple(path for path in free(machine) if path.partition(".")[0] in machine.mechanism.roles)[:10]
+    own = differentiated(machine, (force,), paths)
+    alone = planned(machine, force).operations("theta2")
+    both = planned(own, force, *(derivative_of(force, path) for path in paths)).operations("theta2")
+    assert both.total() <= 4.5 * alone.total()
+    assert both["/"] <= 2 * alone["/"] + alone["sqrt"]
 
 
 # ---- names -----

@@ -34,7 +34,7 @@ PASSED_ON: dict[str, Callable[..., tuple[Node, ...]]] = {
     "+": lambda z, w, x, y: (w, w),
     "-": lambda z, w, x, y: (w, -w),
     "*": lambda z, w, x, y: (w * y, w * x),
-    "/": lambda z, w, x, y: _to_quotient(z, w / y),
+    "/": lambda z, w, x, y: _to_quotient(z, _divided(w, z, x, y)),
     "sqrt": lambda z, w, x: (0.5 * w / z,),
     "negate": lambda z, w, x: (-w,),
     "abs": lambda z, w, x: ((x < 0.0).where(-w, w),),
@@ -101,6 +101,14 @@ def _passed_on(z: Node, mask: Mask, w: Node) -> list[tuple[Node, Mask, Node]]:
     condition, *chosen = z.operands
     sides = [(x, _under(mask, condition, side), w) for x, side in zip(chosen, (True, False), strict=True)]
     return [side for side in sides if side[1]]
+
+
+def _divided(w: Node, z: Node, x: Node, y: Node) -> Node:
+    """Return w/y, of an adjoint w and a quotient z = x/y, without a division per sample where that can be: by z/x where
+    x is a constant, and by 1/y where that is known for several samples of w."""
+    if x.operator == "constant":
+        return w * (z * (1.0 / x.value))
+    return w * (1.0 / y) if y.dims < w.dims else w / y
 
 
 def _to_quotient(z: Node, part: Node) -> tuple[Node, Node]:
