@@ -1,13 +1,11 @@
 """Designs side by side: the same bits compiled and interpreted, alone and in company."""
 
-from types import FunctionType
-
 import numpy as np
 import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.engine.peaks import abreast, brackets, search
+from linksweep.engine.peaks import abreast
 from linksweep.engine.peaks.brackets import BEST_ROWS, BRACKET_ROWS, PEAK, PEAK_FAR, PEAK_X
 from linksweep.engine.peaks.evaluators import Evaluators
 from linksweep.engine.peaks.laid_out import grades
@@ -71,15 +69,6 @@ def four_bars(designs: int) -> ls.Scene:
 
     mechanism = ls.FourBar(link(0.05, 0.1), link(0.2, 0.25), link(0.18, 0.22), ground=0.22)
     return ls.Scene(mechanism, omega2=30.0, alpha2=5.0, gravity=(0.0, -9.81))
-
-
-def test_modules_that_are_compiled_as_one_have_no_name_in_common():
-    modules = (brackets, search, abreast)
-    own = [
-        {name for name, value in vars(one).items() if isinstance(value, int | float | FunctionType)} for one in modules
-    ]
-    for name in set.union(*own):
-        assert len({vars(one)[name] for one, names in zip(modules, own, strict=True) if name in names}) == 1, name
 
 
 def test_evaluators_have_the_same_bits_compiled_and_interpreted():

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
-from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, MachineCode, address, machine_code
+from linksweep.engine.kernel.machine_code import INTEGER, TABLE, MachineCode, machine_code
 from linksweep.engine.trace.graph import LOW_WORDS
 
 TILE = 8 * REGISTER
@@ -38,20 +38,19 @@ def interpret(program: np.ndarray, registers: np.ndarray, numbers: np.ndarray, r
     `numbers` (design, number) fill the first registers; `rows` has, for each row of at least `REGISTER` samples, its
     address and by how many bytes that of the next design lies behind it.
     """
-    arrays = map(address, (program, registers, numbers, rows))
-    _function().function(*arrays, len(program), *numbers.shape, samples)
+    _function()(program, registers, numbers, rows, samples)
 
 
 @cache
 def _function() -> MachineCode:
     """Return the interpreter."""
-    return machine_code(_interpreter, (INTEGERS, ROW, ROW, INTEGERS, *[INTEGER] * 4), SOURCE)
+    return machine_code(_interpreter, ("i8[:, :]", TABLE, TABLE, "i8[:, :]", INTEGER), SOURCE)
 
 
-def _interpreter(builder: Any, *arguments: Any) -> None:
+def _interpreter(builder: Any, program: Any, registers: Any, numbers: Any, rows: Any, samples: Any) -> None:
     """Write the one function."""
-    program, registers, numbers, rows = (array.data for array in arguments[:4])
-    length, designs, kept, samples = arguments[4:]
+    (length, _), (designs, kept) = program.shape, numbers.shape
+    program, registers, numbers, rows = (array.data for array in (program, registers, numbers, rows))
     write = Instructions(builder)
     integer, double = write.integer, write.double
     last = builder.sub(samples, integer(REGISTER))
@@ -97,27 +96,14 @@ def _interpreter(builder: Any, *arguments: Any) -> None:
     def fill(design: Any, number: Any) -> None:
         """Write one register full of a design's own number."""
         value = builder.load(builder.gep(numbers, [builder.add(builder.mul(design, kept), number)]))
-        _loop(builder, integer(0), integer(TILE), REGISTER, lambda k: write.store(value, registers, at(number, k)))
+        with write.loop(integer(0), integer(TILE), REGISTER) as (k, _):
+            write.store(value, registers, at(number, k))
 
-    def run(design: Any) -> None:
-        _loop(builder, integer(0), kept, 1, lambda number: fill(design, number))
-        _loop(builder, integer(0), samples, TILE, lambda tile: run_tile(design, tile))
-
-    def run_tile(design: Any, tile: Any) -> None:
-        _loop(builder, integer(0), length, 1, lambda row: operation(design, tile, row))
-
-    _loop(builder, integer(0), designs, 1, run)
-
-
-def _loop(builder: Any, first: Any, last: Any, step: int, body: Callable[[Any], None]) -> None:
-    """Write a loop; `body(k)` writes what is done in each pass."""
-    before, inside, after = builder.block, builder.append_basic_block(), builder.append_basic_block()
-    builder.cbranch(builder.icmp_signed("<", first, last), inside, after)
-    builder.position_at_end(inside)
-    k = builder.phi(first.type)
-    k.add_incoming(first, before)
-    body(k)
-    following = builder.add(k, first.type(step))
-    k.add_incoming(following, builder.block)
-    builder.cbranch(builder.icmp_signed("<", following, last), inside, after)
-    builder.position_at_end(after)
+    with write.loop(integer(0), designs) as (design, _):
+        with write.loop(integer(0), kept) as (number, _):
+            fill(design, number)
+        with (
+            write.loop(integer(0), samples, TILE) as (tile, _),
+            write.loop(integer(0), length) as (row, _),
+        ):
+            operation(design, tile, row)

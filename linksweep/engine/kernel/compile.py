@@ -18,8 +18,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from linksweep.base.cache import forget, keep, recall
-from linksweep.engine.kernel import instructions, vectors
-from linksweep.engine.kernel.machine_code import MachineCode, write_call
+from linksweep.engine.kernel import vectors
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
@@ -28,16 +27,6 @@ arrays, so numba's reference counting (`_nrt`) is off: in a search its cost show
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "
     "f8[:, ::1], i8[::1], f8[::1], i8[::1], f8[:, ::1], f8[::1], f8[::1], f8[::1])"
-)
-
-SEARCH_SIGNATURE = (
-    "void(i8, i8, i8, i8, b1, b1, i8[::1], f8[::1], i8[::1], i8[:, ::1], f8[:, ::1], "
-    "i8, i8, i8, i8[:, ::1], f8[::1], f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1])"
-)
-
-ZEROS_SIGNATURE = (
-    "void(i8, i8, i8, i8, i8[::1], f8[::1], i8[::1], i8[:, ::1], f8[:, ::1], "
-    "i8, i8, i8, i8[:, ::1], f8[::1], f8[:, ::1], f8[::1], f8[::1], f8[:, ::1], f8[::1], f8[:, :, ::1])"
 )
 
 
@@ -55,40 +44,6 @@ def compiled(kernel_source: str, helpers_source: str = "", signature: str = SIGN
     return kernel
 
 
-def compiled_entry(name: str, source: str, helpers: Mapping[str, Any], signature: str, enters: str) -> Callable:
-    """Return one function of a module of plain functions, compiled for these types of its arguments; `enters` is the
-    source of all that enters its machine code by the helpers."""
-    entry = _jitted("import math\n\n\n" + source, helpers, f"{signature} {enters}", name)[name]
-    entry.compile(signature)
-    entry.disable_compile()
-    return entry
-
-
-def compiled_call() -> Callable:
-    """Return `instructions.call` for compiled code, which has the addresses of `machine_code`."""
-    from numba.core import cgutils, types
-    from numba.extending import intrinsic
-
-    def typed(_typing_context: Any, function: Any, arguments: Any) -> tuple[Any, Callable]:
-        def write(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            each = zip(arguments.types, cgutils.unpack_tuple(builder, values[1]), strict=True)
-            arrays = types.Array
-            write_call(builder, values[0], *(
-                context.make_array(kind)(context, builder, x) if isinstance(kind, arrays) else x for kind, x in each
-            ))  # fmt: skip
-            return context.get_dummy_value()
-
-        return types.void(function, arguments), write
-
-    return intrinsic(typed)
-
-
-def linked(code: MachineCode) -> Callable:
-    """Return machine code as a function for compiled code, which finds it by its symbol."""
-    names = [f"x{k}" for k in range(len(code.kinds))]
-    return instructions.intrinsic(lambda builder, *arguments: write_call(builder, code.symbol, *arguments), names)
-
-
 @cache
 def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
     """Return the functions of a module of plain functions by name, each compiled on its first call.
@@ -98,9 +53,9 @@ def compiled_functions(source: str, emitted: str = "") -> Mapping[str, Any]:
     return _jitted(source, {}, emitted) if source else {}
 
 
-def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "", entry: str = "") -> dict[str, Any]:
+def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "") -> dict[str, Any]:
     """Run a module's text with its helpers, and hand its functions to numba; its name covers all that enters their
-    machine code. If there is an entry, Python calls no other function."""
+    machine code."""
     import numba
 
     name = f"kernel_{_digest(f'{numba.__version__} {sys.version} {SETTINGS} {context} {text}')}"
@@ -108,21 +63,21 @@ def _jitted(text: str, helpers: Mapping[str, Callable], context: str = "", entry
     vars(module).update(helpers)
     exec(compile(text, name, "exec"), vars(module))
     functions = {key: value for key, value in vars(module).items() if _is_function_of(module, value)}
-    jitted = {key: _dispatcher(function, internal=entry not in ("", key)) for key, function in functions.items()}
+    jitted = {key: _dispatcher(function) for key, function in functions.items()}
     for key, function in jitted.items():
         function._cache = KernelCache(f"{name}.{key}")
     vars(module).update(jitted)  # so that they call each other compiled
     return jitted
 
 
-def _dispatcher(function: FunctionType, internal: bool) -> Any:
+def _dispatcher(function: FunctionType) -> Any:
     """Return a function as numba compiles it: with NUMBA_DISABLE_JIT=1 set, too, for its code is no Python to debug."""
     import numba
 
     config: Any = numba.config
     disabled, config.DISABLE_JIT = config.DISABLE_JIT, 0
     try:
-        return numba.njit(**SETTINGS | {"no_cpython_wrapper": internal})(function)
+        return numba.njit(**SETTINGS)(function)
     finally:
         config.DISABLE_JIT = disabled
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -67,9 +68,8 @@ class Instructions:
             "-": builder.fsub,
             "*": builder.fmul,
             "/": builder.fdiv,
-            "<": partial(builder.fcmp_ordered, "<"),
-            ">": partial(builder.fcmp_ordered, ">"),
-            "==": partial(builder.fcmp_ordered, "=="),
+            **{sign: partial(builder.fcmp_ordered, sign) for sign in ("<", "<=", ">", ">=", "==")},
+            "!=": partial(builder.fcmp_unordered, "!="),
             "negate": builder.fneg,
             "abs": partial(self._call, "fabs"),
             "sqrt": partial(self._call, "sqrt"),
@@ -101,6 +101,35 @@ class Instructions:
         places = self.ir.VectorType(self.ir.IntType(32), self.width)(None)
         first = self.builder.insert_element(kind(self.ir.Undefined), value, self.integer(0))
         return self.builder.shuffle_vector(first, kind(self.ir.Undefined), places)
+
+    @contextmanager
+    def loop(self, first: Any, last: Any, step: int | Any = 1) -> Iterator[tuple[Any, Any]]:
+        """Write a loop over integers; what is written in this context is done in each pass.
+
+        It yields the integer, and the block after the loop. Downwards where the step is a negative number of Python's.
+        """
+        builder, before = self.builder, self.builder.block
+        head, body, after = (builder.append_basic_block() for _ in range(3))
+        builder.branch(head)
+        builder.position_at_end(head)
+        k = builder.phi(self.integer)
+        k.add_incoming(first, before)
+        downwards = isinstance(step, int) and step < 0
+        builder.cbranch(builder.icmp_signed(">" if downwards else "<", k, last), body, after)
+        builder.position_at_end(body)
+        yield k, after
+        if not builder.block.is_terminated:
+            following = builder.add(k, self.integer(step) if isinstance(step, int) else step, flags=("nsw",))
+            k.add_incoming(following, builder.block)
+            builder.branch(head)
+        builder.position_at_end(after)
+
+    def slot(self, value: Any) -> Any:
+        """Return a place in memory that holds a value."""
+        with self.builder.goto_entry_block():
+            place = self.builder.alloca(value.type)
+        self.builder.store(value, place)
+        return place
 
     def load(self, start: Any, at: Any) -> Any:
         """Return the vector from a position of an array on."""

@@ -1,9 +1,9 @@
-"""Turn LLVM's instructions into machine code, kept on disk, without numba: in a tenth of the time that it takes.
+"""Turn LLVM's instructions into machine code, kept on disk.
 
-    emit(builder, *arguments)       writes the body of a function; an array is a struct with `data` and `shape`
+    emit(builder, *arguments)       writes the body of a function; it may return an integer
 
-The kinds of arguments are `ROW`, an array of doubles, `TABLE`, a contiguous one of two axes, `INTEGERS`, an array of
-integers, and `INTEGER`.
+Kinds of arguments are "i8", an integer, and "f8[:]", "f8[:, :]", "i8[:]", …: arrays of doubles or integers that lie in
+memory without gaps. Of an array, its address and the lengths of its axes are passed.
 """
 
 from __future__ import annotations
@@ -14,49 +14,60 @@ import inspect
 import os
 import sys
 from collections.abc import Callable
-from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from linksweep.base.cache import keep, recall
 from linksweep.engine.kernel import instructions
 
-ROW, TABLE, INTEGERS, INTEGER = "row", "table", "integers", "integer"
+INTEGER, INTEGERS, ROW, TABLE = "i8", "i8[:]", "f8[:]", "f8[:, :]"
 SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
 """All that enters the machine code besides what is asked for."""
 
 
-class MachineCode:
-    """A function of machine code: called from Python, or by numba-compiled code that has its `address`, or that is
-    linked by its `symbol`.
+class Array(NamedTuple):
+    """An array in machine code: where it starts, and the lengths of its axes."""
 
-    `function` takes what is passed: of an array the address, of a `TABLE` also the length of its second axis.
+    data: Any
+    shape: tuple[Any, ...]
+
+
+class MachineCode:
+    """A function of machine code: called from Python, or by other machine code that has its `address`.
+
+    `function` takes what is passed: of an array its address and the lengths of its axes.
     """
 
     def __init__(self, engine: Any, symbol: str, kinds: tuple[str, ...]) -> None:
-        self.engine, self.symbol, self.kinds = engine, symbol, kinds  # the code lives as long as the engine
+        self.engine, self.kinds = engine, kinds  # the code lives as long as the engine
         self.address = engine.get_function_address(symbol)
-        self.function = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * len(_passed(kinds)))(self.address)
+        passed = sum(1 + axes(kind) for kind in kinds)
+        self.function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * passed)(self.address)
 
-    def __call__(self, *arguments: Any) -> None:
+    def __call__(self, *arguments: Any) -> int:
         passed: list[int] = []
         for kind, argument in zip(self.kinds, arguments, strict=True):
-            passed.append(argument if kind == INTEGER else address(argument))
-            passed += argument.shape[1:] if kind == TABLE else ()
-        self.function(*passed)
+            if kind == INTEGER:
+                passed.append(argument)
+            else:
+                memory = argument.__array_interface__
+                if memory["strides"] or memory["typestr"][1:] != kind[:2] or argument.ndim != axes(kind):
+                    raise TypeError(f"{argument.dtype}, {argument.shape}, {argument.strides}: no array of kind {kind}")
+                passed.append(memory["data"][0])
+                passed += memory["shape"]
+        return self.function(*passed)
+
+
+def axes(kind: str) -> int:
+    return kind.count(":")
 
 
 def address(array: np.ndarray) -> int:
     return array.__array_interface__["data"][0]
 
 
-def _passed(kinds: tuple[str, ...]) -> list[str]:
-    """Return the kinds of what is passed for arguments."""
-    return [passed for kind in kinds for passed in ([ROW, INTEGER] if kind == TABLE else [kind])]
-
-
-def machine_code(emit: Callable[..., None], kinds: tuple[str, ...], text: str) -> MachineCode:
+def machine_code(emit: Callable[..., Any], kinds: tuple[str, ...], text: str) -> MachineCode:
     """Return the function whose body `emit` writes: kept machine code, or compiled now. `text` differs wherever the
     body does."""
     from llvmlite import binding
@@ -75,9 +86,7 @@ def machine_code(emit: Callable[..., None], kinds: tuple[str, ...], text: str) -
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), target)
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
     engine.finalize_object()
-    made = MachineCode(engine, name, kinds)
-    binding.add_symbol(name, made.address)
-    return made
+    return MachineCode(engine, name, kinds)
 
 
 def _processor(binding: Any) -> tuple[str, str]:
@@ -87,26 +96,18 @@ def _processor(binding: Any) -> tuple[str, str]:
     return binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
 
 
-def write_call(builder: Any, function: Any, *arguments: Any) -> None:
-    """Write the call of machine code, by its symbol or by an integer that is its address."""
+def write_call(builder: Any, function: Any, arguments: tuple[Any, ...]) -> None:
+    """Write the call of machine code by its address, an integer."""
     from llvmlite import ir
 
-    passed = []
+    passed: list[Any] = []
     for argument in arguments:
-        if hasattr(argument, "data"):
-            passed.append(argument.data)
-            passed += [builder.extract_value(argument.shape, axis) for axis in range(1, argument.shape.type.count)]
-        else:
-            passed.append(argument)
-    kind = ir.FunctionType(ir.VoidType(), [x.type for x in passed])
-    if isinstance(function, str):
-        function = builder.module.globals.get(function) or ir.Function(builder.module, kind, function)
-    else:
-        function = builder.inttoptr(function, kind.as_pointer())
-    builder.call(function, passed)
+        passed += [argument.data, *argument.shape] if isinstance(argument, Array) else [argument]
+    kind = ir.FunctionType(ir.IntType(64), [x.type for x in passed])
+    builder.call(builder.inttoptr(function, kind.as_pointer()), passed)
 
 
-def _compiled(binding: Any, target: Any, emit: Callable[..., None], name: str, kinds: tuple[str, ...]) -> bytes:
+def _compiled(binding: Any, target: Any, emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> bytes:
     module = binding.parse_assembly(str(_module(emit, name, kinds)))
     module.verify()
     passes = binding.create_pass_builder(target, binding.create_pipeline_tuning_options(speed_level=2))
@@ -114,23 +115,20 @@ def _compiled(binding: Any, target: Any, emit: Callable[..., None], name: str, k
     return target.emit_object(module)
 
 
-def _module(emit: Callable[..., None], name: str, kinds: tuple[str, ...]) -> Any:
+def _module(emit: Callable[..., Any], name: str, kinds: tuple[str, ...]) -> Any:
     from llvmlite import ir
 
     integer, double = ir.IntType(64), ir.DoubleType()
-    types = {ROW: double.as_pointer(), INTEGERS: integer.as_pointer(), INTEGER: integer}
+    starts = {"i8": integer.as_pointer(), "f8": double.as_pointer()}
+    passed: list[Any] = []
+    for kind in kinds:
+        passed += [integer] if kind == INTEGER else [starts[kind[:2]], *[integer] * axes(kind)]
     module = ir.Module()
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [types[kind] for kind in _passed(kinds)]), name)
-    builder, passed = ir.IRBuilder(function.append_basic_block()), iter(function.args)
-
-    def argument(kind: str) -> Any:
-        value = next(passed)
-        if kind == INTEGER:
-            return value
-        shape = ir.ArrayType(integer, 2)(ir.Undefined)
-        shape = builder.insert_value(shape, next(passed), 1) if kind == TABLE else shape
-        return SimpleNamespace(data=value, shape=shape)
-
-    emit(builder, *map(argument, kinds))
-    builder.ret_void()
+    function = ir.Function(module, ir.FunctionType(integer, passed), name)
+    builder, values = ir.IRBuilder(function.append_basic_block()), iter(function.args)
+    arguments: list[Any] = []
+    for kind in kinds:
+        value = next(values)
+        arguments.append(value if kind == INTEGER else Array(value, tuple(next(values) for _ in range(axes(kind)))))
+    builder.ret(emit(builder, *arguments) or integer(0))
     return module

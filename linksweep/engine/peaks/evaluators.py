@@ -52,9 +52,9 @@ class Functions(NamedTuple):
 
     lanes: int
     constants: int
-    prepare: Callable[..., None]
-    sample: Callable[..., None]
-    evaluate: Callable[..., None]
+    prepare: Callable[..., Any]
+    sample: Callable[..., Any]
+    evaluate: Callable[..., Any]
 
     @property
     def passed(self) -> list[Any]:
@@ -140,14 +140,12 @@ class Evaluators:
 
     def _emit_sample(self, builder: Any, constants: Any, x: Any, rows: Any) -> None:
         """Emit a loop over both half turns, and in it one over the samples from the middle on, each with its mirror."""
-        from numba.core import cgutils
-
         vectors = Instructions(builder)
         integer, of, known = vectors.integer, builder.mul, self._row(vectors, constants, self.constants)
         size, half = integer(len(self.signals) * LANES), integer(HALF)
         with (
-            cgutils.for_range(builder, integer(2)) as (turn, _),
-            cgutils.for_range(builder, integer(HALF + 1)) as (k, _),
+            vectors.loop(integer(0), integer(2)) as (turn, _),
+            vectors.loop(integer(0), integer(HALF + 1)) as (k, _),
         ):
             at = builder.add(of(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
             place = {
@@ -197,11 +195,9 @@ class Evaluators:
     def _emit_evaluate(
         self, builder: Any, constants: Any, table: Any, x: Any, value: Any, far: Any, signal: Any, first: Any, last: Any
     ) -> None:
-        from numba.core import cgutils
-
         vectors = Instructions(builder)
-        known, length = self._row(vectors, constants, self.constants), builder.extract_value(table.shape, 1)
-        with cgutils.for_range_slice(builder, first, last, vectors.integer(LANES)) as (lane, _):
+        known, length = self._row(vectors, constants, self.constants), table.shape[1]
+        with vectors.loop(first, last, LANES) as (lane, _):
             at = [builder.add(builder.mul(length, row), lane) for row in (x, far, signal, value)]
             tangent, half, number = (vectors.load(table.data, place) for place in at[:3])
             here = self._emitted(vectors, known | {self.tangent: tangent, self.far: half})

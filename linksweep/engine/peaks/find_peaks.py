@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import inspect
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from functools import cache
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.kernel.compile import (
-    SEARCH_SIGNATURE,
-    ZEROS_SIGNATURE,
-    compiled_call,
-    compiled_entry,
-    compiled_functions,
-    linked,
-)
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode
+from linksweep.engine.kernel.translate import translated
 from linksweep.engine.peaks import abreast, brackets, search, zeros
 from linksweep.engine.peaks.brackets import (
     BEST_ROWS,
@@ -57,33 +49,22 @@ class Peak(NamedTuple):
     evaluations: Field
 
 
+OF_DESIGNS = (
+    INTEGERS, ROW, INTEGERS, "i8[:, :]", TABLE, INTEGER, INTEGER, INTEGER, "i8[:, :]", ROW, TABLE, ROW, ROW
+)  # fmt: skip
+"""Kinds of the arguments of a search that `laid_out` makes."""
+
+
 @cache
-def compiled_search() -> Callable:
+def compiled_search() -> MachineCode:
     """Return `abreast.search` as machine code."""
-    code = {name: value.compiled() for name, value in vars(abreast).items() if isinstance(value, Lanewise)}
-    functions = {name: linked(each) for name, each in code.items()} | {"call": compiled_call()}
-    symbols = " ".join(each.symbol for each in code.values())
-    return compiled_entry("search", _plain(brackets, search, abreast), functions, SEARCH_SIGNATURE, symbols)
+    return translated(abreast.search, (*[INTEGER] * 6, *OF_DESIGNS, TABLE, TABLE, ROW, TABLE))
 
 
 @cache
-def compiled_zeros() -> Callable:
+def compiled_zeros() -> MachineCode:
     """Return `zeros.find_zeros` as machine code."""
-    enters = inspect.getsource(compiled_call)  # how it calls evaluators
-    functions = {"call": compiled_call()}
-    return compiled_entry("find_zeros", _plain(search, abreast, zeros), functions, ZEROS_SIGNATURE, enters)
-
-
-def _plain(*modules: ModuleType) -> str:
-    """Return the source of the functions and numbers of modules."""
-    known = {name: value for module in modules for name, value in vars(module).items()}
-    numbers = [f"{name} = {value!r}" for name, value in known.items() if isinstance(value, int | float)]
-    functions = [inspect.getsource(value) for value in known.values() if _is_of(modules, value)]
-    return "\n".join(["import math", *numbers, *functions])
-
-
-def _is_of(modules: tuple[ModuleType, ...], value: object) -> bool:
-    return inspect.isfunction(value) and value.__module__ in (module.__name__ for module in modules)
+    return translated(zeros.find_zeros, (*[INTEGER] * 4, *OF_DESIGNS, TABLE, ROW, "f8[:, :, :]"))
 
 
 def find_peaks(
@@ -151,7 +132,11 @@ def search_functions(samples: int) -> Mapping[str, Callable]:
 @cache
 def _compiled_for_paths() -> Mapping[str, Callable]:
     vectors = {name: value.compiled() for name, value in vars(brackets).items() if isinstance(value, Lanewise)}
-    return {**compiled_functions(_plain(brackets, search)), **vectors}
+    paths = ("f8[:, :, :]", TABLE, TABLE, TABLE, INTEGER, TABLE, TABLE, INTEGERS)
+    return vectors | {
+        "open_on_paths": translated(search.open_on_paths, paths),
+        "advance": translated(brackets.advance, (TABLE, INTEGER, TABLE)),
+    }
 
 
 def refine(functions: Mapping[str, Callable], table: np.ndarray, count: int, best: np.ndarray, values: Values) -> None:

@@ -61,7 +61,7 @@ class Lanewise:
 
     def compiled(self) -> MachineCode:
         """Return the function of a table and the number of its first columns that count as machine code."""
-        return machine_code(self._emit, (TABLE, INTEGER), self.text)
+        return machine_code(self.emit, (TABLE, INTEGER), self.text)
 
     @property
     def text(self) -> str:
@@ -70,11 +70,9 @@ class Lanewise:
         lines = [(node.operator, node.value, [place[x] for x in node.operands]) for node in self.nodes]
         return f"{SOURCE} {self.rows} {self.outputs} {lines} {[place[node] for node in self.results]}"
 
-    def _emit(self, builder: Any, table: Any, columns: Any) -> None:
-        from numba.core import cgutils
-
+    def emit(self, builder: Any, table: Any, columns: Any) -> None:
         vectors = Instructions(builder)
-        with cgutils.for_range_slice(builder, vectors.integer(0), columns, vectors.integer(LANES)) as (k, _):
+        with vectors.loop(vectors.integer(0), columns, LANES) as (k, _):
             loaded = [vectors.load(table.data, place) for place in _places(vectors, table, self.rows, k)]
             values = interpret(self.nodes, dict(zip(self.inputs, loaded, strict=True)), vectors.operators)
             self._store(vectors, table, k, [values[node] for node in self.results])
@@ -87,8 +85,7 @@ class Lanewise:
 def _places(vectors: Instructions, table: Any, rows: tuple[int, ...], k: Any) -> list[Any]:
     """Return the positions of a column in rows of a table."""
     builder = vectors.builder
-    length = builder.extract_value(table.shape, 1)
-    return [builder.add(builder.mul(length, vectors.integer(row)), k) for row in rows]
+    return [builder.add(builder.mul(table.shape[1], vectors.integer(row)), k) for row in rows]
 
 
 class Around(Lanewise):
@@ -134,11 +131,9 @@ class Around(Lanewise):
         return f"{super().text} {self.start}"
 
     def compiled(self) -> MachineCode:
-        return machine_code(self._emit_around, (ROW, INTEGER, TABLE, INTEGER), self.text)
+        return machine_code(self.emit, (ROW, INTEGER, TABLE, INTEGER), self.text)
 
-    def _emit_around(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:
-        from numba.core import cgutils
-
+    def emit(self, builder: Any, samples: Any, count: Any, table: Any, columns: Any) -> None:  # type: ignore[override]
         vectors = Instructions(builder)
         none, one = vectors.integer(0), vectors.integer(1)
         last, latest = builder.sub(count, one), builder.sub(columns, vectors.integer(LANES))
@@ -147,14 +142,11 @@ class Around(Lanewise):
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
 
-        with cgutils.for_range_slice(builder, none, columns, vectors.integer(ABREAST * LANES)) as (first, _):
+        with vectors.loop(none, columns, ABREAST * LANES) as (first, _):
             blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
             blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
-            running = [
-                [cgutils.alloca_once_value(builder, value) for value in (sample(last, k), sample(none, k), *start)]
-                for k in blocks
-            ]
-            with cgutils.for_range(builder, count) as (j, _):
+            running = [list(map(vectors.slot, (sample(last, k), sample(none, k), *start))) for k in blocks]
+            with vectors.loop(none, count) as (j, _):
                 following = builder.select(builder.icmp_signed("==", j, last), none, builder.add(j, one))
                 number = builder.sitofp(j, vectors.double)
                 for k, block in zip(blocks, running, strict=True):

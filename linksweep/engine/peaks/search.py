@@ -1,5 +1,4 @@
-"""Open brackets about the samples of a path that may lead to a peak: plain Python that numba compiles and that also
-runs as is.
+"""Open brackets about the samples of a path that may lead to a peak: plain Python that is translated to machine code.
 
 A signal is evaluated at samples x along a path. Each sample above its neighbours opens a bracket (`engine.peaks.
 brackets`), unless its curvature rules out that it exceeds the largest sample.
@@ -109,9 +108,9 @@ def find_summits(row, joined, flags):
             total += flags[start + k]
         if total > 0:
             for j in range(start, start + BLOCK):
-                stands = flags[j]
+                more = flags[j]
                 flags[summits] = j  # without a branch: it would often be mispredicted
-                summits += stands
+                summits += more
     return summits
 
 

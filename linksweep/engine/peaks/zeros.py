@@ -4,7 +4,7 @@ The signal is evaluated at the samples on the way from a piece's start to its en
 a zero, and so do a sample that is nearest to zero and the vertex of the parabola about it, where that lies beyond. The
 Illinois method refines the brackets of many pieces at once.
 
-`find_zeros` is plain Python that numba compiles.
+`find_zeros` is plain Python that is translated to machine code.
 
 Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """

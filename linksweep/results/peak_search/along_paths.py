@@ -184,10 +184,10 @@ def _opened(group: Group, signals: tuple[str, ...], paths: Paths, threads: int |
     rows = np.ascontiguousarray(values.reshape(len(signals), count_of_paths, per_path).swapaxes(0, 1))
     lanes = np.zeros((brackets.BRACKET_ROWS, brackets.in_blocks(rows.size // 2 + 1)))
     best = np.empty((brackets.BEST_ROWS, count_of_paths * len(signals)))
-    where, flags = (paths.x, paths.before, paths.after, paths.ends == "meet"), brackets.in_blocks(per_path)
+    where, flags = map(np.ascontiguousarray, (paths.x, paths.before, paths.after)), brackets.in_blocks(per_path)
     with np.errstate(all="ignore"):
         run = search_functions(rows.size)["open_on_paths"]
-        count = run(rows, *where, lanes, best, np.zeros(flags, dtype=np.int64))
+        count = run(rows, *where, paths.ends == "meet", lanes, best, np.zeros(flags, dtype=np.int64))
     return lanes, count, best
 
 
