@@ -13,7 +13,7 @@ os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # of the
 
 matplotlib.use("Agg")  # of the pictures in the gallery
 
-from generators import examples, notebooks, quantities, repository, scene_file  # noqa: E402
+from generators import examples, methods, names, notebooks, quantities, repository, scene_file  # noqa: E402
 
 import linksweep  # noqa: E402
 
@@ -57,6 +57,7 @@ PAGES_WITH_CONTENTS = (
     "guide/*",
     "reference/*",
     "generated/gallery",
+    "generated/methods",
     "generated/quantities",
     "generated/api/*",
 )
@@ -66,6 +67,7 @@ html_static_path = ["static"]
 html_css_files = ["style.css"]
 html_theme = "pydata_sphinx_theme"
 html_title = "linksweep"
+html_context = {"default_mode": "auto"}
 html_show_sphinx = html_show_copyright = html_show_sourcelink = False
 html_theme_options = {
     "show_prev_next": True,
@@ -79,7 +81,7 @@ html_theme_options = {
 def write_pages(app):
     """Write the pages that are made of the package itself, before Sphinx looks for pages."""
     folder = HERE / "generated"
-    for maker in (repository, examples, quantities, scene_file):
+    for maker in (repository, examples, methods, quantities, scene_file):
         maker.write(folder)
 
 
@@ -87,4 +89,6 @@ def setup(app):
     warnings.filterwarnings("ignore", category=DeprecationWarning)
     app.connect("config-inited", lambda app, config: write_pages(app))
     app.connect("source-read", repository.fit_links)
+    app.connect("doctree-read", names.link_names)
+    app.connect("autodoc-skip-member", names.leave_out)
     app.connect("doctree-resolved", notebooks.check_outputs)

@@ -48,7 +48,9 @@ ax = ls.plot.orders(harmonics)
 # Σ m·a vanishes if the common centre of gravity of all links stands still. Berkof and Lowen (1969) wrote it down, with the first
 # moments h = m·(xG + i·yG) of the links about their first pins:
 #
-# $$\textstyle\sum m\,r_G = \left(h_2 + m_3 a - h_3\frac{a}{b}\right)e^{i\theta_2} + \left(h_4 + h_3\frac{c}{b}\right)e^{i\theta_4} + \mathrm{const.}$$
+# ```text
+# Σ m·rG = (h2 + m3·a − h3·a/b)·e^(i·θ2) + (h4 + h3·c/b)·e^(i·θ4) + constant
+# ```
 #
 # Two brackets, two counterweights. Nothing has to be put on the coupler, and no speed occurs: balanced once, balanced always. In
 # numbers, by hand:

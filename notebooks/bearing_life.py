@@ -81,7 +81,10 @@ for ax in (left, right):
 # Each small turn Δψ under a load F uses up a part of the bearing's life, in proportion to F³ for balls, to F^(10/3) for rollers
 # (Palmgren and Miner). The constant load that does the same damage is therefore
 #
-# $$P = \left(\frac{\sum F^p\,|\Delta\psi|}{\sum |\Delta\psi|}\right)^{1/p}, \qquad L_{10} = \left(\frac{C}{P}\right)^p \text{ million revolutions},$$
+# ```text
+# P = (Σ F^p·|Δψ| / Σ |Δψ|)^(1/p)        p = 3 for balls, 10/3 for rollers
+# L10 = (C/P)^p                          in million revolutions,
+# ```
 #
 # with the bearing's capacity C from the catalogue. For pin C, step by step, as a sum over half degrees (`ls.bearings` integrates,
 # so that its answer does not depend on steps):

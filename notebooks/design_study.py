@@ -109,7 +109,8 @@ print(fitting.sizes["design"], "of them fit")
 ax = fitting.linksweep.scatter(x="bearing_load", y="T12_peak", color="rocker.length")
 # %%
 front = ls.pareto(fitting, minimize=["bearing_load", "T12_peak"])
-front[["bearing_load", "T12_peak", "swing", "transmission_angle_min"]].linksweep.to_pandas().round(3)
+table = front[["bearing_load", "T12_peak", "swing", "transmission_angle_min"]].linksweep.to_pandas()
+table.set_index("design").round(3).T
 
 # %% [markdown]
 # Parallel coordinates show what good designs have in common. Each line is a design, from its lengths on the left to its results on

@@ -39,7 +39,8 @@ print(f"F32 up to {float(worst.F32_peak):.1f} N at {float(worst.F32_peak_at):.1f
 # %%
 slopes = ls.sensitivities(press, of=["F32_peak", "T12_peak", "swing"])
 elasticity = slopes[["F32_peak_elasticity", "T12_peak_elasticity", "swing_elasticity"]].to_dataframe()
-elasticity.drop(columns="parameter_unit").sort_values("F32_peak_elasticity", key=abs, ascending=False).head(10).round(3)
+largest_first = elasticity.drop(columns="parameter_unit").sort_values("F32_peak_elasticity", key=abs, ascending=False)
+largest_first.head(10).round(3) + 0.0  # no −0.0
 
 # %% [markdown]
 # The load is what loads the pin, and of the lengths the rocker's. A longer coupler, or ground, relieves it.
@@ -177,4 +178,4 @@ drawn = ls.objective(press, lengths, minimize="F32_peak", subject_to=limits | {"
     minimax=12
 )
 print(f"F32 up to {drawn.fun:.1f} N")
-pd.Series(1e3 * drawn.x, index=[f"{path} [mm]" for path in lengths]).round(2)
+pd.DataFrame({"draw": 1e3 * drawn.x}, index=[f"{path} [mm]" for path in lengths]).round(2)

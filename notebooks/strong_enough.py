@@ -32,7 +32,7 @@ import linksweep as ls
 press = ls.example("press")
 steel = ls.material("S235")
 rpm = 2 * np.pi / 60
-print(press.mechanism)
+press
 
 # %% [markdown]
 # ## Inside the links

@@ -170,7 +170,7 @@ assert abs(unknowns["our matrix solved"] - unknowns["ls.sweep"]).max() < 1e-12
 # ## The row with the wrong signs
 #
 # The page writes its matrix twice, in symbols and in numbers. In symbols, the third row (moments on the crank) begins with
-# $+r_{A2y}$ and $-r_{A2x}$; the equation above it says $-r_{A2y}$ and $+r_{A2x}$. The arm from G2 to A is (−2.828, −2.828) cm.
+# +rA2y and −rA2x; the equation above it says −rA2y and +rA2x. The arm from G2 to A is (−2.828, −2.828) cm.
 # Suppose one had trusted the symbols:
 
 # %%

@@ -65,17 +65,17 @@ class Cycle:
         return scene_of(self._ds)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the Dataset as a table: see `linksweep.files.table.to_pandas`.
+        """Return the Dataset as a table whose columns have their units in their names, always of SI.
 
         Returns
         -------
         pandas DataFrame
-            A row for each design, and for each angle of a cycle.
+            A row for each design, and for each angle of a cycle; status is in words.
         """
         return table.to_pandas(self._ds)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the table of `to_pandas` as a CSV file, whole or not at all: see `linksweep.files.table.to_csv`.
+        """Write the table as a CSV file, whole or not at all, in the units in which results are shown.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ class Cycle:
         table.to_csv(self._ds, path)
 
     def to_excel(self, path: str | os.PathLike[str]) -> None:
-        """Write the table of `to_pandas` as an Excel file: see `linksweep.files.spreadsheet.to_excel`.
+        """Write the table as an Excel file, in the units in which results are shown, with the meaning of each column.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""size_pins(scene): the diameters that pins need against shear, bearing pressure and bending.
+"""Pins in double shear: the diameters that they need against shear, bearing pressure and bending.
 
 A pin between an eye of width l and two arms of a fork, each of width t, loaded by F, of diameter d:
 
