@@ -91,4 +91,5 @@ def setup(app):
     app.connect("source-read", repository.fit_links)
     app.connect("doctree-read", names.link_names)
     app.connect("autodoc-skip-member", names.leave_out)
+    app.connect("missing-reference", methods.link)
     app.connect("doctree-resolved", notebooks.check_outputs)

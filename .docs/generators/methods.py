@@ -5,7 +5,12 @@ import inspect
 import pkgutil
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.util.nodes import make_refnode
 
 import linksweep as ls
 from generators.page import Page
@@ -40,12 +45,14 @@ def write(folder: Path) -> None:
         page.heading(subject)
         for name in (name for name in texts if SUBJECTS[name.split(".")[1]] == subject):
             title, colon, _ = texts[name].partition("\n\n")[0].removesuffix(".").partition(": ")
-            page.heading(" ".join(title.split()), f"```{{py:module}} {name}\n```", level=3)
+            page.text(f"({_label(name)})=")
+            page.heading(" ".join(title.split()), level=3)
             page.text(_with_equations(texts[name] if colon else texts[name].partition("\n\n")[2]))
             page.text(f"In the code: `{name}`.")
     page.write(folder / "methods.md")
 
 
+@cache
 def _modules() -> list[str]:
     """Return the modules of public objects that have equations, those that docstrings name, and those named there."""
     public = [getattr(ls, name) for name in ls.__all__]
@@ -60,6 +67,18 @@ def _modules() -> list[str]:
                 texts.append(importlib.import_module(name).__doc__ or "")
     everywhere = [module.name for module in pkgutil.walk_packages(ls.__path__, "linksweep.")]
     return sorted(found, key=everywhere.index)
+
+
+def link(app, env, node: addnodes.pending_xref, content: nodes.Element) -> nodes.Element | None:
+    """Make the name of a module in a docstring a link to its methods, where it has some."""
+    name = node.get("reftarget", "")
+    place = ("generated/methods", _label(name), content)
+    return make_refnode(app.builder, node["refdoc"], *place) if name in _modules() else None
+
+
+def _label(name: str) -> str:
+    """Return the label of a module's methods."""
+    return name.replace(".", "-").replace("_", "-")
 
 
 def _is_module(name: str) -> bool:

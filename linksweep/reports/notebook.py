@@ -57,8 +57,8 @@ def _page(title: str, thing: Any, tables: Any) -> str:
     several = " × ".join(f"{len(names)} {dim}" for dim, names in labels.items())
     heading = f"{title}, {several}: the first of them" if several else title
     parts = joined(tag("p", heading), *tables(first))
-    beside = tag("div", parts, style="flex:1;min-width:0;overflow-x:auto")
-    both = tag("div", _drawing(first), beside, style="display:flex;gap:1em;align-items:flex-start")
+    beside = tag("div", parts, style="flex:1 1 auto;max-width:100%;overflow-x:auto")
+    both = tag("div", _drawing(first), beside, style="display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start")
     return tag("div", Markup(STYLE), both, class_="linksweep")
 
 
