@@ -37,7 +37,7 @@ def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
             os.fsync(file.fileno())
         with contextlib.suppress(FileNotFoundError):
             shutil.copymode(target, temporary)
-        os.replace(temporary, target)
+        _replace(temporary, target)
     sync_folder(target.parent)
 
 
@@ -120,6 +120,17 @@ def locked(folder: Path, wait: bool) -> Iterator[bool | None]:
         except (ImportError, OSError) as error:
             has_lock = False if isinstance(error, BlockingIOError) else None
         yield has_lock
+
+
+def _replace(temporary: Path, target: Path) -> None:
+    """Rename a whole file to its target, which on Windows nobody may have open."""
+    try:
+        os.replace(temporary, target)
+    except PermissionError as error:
+        if not target.exists():
+            raise
+        advice = f"{error.strerror}; where it is open, here or in another program, close it, then run the same again"
+        raise PermissionError(error.errno, advice, str(target)) from None
 
 
 @contextlib.contextmanager

@@ -180,6 +180,21 @@ def test_flushed_files_are_open_for_writing(here, monkeypatch):
     assert modes == [os.O_RDWR]
 
 
+def test_a_file_that_is_open_on_windows_is_kept_and_named(here, monkeypatch):
+    """There a file that a program has open cannot be replaced."""
+    Path("open.csv").write_text("old")
+
+    def in_use(source, target):
+        raise PermissionError(13, "Permission denied", str(source), None, str(target))
+
+    monkeypatch.setattr(os, "replace", in_use)
+    with pytest.raises(PermissionError) as refused:
+        ls.save(ls.peaks(ls.example("press"), theta2=8), "open.csv")
+    advice = "where it is open, here or in another program, close it, then run the same again"
+    assert str(refused.value) == f"[Errno 13] Permission denied; {advice}: 'open.csv'"
+    assert Path("open.csv").read_text() == "old" and os.listdir(here) == ["open.csv"]
+
+
 # --------------------------------------------------------------------------------------------- killed while writing
 
 

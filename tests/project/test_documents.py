@@ -75,6 +75,12 @@ def test_links_of_a_page_exist(page):
     assert [link for link in links if "generated/" not in link and not (page.parent / link).exists()] == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_lines_of_a_page_are_short(page):
+    lines = page.read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if len(line) > 120 and not line.startswith("|")] == []  # a row is one line
+
+
 def test_the_tree_names_every_room():
     tree = (DOCS / "guide" / "built.md").read_text(encoding="utf-8").split("linksweep/\n", 1)[1].split("```", 1)[0]
     rooms = {path.parent.name for path in Path(ls.__file__).parent.rglob("*/__init__.py")}
