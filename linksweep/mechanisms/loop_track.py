@@ -146,6 +146,10 @@ class LoopTrack(Mechanism):
     def peak_quantities(self, drive: str) -> tuple[str, ...]:
         return ("normal_force",)
 
+    def seams(self, profile: str) -> tuple[float, ...]:
+        """Return the bottom where work counts: a thrust has done some in a lap."""
+        return (0.0,) if self.profiles[profile] else ()
+
     def _numbers(self, motion: Mapping[str, Number]) -> tuple[Number, ...]:
         """Return the numbers that decide the motion of the car."""
         names = ("entry_speed", "thrust", "gravity_x", "gravity_y", "work_counts")

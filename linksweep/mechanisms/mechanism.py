@@ -298,6 +298,10 @@ class Mechanism(ByContent, ABC):
         """Return the crank angles [degree] at which a force may jump."""
         return ()
 
+    def seams(self, profile: str) -> tuple[float, ...]:
+        """Return the positions [degree] at which a lap begins with other values than it ends."""
+        return ()
+
     def directions(self) -> tuple[str, ...]:
         """Return the directions of sliding that change at all jumps; where they are known, forces are smooth."""
         return ()

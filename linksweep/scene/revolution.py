@@ -88,5 +88,6 @@ class Revolution:
         unloaded = self.scene.unloaded.at(self.grid)
         request = plan(unloaded.table, names, unloaded.inputs.forms)
         results = evaluate(request, unloaded.inputs.fields, self.grid, unloaded.inputs.sizes)
-        fields = [results[name] for name in names]
-        return [xr.DataArray(field.values, {self.grid.dim: self.grid.angles}, field.dims) for field in fields]
+        angles = {self.grid.dim: self.grid.angles}
+        fields = [xr.DataArray(field.values, dims=field.dims) for field in (results[name] for name in names)]
+        return [field.assign_coords(angles) if self.grid.dim in field.dims else field for field in fields]

@@ -12,6 +12,7 @@ import numpy as np
 
 import linksweep as ls
 from benchmarks.stress.decimals import RADIAN, Array, directions, exact, fifty_digits
+from benchmarks.stress.derivatives import car
 from benchmarks.stress.derivatives.curves import over_angle
 from benchmarks.stress.derivatives.loads import loads_of
 from benchmarks.stress.derivatives.numbers import Numbers, over_designs
@@ -41,8 +42,10 @@ def text_of(mechanism: Any) -> str:
 
 
 def near_pins(scene: ls.Scene, angles: Array) -> dict[str, Array]:
-    """Return where the pins are in each design at its angle [degree], x + jy from the crank's pivot."""
+    """Return where the pins are in each design at its angle [degree], x + jy from the crank's pivot; a car has none."""
     mechanism = scene.mechanism
+    if isinstance(mechanism, ls.LoopTrack):
+        return {}
     parts = [element(words) for words in text_of(mechanism).split(",")]
     pins = dict.fromkeys(pin for part in parts for pin in (*part.pins, *part.ends))
     names = [name for pin in pins for name in (f"{pin}x", f"{pin}y") if name in scene.table.quantity]
@@ -68,6 +71,8 @@ def results(numbers: Numbers, theta2: Array, pins: Mapping[str, Array]) -> dict[
 
     There may be several times as many angles as columns: the results of all columns at one, and so on.
     """
+    if isinstance(numbers.scene.mechanism, ls.LoopTrack):
+        return car.results(numbers, theta2)
     with fifty_digits():
         return of_solution(numbers.scene, solve(linkages_of(numbers, theta2, pins)))
 

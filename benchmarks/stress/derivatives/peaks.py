@@ -167,11 +167,14 @@ def _zero(function: Callable[[Array], Array], near: Array) -> Array:
 
 
 def _nearest(scene: ls.Scene, at: Array) -> Array:
-    """Return the angle near each of these at which a load over theta2 jumps or bends; NaN where none is near."""
+    """Return the angle near each of these at which a load over theta2 jumps or bends, or a lap begins; NaN where none
+    is near."""
     loads = [load for load in scene.loads if getattr(load, "interpolation", None) in ("step", "linear")]
     tables = (part for load in loads for part in load.changing if "theta2" in getattr(part, "coords", ()))
+    breaks = {float(angle) for table in tables for angle in table.theta2}
+    breaks |= {0.0} if scene.profile == "energy" else set()
     nearest = np.full(len(at), np.nan)
-    for angle in {float(angle) for table in tables for angle in table.theta2}:
+    for angle in breaks:
         away = np.mod(angle - at + 180.0, 360.0) - 180.0
         nearest = np.where(np.abs(away) < NEAR, at + away, nearest)
     return nearest

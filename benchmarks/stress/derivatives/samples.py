@@ -47,9 +47,9 @@ def parameters_of(scene: ls.Scene) -> tuple[str, ...]:
 def errors_of(scene: ls.Scene, theta2: float, random: np.random.Generator, most: int = 14) -> Errors:
     """Return the errors of a scene's quantities at an angle [degree], of so many drawn at random."""
     paths = parameters_of(scene)
-    count = Numbers(scene, paths).designs
+    count, index = Numbers(scene, paths).designs, scene.mechanism.index
     status = ls.sweep(scene, [theta2], of=["status"]).status
-    ok = np.flatnonzero(over_designs(status, count, theta2=1)[:, 0] == 0)
+    ok = np.flatnonzero(over_designs(status, count, **{index: 1})[:, 0] == 0)
     if not len(ok):
         return Errors(count, *np.zeros((3, 0)), "")
     scene = some(scene, ok, count)
@@ -57,14 +57,15 @@ def errors_of(scene: ls.Scene, theta2: float, random: np.random.Generator, most:
     angles = np.full(numbers.designs, theta2)
     exact = results(numbers, numbers.columns(exactly(angles)), near_pins(scene, angles))
     drawn = sorted(random.permutation(sorted(exact))[:most])
-    ds = ls.sensitivities(scene, of=drawn, to=paths, theta2=[theta2])
+    ds = ls.sensitivities(scene, of=drawn, to=paths, **{index: [theta2]})
     values, slopes, errors, own = {}, {}, {}, {}
     sizes = np.stack([numbers.sizes(path) for path in paths], axis=1)
     with fifty_digits():
         for name in drawn:
             middle, slope = numbers.middle(exact[name]), numbers.derivatives(exact[name])
-            ours = over_designs(ds[name], numbers.designs, theta2=1)[:, 0]
-            derivative = over_designs(ds[f"{name}_derivative"], numbers.designs, theta2=1, parameter=len(paths))[:, 0]
+            ours = over_designs(ds[name], numbers.designs, **{index: 1})[:, 0]
+            sizes_of = {index: 1, "parameter": len(paths)}
+            derivative = over_designs(ds[f"{name}_derivative"], numbers.designs, **sizes_of)[:, 0]
             values[name], slopes[name] = np.abs(middle.astype(float)), np.abs(slope.astype(float))
             own[name] = np.abs((exactly(ours) - middle).astype(float))
             errors[name] = _off(exactly(derivative), slope, numbers.sides(exact[name]))

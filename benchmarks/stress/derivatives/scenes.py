@@ -16,10 +16,11 @@ from benchmarks.stress.decimals import Array
 from benchmarks.stress.derivatives.curves import Wave
 from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import drawn
-from benchmarks.stress.linkages.topologies import ALL
+from benchmarks.stress.linkages.topologies import ALL, AWAY_FROM_TOGGLES
 from benchmarks.stress.linkages.topologies import Family as Topologies
 from linksweep.scene.examples import names as example_names
 from linksweep.scene.parameters import free, replaced
+from linksweep.scene.strokes import stroke_of
 
 Random = np.random.Generator
 Draw = Callable[[Random, int], tuple[ls.Scene, float]]
@@ -224,6 +225,39 @@ def speed(kind: str, m: Machine) -> tuple[ls.Scene, float]:
     return m.scene(mechanism, force(m, mechanism), **motions[kind])
 
 
+def car(profile: str, m: Machine) -> tuple[ls.Scene, float]:
+    """Return cars in a loop, fast enough to go round it."""
+    radius = m.uniform(10.0, 40.0)
+    speed = np.sqrt(5.0 * 10.0 * radius) * m.uniform(1.1, 1.6)
+    track = ls.LoopTrack(number(radius), m.of(300.0, 900.0))
+    gravity = m.of(-0.5, 0.5), m.of(-10.0, -9.0)
+    scene = ls.Scene(track, speed=number(speed), thrust=m.of(-500.0, 3e3), gravity=gravity, profile=profile)
+    return scene, m.one(0.0, 360.0)
+
+
+def over_position(family: Topologies, random: Random, n: int) -> tuple[ls.Scene, float]:
+    """Return linkages of a topology with a further load, over the position of one of their links."""
+    scene, theta2 = linkages(family, random, n)
+    m = Machine(random, n)
+    turns = not np.any(ls.check(scene).assembly)  # else some slider is farthest at an end of the motion
+    over = m.choice(*(name for name in scene.mechanism.strokes if turns or not name.endswith("to_end")))
+    stroke, (role, what) = stroke_of(scene, over), over.split(".")
+    places = stroke.start + stroke.sense * ls.sweep(scene.unloaded, 90, of=[stroke.quantity])[stroke.quantity]
+    low, high = (-170.0, 170.0) if what == "angle" else (float(places.min()), float(places.max()))
+    size = float(10.0 * (1.0 + np.median(np.abs(scene.omega2)) ** 2))
+    kind = m.choice("linear", "step", "pchip", "function")
+    rate = 360.0 / (high - low)
+    value: Any = replace(m.wave(size), rate=rate) if kind == "function" else m.over_position(size, low, high)
+    link = role if role in scene.mechanism.roles else m.choice(*scene.mechanism.roles)
+    way, interpolation = m.choice("", *stroke.words) or None, None if kind == "function" else kind
+    if what == "angle":
+        load = ls.Load(link, torque=value, over=over, while_=way, interpolation=interpolation)
+    else:
+        axes = m.choice("ground", "link")
+        load = ls.Load(link, (value, 0.2 * size), frame=axes, over=over, while_=way, interpolation=interpolation)
+    return replace(scene, loads=[*scene.loads, load]), theta2
+
+
 def of_machine(make: Callable[[Machine], tuple[ls.Scene, float]]) -> Draw:
     return lambda random, n: make(Machine(random, n))
 
@@ -268,10 +302,14 @@ MACHINES: dict[str, Draw] = {
         f"single machines, speed, {kind}": of_machine(partial(speed, kind))
         for kind in ("table", "function", "given acceleration")
     },
+    **{f"car in a loop, {profile}": of_machine(partial(car, profile)) for profile in ls.LoopTrack.profiles},
 }
 """Single machines: all drives, all loads."""
 LINKAGES: dict[str, Draw] = {name: partial(linkages, family) for name, family in ALL.items()}
-EXAMPLES: dict[str, Draw] = {
-    f"example {name}": partial(changed_example, name) for name in sorted(example_names()) if name != "loop"
+OVER_POSITIONS: dict[str, Draw] = {
+    f"{name}, load over a position": partial(over_position, family)
+    for name, family in AWAY_FROM_TOGGLES.items()
+    if not name.startswith("pins in other orders")  # none of whose links swing about a ground pin
 }
-FAMILIES = MACHINES | LINKAGES | EXAMPLES
+EXAMPLES: dict[str, Draw] = {f"example {name}": partial(changed_example, name) for name in sorted(example_names())}
+FAMILIES = MACHINES | LINKAGES | OVER_POSITIONS | EXAMPLES

@@ -18,12 +18,12 @@ from benchmarks.stress.linkages.scene import scene_of
 from benchmarks.stress.linkages.scenes import chosen
 
 KINDS = {
-    "force": r"F\d.*|force_.*",
+    "force": r"F\d.*|force_.*|normal_force",
     "torque": r"T\d.*",
-    "angle": r"theta\d+",
+    "angle": r"theta\d+|a_total_angle",
     "rate": r"omega\d+",
     "second rate": r"alpha\d+",
-    "velocity": r"v.*|rate_.*",
+    "velocity": r"v.*|rate_.*|speed",
     "acceleration": r"a.*",
     "position": r".*",
 }

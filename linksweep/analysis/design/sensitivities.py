@@ -72,8 +72,8 @@ def sensitivities(
         it, and `F32_peak_elasticity` [1], the percent by which the result grows for one percent of the parameter.
         `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises of which some
         derivatives differ; "moving_jump", at a jump or a kink whose way is not known; "unbounded", at infinity;
-        "arc_end", at an end of the motion; "no_peak". Where it is not ok they are NaN, in a tie those that differ. With
-        angles there is the `status` of a sweep.
+        "arc_end", at an end of the motion, or under a load over a distance that counts from there; "no_peak". Where it
+        is not ok they are NaN, in a tie those that differ. With angles there is the `status` of a sweep.
 
     Raises
     ------
@@ -162,9 +162,10 @@ def values_of(scene: Scene, path: str) -> xr.DataArray:
 
 
 def labelled(scene: Scene, variables: Mapping[str, Any], paths: tuple[str, ...], command: str) -> xr.Dataset:
+    """Return variables as a Dataset, with the parameters and the designs; a result may have a parameter's name."""
     own = free(scene)
     units = {"long_name": "unit of the parameter, per which the derivatives are"}
-    coordinates = design_coordinates(scene)
+    coordinates = {name: values for name, values in design_coordinates(scene).items() if name not in variables}
     labels = {
         PARAMETER: xr.Variable(PARAMETER, list(paths), {"long_name": "path of the parameter"}),
         "parameter_unit": xr.Variable(PARAMETER, [UNITS[own[path][1]] for path in paths], units),

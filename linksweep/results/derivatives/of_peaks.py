@@ -91,7 +91,8 @@ def peak_derivatives(
     status = np.where(known, OK, JUMP)
     corners = _corners(pairs, name, to, at, peak, largest, slopes)
     status = np.where(corners.any(axis=0), TIE, status)
-    status = np.where(at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE), ARC_END, status)
+    at_ends = at_arc_ends(own.plain, pairs.designs, at, 10.0 * BESIDE)
+    status = np.where(at_ends | np.isnan(slopes).any(axis=0), ARC_END, status)  # or a load's position counts from there
     status = np.where(np.isinf(peak), UNBOUNDED, status)
     status = np.where(np.isnan(peak) | np.isnan(at), NONE, status)
     return PeakDerivatives(pairs, slopes, corners, status)

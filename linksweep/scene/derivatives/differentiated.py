@@ -40,6 +40,8 @@ from linksweep.scene.strokes import stroke_of
 
 ANGLE = "crank angle"
 """The crank angle [rad] as a parameter."""
+ROUNDING = 1e-9
+"""Difference of two values that are the same position, relative to them."""
 OWN = tuple(name for name, *_ in declared(Scene))
 """Fields of a scene."""
 
@@ -109,7 +111,7 @@ class Differentiated(Scene):
         where a search has located them, plain floats where no parameter moves them."""
         sloped = _with_slopes(self)
         mechanism = sloped.mechanism
-        angles = list(mechanism.jumps())
+        angles = [*mechanism.jumps(), *mechanism.seams(self.profile)]
         for load in sloped.loads:
             angles += [*load.jumps(mechanism), *load.jumps_along(partial(_stroke, mechanism, self.plain))]
         different: dict[bytes, Any] = {np.asarray(value_of(angle)).tobytes(): angle for angle in angles}
@@ -153,8 +155,8 @@ def _single(value: Any) -> bool:
 
 def _stroke(mechanism: Mechanism, plain: Scene, name: str) -> Stroke:
     """Return the stroke of a position of a mechanism with slopes; one that a search has located has none."""
-    stroke = mechanism.strokes[name]
-    return stroke if stroke.crank_angles else stroke_of(plain, name)
+    closed = plain.mechanism.strokes[name].crank_angles
+    return mechanism.strokes[name] if closed else stroke_of(plain, name)
 
 
 def _turning(geared: tuple[tuple[str, Any], ...]) -> Mapping[str, Row]:
@@ -288,22 +290,26 @@ class SlopedRevolution(Revolution):
         return Differentiated(**{name: getattr(alone, name) for name in OWN}, of=names, to=to)
 
     def _end(self, stroke: Stroke) -> Sloped:
-        """Return the largest value of a stroke's quantity, with its slopes at the crank angle where it turns round."""
+        """Return the largest value of a stroke's quantity, with its slopes at the crank angle where it turns round; NaN
+        where it is largest at an end of the motion, where slopes are infinite."""
         alone = self._alone((stroke.quantity,))
         sizes = alone.inputs.sizes
         designs, dims = np.arange(math.prod(sizes.values())), tuple(sizes)
         shape = tuple(sizes.values())
-        at = np.stack([np.broadcast_to(aligned(angle, dims), shape).ravel() for angle in stroke.turning])
-        rows = [np.nan_to_num(angle) for angle in at]
-        heights = np.stack([quantities_at(alone, (stroke.quantity,), designs, row)[0] for row in rows])
-        best = np.nanargmax(np.where(np.isnan(at), np.nan, heights), axis=0)
-        angle = at[best, designs]
+
+        def of_designs(number: Any) -> np.ndarray:
+            return np.broadcast_to(aligned(as_field(number), dims), shape).ravel()
+
+        angles = [np.zeros(len(designs)), *(np.nan_to_num(of_designs(angle)) for angle in stroke.turning)]
+        heights = np.stack([quantities_at(alone, (stroke.quantity,), designs, row)[0] for row in angles])
+        largest = of_designs(stroke.start)
+        away = np.nan_to_num(np.abs(heights - largest), nan=np.inf)
+        nearest = np.argmin(away, axis=0)
+        angle, turns = np.stack(angles)[nearest, designs], away[nearest, designs] <= ROUNDING * np.abs(largest)
         slopes = (own for own in alone.to if own != ANGLE)
         numbers = {p: quantities_at(alone, (derivative_of(stroke.quantity, p),), designs, angle)[0] for p in slopes}
-        return Sloped(
-            value_of(stroke.start),
-            {p: value_of(xr.Variable(dims, values.reshape(shape))) for p, values in numbers.items()},
-        )
+        known = {p: np.where(turns | (own == 0.0), own, np.nan).reshape(shape) for p, own in numbers.items()}
+        return Sloped(value_of(stroke.start), {p: value_of(xr.Variable(dims, own)) for p, own in known.items()})
 
     def _over_angle(self, path: str, value: Any, rule: Rule) -> tuple[Any, Any, Any]:
         """Return a function of theta2, or an array over it, at the angles, and two derivatives [1/rad, 1/rad²]."""

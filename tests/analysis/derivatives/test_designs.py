@@ -15,8 +15,14 @@ def over(*values: float) -> xr.DataArray:
 PUSH = xr.DataArray([-900.0, -400.0, 0.0], {"position": [0.0, 0.05, 0.3]}, "position")
 FOLLOWING = {"over": "slider.to_end", "while_": "closing", "frame": "link"}
 PISTON = ls.SliderCrank(ls.Link(0.08, 0.3, 1e-3), ls.Link(0.22, 0.7, 3e-3, 0.1), slider_mass=0.5, offset=0.01)
+PRESS = ls.example("knuckle-press")
 CASES = {
-    "guide": (ls.example("knuckle-press"), {"guides.slide.angle": over(-90.0, -88.0)}, "guides.slide.angle"),
+    "guide and a load over a position": (
+        ls.Scene(PRESS.mechanism, omega2=30.0, loads=[ls.Load("ram", force=(PUSH, 0.0), over="ram.to_end")]),
+        {"guides.slide.angle": over(-90.0, -88.0)},
+        "crank.length",
+    ),
+    "guide": (PRESS, {"guides.slide.angle": over(-90.0, -88.0)}, "guides.slide.angle"),
     "load over a position": (
         ls.Scene(PISTON, omega2=30.0, loads=[ls.Load("slider", force=(PUSH, 20.0), **FOLLOWING)]),
         {"loads[1].force[2]": over(20.0, 35.0)},
@@ -47,6 +53,38 @@ def test_a_load_that_does_not_act_has_no_derivative_there():
     scene, _, path = CASES["load without a size over a position"]
     ds = ls.sensitivities(scene, of=["F14y"], to=[path], theta2=[33.0, 213.0])
     assert ds.F14y_derivative.values.ravel() == pytest.approx([0.0, -1.0], abs=1e-12)
+
+
+def test_a_distance_from_an_end_of_the_motion_has_no_derivatives_to_lengths():
+    """The crossed ram is farthest where crank and guide are a rod apart, a toggle; the mass enters linearly."""
+    parts = {"crank": ls.Link(0.3, 1.0, 0.01), "rod": ls.Link(0.2, 1.0, 0.01), "ram": ls.Slider(mass=3.0)}
+    machine = ls.Linkage(
+        "crank A-B, rod B-C, ram C on slide",
+        ground={"A": (0, 0)},
+        guides={"slide": ls.Guide(through=(0, 0.35))},
+        branch={"C": "crossed"},
+        **parts,
+    )
+    load = ls.Load("ram", force=(PUSH, 0.0), over="ram.to_end")
+    scene = ls.Scene(machine, omega2=3.0, gravity=(0, -9.81), loads=[load])
+    ds = ls.sensitivities(scene, of=["T12"], to=["rod.length", "crank.length", "ram.mass"], theta2=[60.0, 70.0])
+    assert np.isnan(ds.T12_derivative[:, :2]).all()
+    heavier, lighter = (ls.sweep(replaced(scene, {"ram.mass": m}), [60.0, 70.0]).T12.values for m in (4.0, 2.0))
+    assert ds.T12_derivative[:, 2].values == pytest.approx((heavier - lighter) / 2.0, rel=1e-10)
+
+
+def test_a_car_has_the_derivatives_of_its_speed_and_of_the_force_at_the_end_of_its_lap():
+    """After one lap F_N = m v0²/R + 4πF + m g; v² = v0² − 2 g R at 90 degrees, but for the work of the thrust."""
+    R, m, F, v, g = 30.0, 700.0, 2000.0, np.array([50.0, 60.0]), 9.81
+    car = ls.Scene(ls.LoopTrack(R, m), speed=over(*v), thrust=F, gravity=(0.0, -g), profile="energy")
+    ds = ls.sensitivities(car, of=["speed"], to=["speed"], theta=[90.0])
+    speed = np.sqrt(v**2 - 2.0 * g * R + np.pi * R * F / m)
+    assert ds.speed.values.ravel() == pytest.approx(speed, rel=1e-14)
+    assert ds.speed_derivative.values.ravel() == pytest.approx(v / speed, rel=1e-13)
+    ends = ls.sensitivities(car, of=["normal_force_max"], to=["radius", "mass", "thrust", "speed"])
+    assert (ends.normal_force_max_status == 0).all()
+    expected = np.stack([-m * v**2 / R**2, v**2 / R + g, 0.0 * v + 4.0 * np.pi, 2.0 * m * v / R], axis=1)
+    assert ends.normal_force_max_derivative.values == pytest.approx(expected, rel=1e-8)
 
 
 def test_peaks_under_a_load_that_is_a_function_have_derivatives():

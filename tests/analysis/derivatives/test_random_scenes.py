@@ -13,6 +13,8 @@ LONG = {
     "slider-crank, gas pressure, Otto": 3,
     "single machines, speed, function": 2,
     "Whitworth": 2,
+    "car in a loop, energy": 3,
+    "scotch yoke, load over a position": 2,
     "scotch yoke, lever drives": 9,
 }
 
@@ -28,8 +30,21 @@ def test_derivatives_of_random_scenes_are_those_of_50_digits(family):
 
 
 def test_every_kind_of_load_and_every_example_is_drawn():
-    words = ("spring", "damper", "torsion", "gas pressure, Diesel", "over theta2", "over block.position", "speed")
+    words = (
+        "car in a loop",
+        "spring",
+        "damper",
+        "torsion",
+        "gas pressure, Diesel",
+        "over theta2",
+        "over block.position",
+        "speed",
+    )
     assert all(any(word in name for name in FAMILIES) for word in words)
-    assert {"Jansen leg", "geared five-bar, 3/2", "example excavator", "knuckle-joint press, jack drives"} <= {
-        *FAMILIES
-    }
+    assert {
+        "Jansen leg",
+        "geared five-bar, 3/2",
+        "example excavator",
+        "knuckle-joint press, jack drives",
+        "example loop",
+    } <= {*FAMILIES}
