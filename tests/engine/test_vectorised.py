@@ -88,6 +88,8 @@ def test_any_width_has_the_bits_of_numpy(request_name, width, monkeypatch):
 def test_the_search_for_the_largest_is_packed(assembly):
     """A block of 64 running maxima fills eight registers of AVX-512; a search sample by sample leaves five or fewer."""
     registers = width()
+    if pytest.importorskip("llvmlite.binding").llvm_version_info < (20,):
+        pytest.skip("LLVM 15, of numba 0.61, takes the maxima one by one: the same numbers, more slowly")
     call, _ = CALLS["peaks"]
     assert len(re.findall(rf"\bvmaxpd\s.*%{registers}", assembly(call))) >= 8
 

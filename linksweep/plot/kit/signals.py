@@ -47,7 +47,8 @@ def components(ds: xr.Dataset, pin: str) -> tuple[xr.DataArray, xr.DataArray]:
     _known_force(ds, pin)
     for name, sign in ((pin, 1.0), (reaction(pin), -1.0)):
         if f"{name}x" in ds and f"{name}y" in ds:
-            return ds[f"{name}x"] * sign, ds[f"{name}y"] * sign
+            x, y = (ds[f"{name}{axis}"] for axis in "xy")
+            return x.copy(data=x.data * sign), y.copy(data=y.data * sign)  # older xarray drops attributes of a product
     raise ValueError(f"the Dataset has no {pin}x and {pin}y: sweep with of=[..., {pin + 'x'!r}, {pin + 'y'!r}]")
 
 
