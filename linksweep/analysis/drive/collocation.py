@@ -12,6 +12,7 @@ Nodes and Weights of Quadrature Formulas (1965).
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -62,40 +63,65 @@ class Steps(NamedTuple):
 
 def newton_steps(balance: Linear, widths: Array) -> Steps:
     """Return the changes that make a linear balance 0 at the Gauss points of each element."""
-    lack, to_w, to_a = balance
-    matrix = to_w[..., None] * (widths[:, None, None] * INTEGRALS)
-    matrix[..., range(3), range(3)] += to_a
-    own, by_start = _solved(matrix, np.stack([-lack, -to_w], axis=-1))
-    return Steps(own, by_start, 1.0 + widths * (by_start @ WEIGHTS), widths * (own @ WEIGHTS))
+    lack, to_w, to_a = (np.ascontiguousarray(np.moveaxis(part, -1, 0)) for part in balance)
+    matrix = (to_w * widths)[:, None] * INTEGRALS[..., None, None]
+    matrix[range(3), range(3)] += to_a
+    changes = _solved(matrix, -np.stack([lack, to_w], axis=1))
+    add, grow = widths * np.tensordot(WEIGHTS, changes, axes=1)
+    own, by_start = np.moveaxis(changes, (1, 0), (0, -1))
+    return Steps(own, by_start, 1.0 + grow, add)
 
 
-def _solved(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Return the solutions for two right sides; no pivoting, since inertia keeps the diagonal the largest."""
-    rows = [np.concatenate([matrix[..., k, :], right[..., k, :]], axis=-1) for k in range(3)]
+def _solved(matrix: Array, right: Array) -> Array:
+    """Return the solutions (row, side, …) of equations (row, column, …) for right sides, both of which it overwrites;
+    without pivoting, since inertia keeps the diagonal the largest."""
     for k in range(3):
-        rows[k] = rows[k] / rows[k][..., k, None]
-        for other in range(3):
-            if other != k:
-                rows[other] = rows[other] - rows[other][..., k, None] * rows[k]
-    solution = np.stack([row[..., 3:] for row in rows], axis=-2)
-    return solution[..., 0], solution[..., 1]
+        for row in range(k + 1, 3):
+            part = matrix[row, k] / matrix[k, k]
+            matrix[row, k + 1 :] -= part * matrix[k, k + 1 :]
+            right[row] -= part * right[k]
+    for k in reversed(range(3)):
+        for column in range(k + 1, 3):
+            right[k] -= matrix[k, column] * right[column]
+        right[k] /= matrix[k, k]
+    return right
 
 
 def carried(steps: Steps) -> tuple[Array, Array]:
-    """Return how the change of w at the first node reaches every node, as factor and sum: (design, node)."""
+    """Return how the change of w at the first node reaches every node, as factor and sum: (design, node).
+
+    Elements are taken in rows: first all rows side by side, then one row after another.
+    """
     designs, count = steps.grow.shape
-    factors, sums = np.ones((count + 1, designs)), np.zeros((count + 1, designs))
-    grow, add = np.ascontiguousarray(steps.grow.T), np.ascontiguousarray(steps.add.T)
-    for k in range(count):
-        factors[k + 1] = grow[k] * factors[k]
-        sums[k + 1] = grow[k] * sums[k] + add[k]
-    return factors.T, sums.T
+    length = math.isqrt(count - 1) + 1
+    grow, add = (
+        np.pad(part, ((0, 0), (0, -count % length)), constant_values=unchanged).reshape(designs, -1, length)
+        for part, unchanged in ((steps.grow, 1.0), (steps.add, 0.0))
+    )
+    factors, sums = _one_after_another(grow, add)
+    before, before_sum = _with_start(*_one_after_another(factors[..., -1], sums[..., -1]))
+    before, before_sum = before[:, :-1, None], before_sum[:, :-1, None]
+    at_ends = (each.reshape(designs, -1)[:, :count] for each in (factors * before, factors * before_sum + sums))
+    return _with_start(*at_ends)
 
 
-def between(nodes: Array, a: Array, widths: Array, at: Array) -> tuple[Array, Array]:
-    """Return w and a at places 0 to 1 in every element: (design, element, place)."""
+def _one_after_another(grow: Array, add: Array) -> tuple[Array, Array]:
+    """Return factor and sum behind each element of the last axis: those of its own and of all before."""
+    factors, sums = np.cumprod(grow, axis=-1), add.copy()
+    for k in range(1, sums.shape[-1]):
+        sums[..., k] += grow[..., k] * sums[..., k - 1]
+    return factors, sums
+
+
+def _with_start(factors: Array, sums: Array) -> tuple[Array, Array]:
+    """Return factors and sums (design, node) with those of the first node: 1 and 0."""
+    return np.pad(factors, ((0, 0), (1, 0)), constant_values=1.0), np.pad(sums, ((0, 0), (1, 0)))
+
+
+def between(starts: Array, a: Array, widths: Array, at: Array) -> tuple[Array, Array]:
+    """Return w and a at places 0 to 1 in elements with these first values of w: (design, element, place)."""
     values, integrals = parabolas(at)
-    return nodes[:, :-1, None] + widths[:, None] * (a @ integrals.T), a @ values.T
+    return starts[..., None] + widths[:, None] * (a @ integrals.T), a @ values.T
 
 
 def turning_points(nodes: Array, a: Array, widths: Array) -> Array:

@@ -34,14 +34,13 @@ from linksweep.engine.run import Field, Grid, evaluate
 from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.compute import require
-from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
+from linksweep.scene.derivatives.differentiated import MOTION, Differentiated, differentiated
 from linksweep.scene.designs.selection import Block, selected
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.scene import Scene
 
 RATIO = Rule("dimensionless", above=0.0)
 INERTIA = Rule("inertia", at_least=0.0)
-MOTION = ("omega2", "alpha2")
 ROUNDS = 8
 """Newton steps for an acceleration: the torque is a straight line over it, with corners where friction turns round."""
 
@@ -130,31 +129,34 @@ class DriveTrain:
         motor, ratio, flywheel = (with_arrays(each, some) for each in (self.motor, self.ratio, self.flywheel))
         return replace(self, scene=selected(self.scene, block), motor=motor, ratio=ratio, flywheel=flywheel)
 
+    @cached_property
+    def plain_ratio(self) -> Array:
+        """Ratio over the designs."""
+        return self.over_designs(bare(self.ratio))
+
+    @cached_property
+    def plain_motor(self) -> AnyMotor:
+        """Motor with its numbers as plain arrays over the designs."""
+        return with_arrays(self.motor, lambda number: self.over_designs(number.variable))
+
     def drive_torque(self, speed: Array) -> Array:
         """Return the motor's torque on the crank's shaft, i·M(i·ω) [N m], at speeds (*designs, angles) [rad/s]."""
-        ratio, motor = bare(self.ratio), bare(self.motor)
-        return self._like(ratio * motor.torque_at(ratio * self._over_angles(speed)))
+        return self.plain_ratio * self.plain_motor.torque_at(self.plain_ratio * speed)
 
     def drive_slope(self, speed: Array) -> Array:
         """Return the derivative of that torque to the speed of the crank, i²·M'(i·ω) [N m s/rad]."""
-        ratio, motor = bare(self.ratio), bare(self.motor)
-        return self._like(ratio * ratio * motor.torque_slope_at(ratio * self._over_angles(speed)))
+        ratio = self.plain_ratio
+        return ratio * ratio * self.plain_motor.torque_slope_at(ratio * speed)
 
     def motor_heat(self, speed: Array) -> Array:
         """Return the power that the motor turns into heat [W]."""
-        return self._like(bare(self.motor).heat_at(bare(self.ratio) * self._over_angles(speed)))
+        return self.plain_motor.heat_at(self.plain_ratio * speed)
 
     def over_designs(self, number: Any) -> Array:
         """Return a number, or an array of some dims, over all design dims and an axis of length 1 for the angles."""
         variable = number if hasattr(number, "dims") else xr.Variable((), number)
         some = variable.set_dims(dict(zip(self.dims, self.shape, strict=True)))
         return np.asarray(some.transpose(*self.dims).values, dtype=float)[..., None]
-
-    def _over_angles(self, values: Array) -> xr.Variable:
-        return xr.Variable((*self.dims, self.scene.mechanism.index), values)
-
-    def _like(self, result: xr.Variable) -> Array:
-        return np.asarray(result.transpose(*self.dims, self.scene.mechanism.index).values)
 
 
 @dataclass(frozen=True)

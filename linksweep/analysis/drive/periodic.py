@@ -26,8 +26,8 @@ would grow; no motion that repeats and to which others come, as where no torque 
 OK, NOT_WHOLE, STALLS, RUNS_AWAY, UNSTABLE, NOT_FOUND = range(6)
 
 ROUNDS = 40
-CLOSE, SETTLED = 1e-14, 1e-9
-"""Newton's change of w, in its largest value, that ends the rounds; and one that must at least halve each time."""
+CLOSE = 1e-9
+"""Newton's change of w, in its largest value, that ends the rounds: the next one would be of the size of its square."""
 FALL = 0.8
 """Part of w that a Newton step may take at most."""
 FLOOR = 1e-6
@@ -46,6 +46,8 @@ TRIALS = np.array([2.0, 1.6, 1.3, 1.1, 1.05, 1.02, 1.01, *np.linspace(1.0, 0.8, 
 """Speeds of the first guess, in that at which the motor no longer drives."""
 FEW = 180
 """Angles at which they are tried."""
+
+EVERY = slice(None)
 
 Array = np.ndarray
 
@@ -73,24 +75,24 @@ class Motion(NamedTuple):
         """Return the travel [degree] at places 0 to 1 in every element, (element, place)."""
         return self.travel[:-1, None] + np.diff(self.travel)[:, None] * at
 
-    def inside(self, at: Array) -> tuple[Array, Array]:
-        """Return w and a at places in every element, (design, element, place)."""
-        return collocation.between(self.w, self.a, self.widths, at)
+    def inside(self, at: Array, which: Array | slice = EVERY) -> tuple[Array, Array]:
+        """Return w and a at places in every element or some, (design, element, place)."""
+        return collocation.between(self.w[:, :-1][:, which], self.a[:, which], self.widths[which], at)
 
     def only(self, designs: Array) -> Motion:
         """Return the same motion, NaN but for some designs."""
         w = np.where(designs[:, None], self.w, np.nan)
         return Motion(self.travel, w, np.where(designs[:, None, None], self.a, np.nan))
 
-    def split(self, which: Array) -> Motion:
-        """Return the same motion over elements of which these are cut into `PARTS`."""
+    def split(self, which: Array) -> tuple[Motion, Array]:
+        """Return the same motion with these elements cut into `PARTS`; and of each element the old one around it."""
         cuts = self.places(np.arange(1, PARTS) / PARTS)[which].ravel()
         travel = np.sort(np.concatenate([self.travel, cuts]))
         old = np.searchsorted(self.travel, travel[:-1], side="right") - 1
         starts, sizes = (each / np.diff(self.travel)[old] for each in (travel[:-1] - self.travel[old], np.diff(travel)))
         values, _ = collocation.parabolas((starts[:, None] + sizes[:, None] * POINTS).ravel())
         a = np.einsum("dej,epj->dep", self.a[:, old], values.reshape(-1, 3, 3))
-        return Motion(travel, _ends(self.w[:, 0], a, np.radians(np.diff(travel))), a)
+        return Motion(travel, _ends(self.w[:, 0], a, np.radians(np.diff(travel))), a), old
 
 
 class Periodic(NamedTuple):
@@ -111,26 +113,29 @@ class Periodic(NamedTuple):
 
 
 @np.errstate(all="ignore")
-def periodic(train: DriveTrain, count: int) -> Periodic:
-    """Return the motions that repeat, over elements that end at `count` even angles and others."""
+def periodic(train: DriveTrain, count: int, whole: Array) -> Periodic:
+    """Return the motions that repeat, over elements that end at `count` even angles and others; of designs that turn
+    all the way round, `whole`."""
     elements = count * math.ceil(train.scene.period / count)  # of a degree at most
     travel = np.arange(elements + 1) * (train.scene.period / elements)
-    speed, surplus = _first_guess(train)
+    speed, surplus = _first_guess(train, whole)
     w = np.repeat(0.5 * speed[:, None] ** 2, elements + 1, axis=1)
-    motion, floor = Motion(travel, w, np.zeros((len(speed), elements, 3))), FLOOR * w[:, 0]
+    motion, floor = Motion(travel, w, np.zeros((len(speed), elements, 3))).only(whole), FLOOR * w[:, 0]
     most = min(elements * LONGEST, SAMPLES // (3 * len(speed)))
-    status = np.full(len(speed), OK)
+    status = np.where(whole, OK, NOT_WHOLE)
+    defect, coarse, new = np.empty((len(speed), elements)), np.empty(elements), np.full(elements, True)
     for number in range(SPLITS + 1):
         motion, factor, settled = _closed(train, motion, floor)
         status = np.where(status == OK, _status(motion, factor, settled, surplus, floor), status)
         motion = motion.only(status == OK)
-        defect, coarse = _defect(train, motion, floor)
+        defect[:, new], coarse[new] = _defect(train, motion, floor, new)  # splits leave those of others as they are
         which = np.argsort(-coarse)[: max(0, (most - len(motion.widths)) // (PARTS - 1))]
         which = which[coarse[which] > 1.0]
         if number == SPLITS or not which.size:
             break
-        motion = motion.split(which)
-    return Periodic(motion, factor, defect, status)
+        motion, old = motion.split(which)
+        defect, coarse, new = defect[:, old], coarse[old], np.isin(old, which)
+    return Periodic(motion, factor, defect.sum(axis=1), status)
 
 
 def balance(at: TrainAtAngles, w: Array, a: Array, floor: Array) -> Linear:
@@ -147,20 +152,22 @@ def at_travel(train: DriveTrain, travel: Array) -> TrainAtAngles:
     return train.at(np.mod(train.direction * np.ravel(travel), train.scene.period))
 
 
-def _first_guess(train: DriveTrain) -> tuple[Array, Array]:
+def _first_guess(train: DriveTrain, whole: Array) -> tuple[Array, Array]:
     """Return a constant speed at which the motor's torque is about right in the mean, and where there is none, the mean
     torque that is left over at all speeds: positive where the machine runs away, negative where it stalls; else 0."""
     at = train.at(FEW)
     top = train.top_speed[..., 0].ravel()
     still = np.zeros((*train.shape, FEW))
-    lack = np.array([_mean_lack(at, still + trial * train.top_speed) for trial in TRIALS])
-    crossed = (lack[:-1] >= 0.0) & (lack[1:] < 0.0)
-    k, designs = np.argmax(crossed, axis=0), np.arange(len(top))
+    lacks, known = [_mean_lack(at, still + TRIALS[0] * train.top_speed)], np.zeros(len(top), dtype=bool)
+    while len(lacks) < 2 or (len(lacks) < len(TRIALS) and not known[whole].all()):
+        lacks.append(_mean_lack(at, still + TRIALS[len(lacks)] * train.top_speed))
+        known = known | ((lacks[-2] >= 0.0) & (lacks[-1] < 0.0))
+    lack = np.array(lacks)
+    k, designs = np.argmax((lack[:-1] >= 0.0) & (lack[1:] < 0.0), axis=0), np.arange(len(top))
     above, below = lack[k, designs], lack[k + 1, designs]
-    root = TRIALS[k] + (TRIALS[k + 1] - TRIALS[k]) * above / np.where(crossed.any(axis=0), above - below, 1.0)
+    root = TRIALS[k] + (TRIALS[k + 1] - TRIALS[k]) * above / np.where(known, above - below, 1.0)
     runs_away = lack[0] < 0.0
     best = np.where(runs_away, TRIALS[0], TRIALS[np.argmin(np.nan_to_num(lack), axis=0)])
-    known = crossed.any(axis=0)
     return np.where(known, root, best) * top, np.where(known, 0.0, np.where(runs_away, 1.0, -1.0))
 
 
@@ -173,7 +180,6 @@ def _closed(train: DriveTrain, motion: Motion, floor: Array) -> tuple[Motion, Ar
     and whether the last change was small, for each design."""
     widths, at = motion.widths, at_travel(train, motion.places(POINTS))
     w, a = motion.w, motion.a
-    last = np.full(len(w), np.inf)
     for _ in range(ROUNDS):
         inside = w[:, :-1, None] + widths[:, None] * (a @ INTEGRALS.T)
         steps = collocation.newton_steps(balance(at, inside, a, floor), widths)
@@ -184,11 +190,9 @@ def _closed(train: DriveTrain, motion: Motion, floor: Array) -> tuple[Motion, Ar
         part = np.minimum(1.0, FALL / np.maximum((-change / abs(w)).max(axis=1), FALL))  # w stays positive
         a = a + part[:, None, None] * (steps.own + steps.by_start * change[:, :-1, None])
         w = _ends(w[:, 0] + part * change[:, 0], a, widths)
-        done = ~(size > CLOSE) | ~(w.min(axis=1) > floor) | ((last < SETTLED) & (size > 0.5 * last))
-        last = size
-        if done.all():
+        if not ((size > CLOSE) & (w.min(axis=1) > floor)).any():
             break
-    return Motion(motion.travel, w, a), factors[:, -1], last < SETTLED
+    return Motion(motion.travel, w, a), factors[:, -1], size <= CLOSE
 
 
 def _ends(start: Array, a: Array, widths: Array) -> Array:
@@ -197,17 +201,17 @@ def _ends(start: Array, a: Array, widths: Array) -> Array:
     return start[:, None] + np.concatenate([np.zeros((len(start), 1)), np.cumsum(gains, axis=1)], axis=1)
 
 
-def _defect(train: DriveTrain, motion: Motion, floor: Array) -> tuple[Array, Array]:
-    """Return the energy of all defects [J] for each design, and the energy of each element's defect in the tolerance,
-    of the worst design."""
+def _defect(train: DriveTrain, motion: Motion, floor: Array, which: Array) -> tuple[Array, Array]:
+    """Return the energy of the defects of some elements [J], (design, element), and that energy in the tolerance, of
+    the worst design."""
     places = np.concatenate([BETWEEN, [END, 1.0 - END]])
-    lack, _, inertia = balance(at_travel(train, motion.places(places)), *motion.inside(places), floor)
+    lack, _, inertia = balance(at_travel(train, motion.places(places)[which]), *motion.inside(places, which), floor)
     seen, ends = lack[..., :4], lack[..., 4:]
     jump = SEEN * np.maximum(abs(ends).max(axis=-1) - 2.0 * abs(seen).max(axis=-1), 0.0)
-    energy = motion.widths * (abs(seen @ BETWEEN_WEIGHTS) + jump)
-    size = abs(inertia[..., 0] * motion.w[:, :-1])
+    energy = motion.widths[which] * (abs(seen @ BETWEEN_WEIGHTS) + jump)
+    size = abs(inertia[..., 0] * motion.w[:, :-1][:, which])
     in_tolerance = np.where(energy > TOLERANCE * size, energy / (TOLERANCE * size), 0.0)
-    return energy.sum(axis=1), np.nan_to_num(in_tolerance).max(axis=0)
+    return energy, np.nan_to_num(in_tolerance).max(axis=0)
 
 
 def _status(motion: Motion, factor: Array, settled: Array, surplus: Array, floor: Array) -> Array:

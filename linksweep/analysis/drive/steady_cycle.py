@@ -12,8 +12,8 @@ from linksweep.analysis.drive.drive_train import MOTION, DriveTrain, drive_train
 from linksweep.analysis.drive.motors.curve import Motor
 from linksweep.analysis.drive.motors.induction import InductionMotor
 from linksweep.analysis.drive.motors.motor import AnyMotor
-from linksweep.analysis.drive.periodic import NOT_WHOLE, OK, STATUS, Motion, periodic
-from linksweep.base.frozen import bare, with_sound
+from linksweep.analysis.drive.periodic import OK, STATUS, Motion, periodic
+from linksweep.base.frozen import with_sound
 from linksweep.base.validate import Number, count_problems, refuse
 from linksweep.results.compute import sample_status
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, kept_beside, origin_attributes
@@ -152,14 +152,13 @@ def _curve_problems(motor: AnyMotor) -> list[str]:
 
 def _solved(train: DriveTrain, count: int) -> dict[str, Array]:
     """Return all numbers of some designs, (*designs, angles or 1)."""
-    result = periodic(train, count)
-    status = np.where(_whole(train, count), result.status, NOT_WHOLE).astype(np.int8)
-    ok = status == OK
+    result = periodic(train, count, _whole(train, count))
+    ok = result.status == OK
     motion = result.motion._replace(w=np.where(ok[:, None], result.motion.w, np.nan))
     with np.errstate(invalid="ignore"):
         numbers = _over_angles(train, motion, count) | _over_cycle(train, motion)
     numbers |= {"deviation_factor": np.where(ok, result.factor, np.nan)}
-    numbers |= {"energy_residual": np.where(ok, result.defect, np.nan), "status": status}
+    numbers |= {"energy_residual": np.where(ok, result.defect, np.nan), "status": result.status.astype(np.int8)}
     return {name: values.reshape(*train.shape, -1) for name, values in numbers.items()}
 
 
@@ -178,7 +177,7 @@ def _over_angles(train: DriveTrain, motion: Motion, count: int) -> dict[str, Arr
     order = travelled if train.direction > 0.0 else np.roll(travelled[::-1], 1)
     speed = np.sqrt(2.0 * motion.w[:, order]).reshape(*train.shape, count)
     acceleration = train.at(count).acceleration(speed)
-    ratio = train.over_designs(bare(train.ratio))
+    ratio = train.plain_ratio
     torque = train.drive_torque(speed)
     results = {
         "omega2": train.direction * speed,
@@ -188,9 +187,8 @@ def _over_angles(train: DriveTrain, motion: Motion, count: int) -> dict[str, Arr
         "motor_power": torque * speed,
         "drive_torque": train.direction * (torque - train.shaft_inertia * acceleration),
     }
-    if isinstance(train.motor, InductionMotor):
-        synchronous = train.over_designs(bare(train.motor.synchronous_speed))
-        results["slip"] = (synchronous - ratio * speed) / synchronous
+    if isinstance(train.plain_motor, InductionMotor):
+        results["slip"] = train.plain_motor.slip_at(ratio * speed)
     return results
 
 
@@ -200,7 +198,7 @@ def _over_cycle(train: DriveTrain, motion: Motion) -> dict[str, Array]:
     speed = np.sqrt(2.0 * motion.inside(POINTS)[0])
     over_designs = speed.reshape(*train.shape, -1)
     torque, heat = (of(over_designs).reshape(shape) for of in (train.drive_torque, train.motor_heat))
-    ratio = np.broadcast_to(train.over_designs(bare(train.ratio)), (*train.shape, 1)).ravel()
+    ratio = train.plain_ratio.ravel()
     time, work = integral(1.0 / speed, widths), integral(torque, widths)
     w = turning_points(motion.w, motion.a, widths)
     fastest, slowest = (np.sqrt(2.0 * extreme(w, axis=(1, 2))) for extreme in (np.max, np.min))
@@ -228,7 +226,7 @@ def _motor_extremes(train: DriveTrain, slowest: Array, fastest: Array) -> dict[s
     for _ in range(NARROWINGS):
         speed = low[..., None] + (high - low)[..., None] * np.linspace(0.0, 1.0, PLACES)
         torque = train.drive_torque(speed.reshape(*train.shape, -1)).reshape(speed.shape)
-        values = sign * np.where(of_power, torque * speed, torque / train.over_designs(bare(train.ratio))[..., None])
+        values = sign * np.where(of_power, torque * speed, torque / train.plain_ratio[..., None])
         best = np.argmax(values, axis=-1, keepdims=True)
         low, high = (
             np.take_along_axis(speed, np.clip(best + step, 0, PLACES - 1), axis=-1)[..., 0] for step in (-1, 1)

@@ -38,6 +38,8 @@ from linksweep.scene.revolution import LENGTH, OMEGA2, Revolution
 from linksweep.scene.scene import Scene
 from linksweep.scene.strokes import stroke_of
 
+MOTION = ("omega2", "alpha2")
+"""Parameters of the crank's motion, on which machine and loads at an angle do not depend."""
 ANGLE = "crank angle"
 """The crank angle [rad] as a parameter."""
 ROUNDING = 1e-9
@@ -171,15 +173,21 @@ def _turning(geared: tuple[tuple[str, Any], ...]) -> Mapping[str, Row]:
 
 def _slopes(scene: Differentiated, grid: Grid) -> Iterator[Slope]:
     """Yield the slopes of the inputs at the angles of a grid."""
-    sampled = SlopedRevolution(_with_slopes(scene), grid, scene).sampled()
+    revolution = SlopedRevolution(_with_slopes(scene), grid, scene)
+    values = revolution.moving.motion if {*scene.to} <= {*MOTION} else _all_inputs(revolution.sampled())
+    for name, value in values.items():
+        for parameter, slope in slopes_of(value).items():
+            yield Slope(name, parameter, as_field(value_of(slope)))
+
+
+def _all_inputs(sampled: Scene) -> dict[str, Any]:
+    """Return the numbers of motion, machine and loads of a scene at some angles, by name."""
     values = sampled.motion | sampled.mechanism.parameters()
     if "section" in values:
         values |= sampled.mechanism.beam_numbers()
     for k, load in enumerate(sampled.loads, 1):
         values |= load.parameters(f"load{k}", values)
-    for name, value in values.items():
-        for parameter, slope in slopes_of(value).items():
-            yield Slope(name, parameter, as_field(value_of(slope)))
+    return values
 
 
 # ------------------------------------------------------------------------------------------ numbers with slopes
@@ -221,6 +229,11 @@ class SlopedRevolution(Revolution):
     """A scene of numbers with slopes and the angles of a grid; `original` is the scene with plain numbers."""
 
     original: Differentiated
+
+    @property
+    def moving(self) -> Scene:
+        """Scene with its motion alone evaluated at the angles, with slopes."""
+        return with_sound(self.scene, omega2=self.omega2, alpha2=self.alpha2)
 
     def sampled(self) -> Scene:
         """Return the scene with all that changes over the revolution evaluated at the angles, with slopes."""

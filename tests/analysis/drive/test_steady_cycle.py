@@ -215,6 +215,20 @@ def test_designs_are_those_one_by_one_and_blocks_change_nothing(monkeypatch):
     np.testing.assert_allclose(fed, ok.drive_torque, rtol=0.0, atol=1e-10 * float(abs(fed).max()))
 
 
+def test_designs_with_gas_and_friction_are_those_one_by_one():
+    """Each has its jumps and corners elsewhere, and is solved over elements that are split where others have theirs."""
+    engine = ls.example("engine")
+    engine = replace(engine, loads=[*engine.loads, ls.TorsionDamper("ground", "crank", 0.2)])
+    offset, motor = xr.DataArray([0.0, 0.004, 0.011], dims="offset"), ls.DCMotor(60.0, 300.0)
+    machine = replace(engine.mechanism, offset=offset)
+    many = ls.steady_cycle(replace(engine, mechanism=machine), motor, flywheel=0.2, theta2=240)
+    for k, one in enumerate(offset.values):
+        alone = replace(engine, mechanism=replace(engine.mechanism, offset=one))
+        cycle = ls.steady_cycle(alone, motor, flywheel=0.2, theta2=240)
+        for name in ("omega2", "motor_torque_max", "speed_mean", "deviation_factor"):
+            np.testing.assert_allclose(many[name].isel(offset=k), cycle[name], rtol=2e-9)
+
+
 @pytest.mark.parametrize(
     ("torque", "damping", "word"),
     [(-65.0, 0.25, "ok"), (-66.0, 0.25, "stalls"), (-12.0, 4.0, "ok"), (-90.0, 0.0, "stalls")],
