@@ -12,13 +12,15 @@ several. The last row may close the cycle by repeating the first. In a scene fil
 number: ``{csv = "indicator.csv", column = "P", unit = "kN"}``, the file's place relative to the scene file's; `column`
 may be left out where there are but two, and `unit` where the values are in SI units. `interpolation` says how it goes
 on between its rows, as that of a `Load`: with "step" each row holds up to the next, and need not go all the way round.
-The first column of a load over a position is `position` [m] or [degree], in rising order.
+The first column of a load over a position is `position` [m] or [degree], in rising order. A column may state its unit
+in the first line, as those of results that were saved do: ``position [in],P [lbf]``.
 """
 
 from __future__ import annotations
 
 import csv
 import math
+import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,6 +33,9 @@ from linksweep.scene.curves.interpolation import interpolation_attribute
 from linksweep.scene.file.text_file import text_of
 
 KEYS = ("csv", "column", "unit", "interpolation")
+OVER = {"theta2": ("angle",), "position": ("length", "angle")}
+"""Names of the first column, with the kinds of quantity that it may be."""
+HEADING = re.compile(r"(.*?)\s*\[([^\[\]]+)\]")
 LONGEST_CELL = 1000
 """Characters that a cell may have."""
 MOST_SHOWN = 5
@@ -40,6 +45,11 @@ MOST_SHOWN = 5
 class Row(NamedTuple):
     line: int
     cells: list[str]
+
+
+class Heading(NamedTuple):
+    name: str
+    unit: str | None
 
 
 class Sample(NamedTuple):
@@ -76,8 +86,10 @@ def csv_column(table: dict[str, Any], kind: str, folder: Path) -> xr.DataArray:
     if not isinstance(table["csv"], str) or not table["csv"].isprintable():
         raise ValueError(f'csv = {as_toml(table["csv"])}: must be the name of a file, as in csv = "indicator.csv"')
     name, rows = table["csv"], _rows(table["csv"], folder)
-    samples = _samples(name, rows, _column(table, rows[0].cells))
-    over = rows[0].cells[0]
+    headings = [_heading(cell) for cell in rows[0].cells]
+    column, (over, unit_over) = _column(table, headings), headings[0]
+    unit = _unit_of_column(f"csv: {name}:{rows[0].line}", headings[column], kind, unit)
+    samples = _at_si_places(f"csv: {name}:{rows[0].line}", _samples(name, rows, column), over, unit_over)
     refuse(_order_problems(name, samples, over))
     if over == "theta2":
         refuse(_angle_problems(name, samples, steps=table.get("interpolation") == "step"))
@@ -115,7 +127,7 @@ def _rows(name: str, folder: Path) -> list[Row]:
 def _header_problems(name: str, rows: list[Row]) -> list[str]:
     """Return the problem of a first line that does not name the columns; a file of another kind is not quoted."""
     line, cells = rows[0] if rows else (1, [])
-    if cells[:1] in (["theta2"], ["position"]) and len(cells) > 1:
+    if len(cells) > 1 and _heading(cells[0]).name in OVER:
         return []
     known = [cell for cell in cells if "theta" in cell.lower()]
     there = f"its columns are {', '.join(map(as_toml, cells))}: " if known else ""
@@ -123,14 +135,52 @@ def _header_problems(name: str, rows: list[Row]) -> list[str]:
     return [f"csv: {name}:{line}: {there}{must}"]
 
 
-def _column(table: dict[str, Any], header: list[str]) -> int:
-    """Return the position of the column that the table names."""
+def _heading(cell: str) -> Heading:
+    """Return the name of a column and the unit that it states, as in "P [lbf]"."""
+    found = HEADING.fullmatch(cell)
+    return Heading(found[1], found[2].strip()) if found else Heading(cell, None)
+
+
+def _column(table: dict[str, Any], headings: list[Heading]) -> int:
+    """Return the position of the column that the table names, with its unit or without."""
+    names = [heading.name for heading in headings]
     if "column" not in table:
-        listed = ", ".join(header[1:])
-        refuse([] if len(header) == 2 else [f"csv: column is missing; write column = one of {listed}"])
+        listed = ", ".join(names[1:])
+        refuse([] if len(names) == 2 else [f"csv: column is missing; write column = one of {listed}"])
         return 1
-    refuse(name_problems("column", table["column"], header[1:]))
-    return header.index(table["column"])
+    wanted = table["column"]
+    if isinstance(wanted, str) and _heading(wanted) in headings[1:]:
+        return 1 + headings[1:].index(_heading(wanted))
+    refuse(name_problems("column", wanted, names[1:]))
+    return 1 + names[1:].index(wanted)
+
+
+def _unit_of_column(place: str, heading: Heading, kind: str, unit: str | None) -> str | None:
+    """Return the unit of a column's values: that of the table or that of its heading, which must not contradict."""
+    if heading.unit is None:
+        return unit
+    stated = _accepted(place, heading, (kind,))[1]
+    refuse([] if unit in (None, stated) else [f'{place}: {heading.name} is in {stated}; leave unit = "{unit}" out'])
+    return stated
+
+
+def _at_si_places(place: str, samples: list[Sample], over: str, unit: str | None) -> list[Sample]:
+    """Return samples with their angles in degrees, or positions in SI units."""
+    if unit is None:
+        return samples
+    kind, spelling = _accepted(place, Heading(over, unit.replace("degree", "deg")), OVER[over])
+    return [sample._replace(angle=quantity(sample.angle, kind, spelling)) for sample in samples]
+
+
+def _accepted(place: str, heading: Heading, kinds: tuple[str, ...]) -> tuple[str, str]:
+    """Return the first of these kinds that has the unit of a heading, and the unit's listed spelling."""
+    problems = []
+    for kind in kinds:
+        try:
+            return kind, accepted_unit(str(heading.unit), kind)
+        except ValueError as error:
+            problems.append(f"{place}: {heading.name} [{heading.unit}]: {error}")
+    raise ValueError(problems[0])
 
 
 def _samples(name: str, rows: list[Row], column: int) -> list[Sample]:

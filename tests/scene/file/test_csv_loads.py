@@ -68,6 +68,33 @@ def test_a_csv_is_the_data_array_of_its_columns(tmp_path, period, closed):
     assert read_scene(path) == ls.Scene(MECHANISM, 100.0, loads=[by_hand])
 
 
+def test_columns_may_state_their_units(tmp_path):
+    """By definition an inch is 0.0254 m, a revolution 360 degrees; lbf as the table's `unit` has it."""
+
+    def force(text, load) -> xr.DataArray:
+        return read_scene(write(tmp_path, text, load)).loads[0].force[0]
+
+    over = 'over = "slider.to_end"\n'
+    plain = force("position,P\n0,900\n0.00635,500\n0.0127,0\n", over + 'force = {csv = "p.csv", unit = "lbf"}')
+    inches = force("position [in],P [lbf]\n0,900\n0.25,500\n0.5,0\n", over + 'force = {csv = "p.csv"}')
+    assert inches.identical(plain)
+    turns = force("theta2 [rev],P[lbf]\n0,1\n0.25,3\n0.5,2\n0.75,5\n", 'force = {csv = "p.csv"}')
+    for column in ("P", "P [lbf]"):
+        load = f'force = {{csv = "p.csv", column = "{column}", unit = "lbf"}}'
+        assert force("theta2,P [lbf]\n0,1\n90,3\n180,2\n270,5\n", load).identical(turns)
+
+
+def test_a_column_of_a_saved_result_is_a_load(tmp_path):
+    """Its heading says "theta2 [degree],F32x [lbf]"."""
+    cycle = ls.sweep(ls.example("press"), 24, of=["F32x"])
+    with ls.units("US"):
+        ls.save(cycle, tmp_path / "cycle.csv")
+    text = (tmp_path / "cycle.csv").read_text()
+    assert text.startswith("theta2 [degree],F32x [lbf]")
+    force, _ = read_scene(write(tmp_path, text, 'force = {csv = "p.csv", column = "F32x"}')).loads[0].force
+    np.testing.assert_allclose(force.values, cycle.F32x.values, rtol=1e-14)
+
+
 def test_forms_of_a_csv_in_a_scene(tmp_path):
     angles = np.arange(0.0, 360.0, 30.0)
     text = table(angles, ripple(angles))
@@ -186,6 +213,10 @@ REFUSED = [
     (SOUND.replace("theta2", "Theta"), CSV + ':1: its columns are "Theta", "P": the first line must name the columns'),
     (SOUND.replace("theta2", "angle"), CSV + ":1: the first line must name the columns, the first of them theta2"),
     ("", CSV + ":1: the first line must name the columns"),
+    (SOUND.replace("P", "P [lbf]"), CSV + ':1: P is in lbf; leave unit = "kN" out'),
+    (SOUND.replace("P", "P [bar]"), CSV + ":1: P [bar]: bar is a unit of pressure, not of force"),
+    (SOUND.replace("theta2", "theta2 [mm]"), CSV + ":1: theta2 [mm]: mm is a unit of length, not of angle"),
+    (SOUND.replace("theta2", "position [kg]"), CSV + ":1: position [kg]: kg is a unit of mass, not of length"),
     (SOUND.split("\n", 1)[1], CSV + ":1: the first line must name the columns"),
     (SOUND.replace("P", "Q"), ":15: loads[1].force.column: nothing is named 'P'; there are Q"),
     (SOUND.replace("60,2.5", "60,two"), CSV + ':4: P = "two": must be a number'),
