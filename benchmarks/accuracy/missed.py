@@ -3,12 +3,14 @@
 The samples are equal for all designs of a kind: a dense even grid, and geometric ones about both near-toggles, from a
 radian down to less than the narrowest spike. A peak is missed where a sample exceeds it by more than `ALLOWED`,
 relative to the peak. Half of the machines that turn fully come near to a toggle, at margins of 1e-7 to 1e-1 of their
-lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn.
+lengths; four-bars of any lengths are of all Grashof classes, most of which move over part of a turn. Tables over the
+angle have few or many angles, even or nearly so, smooth or rough values, and all interpolations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from time import perf_counter
 from typing import NamedTuple
 
@@ -24,6 +26,7 @@ CHUNK = 10_000
 FINEST = 1e-9
 """Distance of the nearest graded sample from a near-toggle [rad]."""
 EVEN, PER_DECADE = 3600, 60
+INTERPOLATIONS = ("periodic cubic", "pchip", "linear", "step")
 
 Array = np.ndarray
 Random = np.random.Generator
@@ -73,7 +76,8 @@ def _part(family: Family, designs: int, seed: list[int]) -> Missed:
     start = perf_counter()
     exact = ls.peaks(scene)
     halfway = perf_counter()
-    dense = ls.peaks(scene, theta2=angles(family.near_toggle))
+    turns = np.arange(0.0, scene.period, 360.0)
+    dense = ls.peaks(scene, theta2=np.add.outer(turns, angles(family.near_toggle)).ravel())
     times = halfway - start, perf_counter() - halfway
     short = shortfall(exact, dense)
     k = int(short.argmax())
@@ -168,6 +172,22 @@ def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
     return _scene(random, n, mechanism, [ls.Load("rocker", torque=3.0)])
 
 
+def _with_table(machines: Callable[[Random, int], ls.Scene], link: str) -> Callable[[Random, int], ls.Scene]:
+    def scene(random: Random, n: int) -> ls.Scene:
+        """Return machines with a torque and a force over the angle besides, each design with values of its own."""
+        count, turns, kind = random.choice([9, 24, 72]), random.integers(1, 3), random.choice(INTERPOLATIONS)
+        angles = np.sort((np.arange(count) + random.uniform(0.0, 0.8, count)) * (360.0 * turns / count))
+        waves = np.cos(np.radians(np.outer(np.arange(1, 4), angles) / turns) + random.uniform(0.0, 6.3, (3, 1)))
+        rough = 10.0 ** random.uniform(-3.0, 0.0, (n, 1)) * random.normal(size=(n, count))
+        values = 30.0 * (random.normal(size=(n, 3)) @ waves + rough)
+        table = xr.DataArray(values, {"theta2": angles}, ("design", "theta2"))
+        load = {"force": (table, 9.0)} if link == "slider" else {"torque": table}
+        without = machines(random, n)
+        return replace(without, loads=(*without.loads, ls.Load(link, **load, interpolation=str(kind))))
+
+    return scene
+
+
 def _margin(random: Random, n: int) -> Array:
     """Return by how much machines miss a toggle, relative to their lengths: half by anything, half by little."""
     return np.where(random.random(n) < 0.5, random.uniform(0.02, 0.98, n), 10.0 ** random.uniform(-7.0, -1.0, n))
@@ -202,4 +222,6 @@ FAMILIES = {
     "slider-crank": Family(_slider_crank(friction=False), 90.0),
     "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
     "inverted slider-crank": Family(_inverted_slider_crank),
+    "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
+    "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
 }

@@ -92,7 +92,7 @@ def _grids(size: Size, least: float, goals: dict[int, float]) -> list[Row]:
 
 
 def _over_angle(size: Size) -> Row:
-    """Time exact peaks with a load over the angle: searched along paths, at 720 angles per turn and more."""
+    """Time exact peaks with a table of a load over the angle: searched on pieces between some of its angles."""
     angles = np.arange(0.0, 360.0, 5.0)
     push = xr.DataArray(-300.0 * np.exp(-(((angles - 180.0) / 40.0) ** 2)), {"theta2": angles}, "theta2")
     designs = replace(crank_rockers(size.designs, 20.0), loads=(ls.Load("rocker", torque=push),))

@@ -28,16 +28,26 @@ def quantities_at(
     scene: Scene, names: tuple[str, ...], designs: Array, angles: Array, threads: int | None = None
 ) -> Array:
     """Return values (names, pairs) at pairs of a design and an angle [degree]."""
-    return Pairs(scene, designs, angles).values(names, threads)
+    return Pairs(scene, designs, angles, loaded=changes(scene, names)).values(names, threads)
+
+
+def changes(scene: Scene, names: tuple[str, ...]) -> bool:
+    """Return whether any of these quantities depends on an input that changes over the angle."""
+    if scene.steady:
+        return False
+    inputs = scene.at_one_angle.inputs
+    changing = {name for name, field in inputs.fields.items() if scene.mechanism.index in field.dims}
+    return not changing.isdisjoint(plan(scene.table, names, inputs.forms).inputs)
 
 
 class Pairs:
-    """Pairs of a design and an angle [degree] of a scene, whose loads are evaluated there once."""
+    """Pairs of a design and an angle [degree] of a scene, whose loads are evaluated there once, unless `loaded` tells
+    that no quantity depends on them."""
 
-    def __init__(self, scene: Scene, designs: Array, angles: Array) -> None:
+    def __init__(self, scene: Scene, designs: Array, angles: Array, loaded: bool = True) -> None:
         self.scene, self.designs, self.count = scene, designs, len(angles)
         if self.count:
-            self.inputs, self.grid, self.sample = _inputs_at(scene, angles)
+            self.inputs, self.grid, self.sample = _inputs_at(scene, angles, loaded)
 
     def values(
         self, names: tuple[str, ...], threads: int | None = None, motion: Mapping[str, Array] | None = None
@@ -59,14 +69,14 @@ class Pairs:
         return np.stack([np.broadcast_to(values[name].values, self.count) for name in names])
 
 
-def _inputs_at(scene: Scene, angles: Array) -> tuple[Inputs, Grid, Array]:
+def _inputs_at(scene: Scene, angles: Array, loaded: bool) -> tuple[Inputs, Grid, Array]:
     """Return a scene's inputs at the distinct angles of a period, the grid of all angles, and the index of each angle
     among the distinct ones.
 
     Designs share their even samples: loads and cosines are thus evaluated once for each distinct angle.
     """
-    if scene.steady:
-        return scene.inputs, scene.grid(angles), np.empty(0, dtype=int)
+    if scene.steady or not loaded:
+        return scene.at_one_angle.inputs, scene.grid(angles), np.empty(0, dtype=int)
     different = np.unique(angles)
     sample = np.searchsorted(different, angles)  # faster than numpy's own inverse, for few different angles
     known = scene.grid(different)

@@ -38,11 +38,20 @@ def arctangent(y: Number, x: Number) -> Number:
     low, high = where(steep, width, height), where(steep, height, width)
     beyond = low > TAN_EIGHTH * high
     slope = where(beyond, low - high, low) / where(beyond, low + high, high)
-    bend = slope * (slope * slope * _series(slope * slope))
+    bend = _bend(slope)
     angle = where(beyond, 0.25 * math.pi + (slope + (bend + 0.25 * PI_LO)), slope + bend)
     angle = where(steep, 0.5 * math.pi - (angle - 0.5 * PI_LO), angle)
     angle = where(x < 0.0, math.pi - (angle - PI_LO), angle)
     return where(y < 0.0, -angle, angle)
+
+
+def small_angle(slope: Number) -> Number:
+    """Return the angle of a slope up to tan 22.5°, of either sign [rad]."""
+    return slope + _bend(slope)
+
+
+def _bend(slope: Number) -> Number:
+    return slope * (slope * slope * _series(slope * slope))
 
 
 def _series(z: Number) -> Number:

@@ -8,7 +8,7 @@ angle from the nearer centre,  1 − cos = 2x²/(1 + x²)  and  sin = 2x/(1 + x�
 
 import math
 
-from linksweep.physics.algebra.arctangent import arctangent
+from linksweep.physics.algebra.arctangent import arctangent, small_angle
 from linksweep.physics.algebra.arithmetic import Number, where
 from linksweep.physics.algebra.double_double import add, cross, divide, dot, two_product
 
@@ -56,6 +56,27 @@ def place_on_piece(piece_tangent: Number, piece_end: Number, piece_from: Number,
     square = piece_tangent * piece_tangent
     moved = (piece_to - piece_from) * (square / (1.0 + square))
     return where(piece_end > 0.0, piece_to - moved, piece_from + moved)
+
+
+def angle_on_piece(half_tangent: Number, piece_middle: Number) -> Number:
+    """Return the crank's angle from the middle of a piece [rad], from their half-angle tangents; 45° either way."""
+    return 2.0 * small_angle((half_tangent - piece_middle) / (1.0 + half_tangent * piece_middle))
+
+
+def cubic_on_piece(angle_on_piece: Number, *numbers: Number) -> Number:
+    """Return the value of a function of the crank's angle that is another cubic from each of several knots on.
+
+    `numbers` are, for each knot, its angle on the piece [rad] and the four coefficients of the powers of the angle from
+    it, the least power first. The first cubic also holds before its knot.
+    """
+    knots = [numbers[first : first + 5] for first in range(0, len(numbers), 5)]
+    latest = knots[0]
+    for knot in knots[1:]:
+        beyond = angle_on_piece > knot[0]
+        latest = tuple(where(beyond, *both) for both in zip(knot, latest, strict=True))
+    start, constant, slope, square, cube = latest
+    away = angle_on_piece - start
+    return constant + away * (slope + away * (square + away * cube))
 
 
 def crank_from_tangent(half_tangent: Number, far_half: Number) -> tuple[Number, Number, Number, Number]:

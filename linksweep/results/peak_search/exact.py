@@ -1,9 +1,10 @@
 """Find the exact peaks of a scene: its signals' largest values over the continuous revolution, for every design.
 
 Where the crank turns fully, no load changes with the angle and near-toggles are known in closed form, the fused search
-inside the kernel finds them. Where friction alone makes forces jump, it searches the pieces of the turn between jumps.
-Otherwise its samples ignore jumps and the closest approaches of springs: paths about these are searched too. Other
-designs and scenes are searched along paths alone.
+inside the kernel finds them. Where friction alone makes forces jump, or loads over the angle are tables, it searches
+the pieces of the cycle between jumps, and between some of the tables' angles. Otherwise its samples ignore jumps and
+the closest approaches of springs: paths about these are searched too. Other designs and scenes are searched along paths
+alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
 """
@@ -33,20 +34,22 @@ from linksweep.results.peak_search.along_paths import (
 from linksweep.results.peak_search.approaches import with_narrow_approaches
 from linksweep.results.peak_search.arcs import about_approaches_on_arcs, arc_ends, arcs, arcs_within
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
-from linksweep.results.peak_search.groups import ONE, assembled_groups, empty, groups
+from linksweep.results.peak_search.groups import ONE, assembled_groups, different, empty, groups
 from linksweep.results.peak_search.paths import ASIDE, Part, about_approaches, about_breaks, turns
 from linksweep.results.peak_search.pieces import (
     AT_ONCE,
     designs_without_jams,
     divides,
+    follow_loads,
     follow_pieces,
     follow_unbounded,
+    loads_on_pieces,
     rubbing_signals,
 )
-from linksweep.results.peak_search.poles import may_have_poles
+from linksweep.results.peak_search.poles import designs_with_candidates, may_have_poles
 from linksweep.scene.dimensions import aligned
 from linksweep.scene.grid import NAMES as GRID_ROWS
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, changes
 from linksweep.scene.scene import Scene
 
 WINDOWS_AT_ONCE = 4096
@@ -80,7 +83,10 @@ def peaks_within(
 
 def _raise_to_poles(scene: Scene, peaks: dict[str, SignalPeak], threads: int | None, part: Part | None = None) -> None:
     if may_have_poles(scene, tuple(peaks)):
-        for _, group in assembled_groups(scene, tuple(peaks)):
+        designs = different(scene, (*peaks, "assembly"))
+        if scene.table.limits is None:
+            designs = designs_with_candidates(scene, designs, tuple(peaks))
+        for _, group in assembled_groups(scene, tuple(peaks), designs=designs):
             raise_to_poles(group, peaks, threads, part)
 
 
@@ -89,19 +95,29 @@ def _by_paths(
 ) -> dict[str, SignalPeak]:
     """Return peaks from a search along these paths, or along those for each design's kind of assembly."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
-    for kind, group in assembled_groups(scene, signals):
-        follow(group, peaks, paths or paths_of(scene, kind), threads)
+    loaded = {}
+    if not paths and loads_on_pieces(scene):
+        loaded = {signal: peaks[signal] for signal in _turning(scene, signals)}
+        designs = follow_loads(scene, different(scene, (*loaded, "assembly")), loaded, threads)
+        _follow_all(scene, loaded, paths, threads, designs)
+    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in loaded}, paths, threads)
     if scene.quick.all:
         return peaks
-    over_angle = {signal: peak for signal, peak in peaks.items() if _is_over_angle(scene, signal)}
+    over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
     return peaks | {signal: with_unknown_bound(peak) for signal, peak in over_angle.items()}
 
 
-def _is_over_angle(scene: Scene, signal: str) -> bool:
-    """Return whether a signal depends on a load or speed over the angle."""
-    inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
-    over_angle = {name for name, field in inputs.fields.items() if index in field.dims}
-    return not over_angle.isdisjoint(plan(scene.table, (signal,), inputs.forms).inputs)
+def _follow_all(
+    scene: Scene,
+    peaks: dict[str, SignalPeak],
+    paths: tuple[PathsOf, ...],
+    threads: int | None,
+    designs: Array | None = None,
+) -> None:
+    """Search along these paths of designs, or along those for each design's kind of assembly; without `designs`, of
+    all that differ."""
+    for kind, group in assembled_groups(scene, tuple(peaks), designs=designs) if peaks else ():
+        follow(group, peaks, paths or paths_of(scene, kind), threads)
 
 
 def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, threads: int | None) -> dict[str, SignalPeak]:
@@ -190,7 +206,7 @@ def _fused(
 def _between_samples(scene: Scene, signals: tuple[str, ...]) -> Plan:
     """Return the plan of signals between samples of a turn, and of the widths of its near-toggles."""
     index = scene.mechanism.index
-    forms = tuple((name, form) for name, form in scene.inputs.forms if name not in GRID_ROWS)
+    forms = tuple((name, form) for name, form in scene.at_one_angle.inputs.forms if name not in GRID_ROWS)
     table = scene.table.between_samples
     widths = plan(table, (NEAR_WIDTH, FAR_WIDTH), forms)
     dims = {dim: None for node in widths.outputs.values() for dim in widths.dims(node)}

@@ -12,11 +12,10 @@ import xarray as xr
 
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH
 from linksweep.engine.quantity import Table
-from linksweep.engine.run import Field, Fields
+from linksweep.engine.run import Field, Fields, evaluate
 from linksweep.engine.trace.plan import InputForms, Plan, plan
 from linksweep.results.peak_search.between import EVERYWHERE, PARTLY
 from linksweep.results.peak_search.limits import Limits, limits_of, signals_of
-from linksweep.scene.grid import NAMES as GRID_ROWS
 from linksweep.scene.pairs import Array, Places, different_designs, inputs_along, places_of, quantities_at
 from linksweep.scene.parameters import replaced
 from linksweep.scene.scene import Scene
@@ -62,7 +61,11 @@ class Group(NamedTuple):
 
     def constants(self, *names: str) -> Array:
         """Return values (names, designs) of quantities that depend on no angle."""
-        return self.values(names, np.arange(len(self.designs)), np.zeros(len(self.designs)))
+        inputs, count = self.scene.at_one_angle.inputs, len(self.designs)
+        forms = tuple((name, (ONE,) if isinstance(form, tuple) and form else form) for name, form in inputs.forms)
+        request, at = plan(self.scene.table, names, forms), places_of(inputs.sizes, self.designs)
+        values = evaluate(request, inputs_along(ONE, request, inputs, at), self.scene.grid(1), {ONE: count})
+        return np.stack([np.broadcast_to(values[name].values, count) for name in names])
 
     def assembly(self) -> Array:
         """Return the assembly of each design: `EVERYWHERE`, `PARTLY` or `NEVER`."""
@@ -86,12 +89,13 @@ class Group(NamedTuple):
         self, table: Table, names: tuple[str, ...], rows: Array, own: Mapping[str, Array], places: InputForms
     ) -> tuple[Plan, Fields]:
         """Return the plan of quantities of a table between samples, and its inputs along the dim `ONE`: a value for
-        each of these rows of the group, and `own` ones besides; `places` are the forms of the search's own inputs."""
-        inputs = self.scene.inputs
+        each of these rows of the group, and `own` ones besides; `places` are the forms of the search's own inputs.
+        Those that change over the angle are left to the table."""
+        inputs, index = self.scene.at_one_angle.inputs, self.scene.mechanism.index
         forms = tuple(
             (name, (ONE,) if isinstance(form, tuple) and form else form)
             for name, form in inputs.forms
-            if name not in GRID_ROWS
+            if not (isinstance(form, tuple) and index in form)
         )
         request = plan(table, (*names, NEAR_WIDTH, FAR_WIDTH), (*forms, *((name, (ONE,)) for name in own), *places))
         at = places_of(inputs.sizes, self.designs[rows])
@@ -107,16 +111,22 @@ class Group(NamedTuple):
 
 
 @singledispatch
-def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_once: int = AT_ONCE) -> Iterator[Any]:
+def groups(
+    scene: Any,
+    names: tuple[str, ...],
+    designs: Array | None = None,
+    at_once: int = AT_ONCE,
+    own_at_once: int = OWN_AT_ONCE,
+) -> Iterator[Any]:
     """Yield designs in groups small enough to be searched together.
 
     Without `designs`, one design stands for all that share the values of these quantities.
     """
     inputs, index = scene.at_one_angle.inputs, scene.mechanism.index
     own = any(index in field.dims and len(field.dims) > 1 for field in inputs.fields.values())
-    chosen = _different(scene, names) if designs is None else designs
+    chosen = different(scene, names) if designs is None else designs
     turns = round(scene.period_of_motion / scene.mechanism.period)
-    step = max(1, (min(at_once, OWN_AT_ONCE) if own else at_once) // turns)
+    step = max(1, (min(at_once, own_at_once) if own else at_once) // turns)
     for first in range(0, len(chosen), step):
         part = chosen[first : first + step]
         places = places_of(inputs.sizes, part)
@@ -125,17 +135,21 @@ def groups(scene: Any, names: tuple[str, ...], designs: Array | None = None, at_
 
 
 def assembled_groups(
-    scene: Any, names: tuple[str, ...], kinds: tuple[float, ...] = (EVERYWHERE, PARTLY)
+    scene: Any,
+    names: tuple[str, ...],
+    kinds: tuple[float, ...] = (EVERYWHERE, PARTLY),
+    designs: Array | None = None,
 ) -> Iterator[tuple[float, Any]]:
     """Yield the designs of each of these kinds of assembly, with the kind, in groups."""
-    for group in groups(scene, (*names, "assembly")):
+    chosen = () if designs is None else (designs,)
+    for group in groups(scene, (*names, "assembly"), *chosen):
         assembly = group.assembly()
         for kind in kinds:
             if np.any(assembly == kind):
                 yield kind, group.some(assembly == kind)
 
 
-def _different(scene: Scene, names: tuple[str, ...]) -> Array:
+def different(scene: Scene, names: tuple[str, ...]) -> Array:
     """Return one design for all that share the values of these quantities; the assembly is not always one of them."""
     return different_designs(scene, with_assembly_signals(scene, names))
 

@@ -1,8 +1,9 @@
 """Search for peaks on pieces of the turn: between the angles at which friction jumps or forces have a kink.
 
 The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
-at a narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Pieces of many designs
-are searched side by side, each as a turn that follows it there and back.
+at a narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle are
+polynomials between the knots of their tables, of which a piece has a few. Pieces of many designs are searched side by
+side, each as a turn that follows it there and back.
 """
 
 from __future__ import annotations
@@ -13,17 +14,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linksweep.engine.peaks.evaluators import ALONG, END, FAR_WIDTH, NEAR_WIDTH
+from linksweep.engine.peaks.evaluators import ALONG, END, FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.peaks.find_peaks import Peak, find_peaks, zeros_of_pieces
 from linksweep.engine.quantity import Row, Table
-from linksweep.engine.run import Fields
+from linksweep.engine.run import Fields, evaluate
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.physics.algebra import planar
 from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends
+from linksweep.results.peak_search.between import EVERYWHERE
 from linksweep.results.peak_search.groups import ONE, Group, groups
+from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
+from linksweep.scene.curves.polynomials import Polynomials, names_on_piece, polynomials
 from linksweep.scene.pairs import Array, by_row, places_of
 from linksweep.scene.scene import Scene
 
@@ -32,6 +36,10 @@ AT_ONCE = 8192
 ENDS, HALF_TURN, WIDTHS = ("piece_from", "piece_to"), "far_half", ("width_at_start", "width_at_end")
 """Inputs of a piece: its ends as tangents of half the angle from the middle of a half turn; that half turn; widths of
 the near-toggle as seen from its ends."""
+MIDDLE, ANGLE = "piece_middle", "angle_on_piece"
+"""Input of a piece with loads over the angle, its middle as such a tangent; and the angle from there [rad]."""
+LOADED_AT_ONCE = 2048
+"""Designs with loads over the angle whose pieces are searched together: they have more."""
 NARROW = 0.5
 """Width of a near-toggle, as tangent of half the angle, below which pieces end at it."""
 BORDERS = np.array([90.0, 270.0])
@@ -84,15 +92,32 @@ def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(signal for signal, inputs in inputs_of.items() if not known.isdisjoint(inputs))
 
 
+def loads_on_pieces(scene: Scene) -> bool:
+    """Return whether the loads over the angle of a scene are known on pieces of the cycle, between which all jumps
+    lie."""
+    machine = scene.mechanism
+    known = bool(machine.directions()) or not machine.jumps()
+    return scene.table.limits is None and known and not scene.approaches() and _loads(scene) is not None
+
+
+def follow_loads(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
+    """Write the peaks of those designs with loads over the angle that turn fully; return the other designs."""
+    every = Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0))
+    sound = designs_without_jams(scene, designs[every.assembly() == EVERYWHERE])
+    follow_pieces(scene, sound, peaks, threads)
+    return np.setdiff1d(designs, sound, assume_unique=True)
+
+
 def designs_without_jams(scene: Scene, designs: Array) -> Array:
     """Return those designs of a scene that friction jams nowhere, and whose drive stands still nowhere."""
-    every = Group(scene, designs, places_of(scene.inputs.sizes, designs), np.empty(0))
+    every = Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0))
     return designs[~np.isfinite(singular_angles(every)).any(axis=1)]
 
 
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
     """Write the peaks of designs, from a search of their pieces."""
-    for group in groups(scene, tuple(peaks), designs, AT_ONCE) if peaks else ():
+    at_once = AT_ONCE if scene.steady else LOADED_AT_ONCE
+    for group in groups(scene, tuple(peaks), designs, at_once, at_once) if peaks else ():
         pieces = _pieces(group, threads)
         request, inputs = _evaluated(group, pieces, tuple(peaks))
         results = find_peaks(request, tuple(peaks), inputs, {ONE: len(pieces.row)}, True, threads)
@@ -214,26 +239,41 @@ def _of_arcs(group: Group, arcs: Arcs) -> Pieces:
 def _pieces(group: Group, threads: int | None) -> Pieces:
     """Return the pieces of a group's designs, which end at all jumps and kinks."""
     pieces = _between_jumps(group)
-    machine = group.scene.mechanism
-    middle = 0.5 * (pieces.start + pieces.end) + group.number(machine.near_toggle_angle)[pieces.row]
-    pieces = pieces._replace(directions=group.values(machine.directions(), pieces.row, middle, threads))
-    for name in machine.kinks():
+    pieces = pieces._replace(directions=_directions(group, pieces, threads))
+    for name in group.scene.mechanism.kinks():
         pieces = _cut_at_zeros(group, pieces, name, threads)
     return pieces
 
 
+def _directions(group: Group, pieces: Pieces, threads: int | None) -> Array:
+    """Return the directions of sliding (direction, piece), those in the middle of each piece."""
+    scene, half = group.scene, pieces.half
+    directions, count = scene.mechanism.directions(), len(pieces.row)
+    if not directions:
+        return np.empty((0, count))
+    place = {TANGENT: pieces.tangents(half, 0.5 * (pieces.start + pieces.end)), FAR: half}
+    request, inputs = group.one_by_one(scene.table.between_samples, directions, pieces.row, place, ())
+    values = evaluate(request, inputs, scene.grid(1), {ONE: count}, threads)
+    return np.stack([np.broadcast_to(values[name].values, count) for name in directions])
+
+
 def _between_jumps(group: Group) -> Pieces:
-    """Return the pieces of whole turns between jumps, narrow near-toggles, and ends of half turns."""
-    scene, count = group.scene, len(group.designs)
-    frame = group.number(scene.mechanism.near_toggle_angle)
-    jumps = np.stack([np.mod(group.number(jump) - frame, 360.0) for jump in scene.jumps()], axis=1)
+    """Return the pieces of the whole cycle between jumps, narrow near-toggles, and ends of half turns or knots."""
+    scene, period, designs = group.scene, group.scene.period, len(group.designs)
+    turns = np.arange(0.0, period, scene.mechanism.period)
+    frame = group.number(scene.mechanism.near_toggle_angle)[:, None]
+    loads, jumps = _loads(scene), [group.number(jump)[:, None] + turns for jump in scene.jumps()]
+    jumps += [np.broadcast_to(loads.cuts, (designs, len(loads.cuts)))] if loads else [np.empty((designs, 0))]
+    breaks = np.mod(np.concatenate(jumps, axis=1) - frame, period)
     middles, widths = group.near_toggles()
-    narrow = np.where(widths < NARROW, middles, np.nan)
     with np.errstate(invalid="ignore"):
-        away = np.abs(np.mod(jumps[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
-        borders = np.where((away < BEYOND).any(axis=1), np.nan, BORDERS)
-    cuts = np.sort(np.concatenate([jumps, narrow, borders], axis=1), axis=1)
-    return Pieces(*_between(cuts, cuts[:, 0] + 360.0), np.empty((0, count)))
+        narrow = np.where(widths < NARROW, middles, np.nan)[..., None] + turns
+        ends = [breaks, narrow.reshape(designs, -1)]
+        if loads is None:  # pieces between cuts are short
+            away = np.abs(np.mod(breaks[:, :, None] - BORDERS + 180.0, 360.0) - 180.0)
+            ends.append(np.where((away < BEYOND).any(axis=1), np.nan, BORDERS))
+    cuts = distinct(np.concatenate(ends, axis=1))
+    return Pieces(*_between(cuts, cuts[:, 0] + period), np.empty((0, designs)))
 
 
 def _between(cuts: Array, last: Array) -> tuple[Array, Array, Array]:
@@ -284,8 +324,20 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     widths = _widths(start, end, group.near_toggles()[1][pieces.row, half.astype(int)])
     own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *np.minimum(widths, pieces.widths)), strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
-    table, places = _table_on_pieces(scene.table, directions), ((ALONG, (index, ONE)), (END, (index,)))
-    return group.one_by_one(table, names, pieces.row, own, places)
+    table, loads = _table_on_pieces(scene.table, directions), _loads(scene)
+    if loads is not None:
+        own |= {MIDDLE: pieces.tangents(half, 0.5 * (pieces.start + pieces.end))}
+        own |= _on_pieces(loads, group, pieces)
+        table = _table_on_pieces(scene.table, directions, tuple(loads.inputs), loads.per_piece)
+    return group.one_by_one(table, names, pieces.row, own, ((ALONG, (index, ONE)), (END, (index,))))
+
+
+def _on_pieces(loads: Polynomials, group: Group, pieces: Pieces) -> dict[str, Array]:
+    """Return the numbers of loads over the angle on pieces."""
+    scene, designs = group.scene, group.designs[pieces.row]
+    start = pieces.start + group.number(scene.mechanism.near_toggle_angle)[pieces.row]
+    places = places_of(scene.at_one_angle.inputs.sizes, designs)
+    return loads.on_pieces(start, pieces.end - pieces.start, places)
 
 
 def on_piece(name: str) -> str:
@@ -294,13 +346,25 @@ def on_piece(name: str) -> str:
 
 
 @lru_cache(maxsize=64)
-def _table_on_pieces(table: Table, directions: tuple[str, ...]) -> Table:
-    """Return the table between samples with places on pieces."""
+def _table_on_pieces(
+    table: Table, directions: tuple[str, ...], over_angle: tuple[str, ...] = (), knots: int = 0
+) -> Table:
+    """Return the table between samples with places on pieces, and inputs that change over the angle as polynomials
+    between knots, so many on a piece."""
     between = table.between_samples
-    place = Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS))
     known = {NEAR_WIDTH: WIDTHS[0], FAR_WIDTH: WIDTHS[1]} | {name: on_piece(name) for name in directions}
-    rows = (Row(planar.identity, (name,), (own,)) for name, own in known.items())
-    return replace(between, rows=(*between.rows, place, *rows))
+    rows = (
+        Row(crank_angle.place_on_piece, ("half_tangent",), (ALONG, END, *ENDS)),
+        Row(crank_angle.angle_on_piece, (ANGLE,), ("half_tangent", MIDDLE)),
+        *(Row(planar.identity, (name,), (own,)) for name, own in known.items()),
+        *(Row(crank_angle.cubic_on_piece, (name,), (ANGLE, *names_on_piece(name, knots))) for name in over_angle),
+    )
+    return replace(between, rows=(*between.rows, *rows))
+
+
+def _loads(scene: Scene) -> Polynomials | None:
+    """Return the loads over the angle of a scene as polynomials, if there are any and they are such."""
+    return None if scene.steady else polynomials(scene)
 
 
 def _widths(start: Array, end: Array, width: Array) -> tuple[Array, Array]:

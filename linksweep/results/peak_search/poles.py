@@ -24,7 +24,7 @@ from linksweep.results.peak_search.groups import Group
 from linksweep.results.peak_search.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.scene.dimensions import side_by_side
-from linksweep.scene.pairs import Array
+from linksweep.scene.pairs import Array, places_of
 from linksweep.scene.scene import Scene
 
 CLOSEST = 1e-8
@@ -102,6 +102,14 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
         values = group.values(signals, rows, angles.ravel(), threads).reshape(len(signals), *angles.shape)
         infinite = _grows_as_a_power(np.abs(values)) & (values[..., 0] > 0.0)
     return row, angle, np.any(infinite, axis=-1).T
+
+
+def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ...]) -> Array:
+    """Return those designs of a scene with closed forms that have possible poles."""
+    row, *_ = pole_candidates(
+        Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0)), signals
+    )
+    return designs[np.unique(row)]
 
 
 @singledispatch

@@ -1,0 +1,104 @@
+"""Loads over the angle as cubics between the angles of their tables."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import linksweep as ls
+from linksweep.physics.closures.crank_angle import angle_on_piece, cubic_on_piece
+from linksweep.scene.curves.polynomials import names_on_piece, polynomials
+from linksweep.scene.pairs import places_of
+
+pytestmark = pytest.mark.filterwarnings("ignore::linksweep.OvershootWarning")
+KINDS = ("periodic cubic", "pchip", "linear", "step")
+DESIGNS = 3
+
+
+def table(turns: int = 1) -> xr.DataArray:
+    """Values of no order at angles that are not even, a value of each design."""
+    random = np.random.default_rng(1)
+    angles = np.sort((np.arange(30) + random.uniform(0.0, 0.8, 30)) * 12.0 * turns)
+    return xr.DataArray(random.normal(size=(DESIGNS, 30)), {"theta2": angles}, ("design", "theta2"))
+
+
+def scene(load: ls.Load, **changes) -> ls.Scene:
+    links = (ls.Link(length, 1.0, 1e-3) for length in (0.1, 0.3, 0.2))
+    turned = xr.DataArray([10.0, 130.0, -40.0], dims="design")
+    return ls.Scene(ls.FourBar(*links, ground=0.25, ground_angle=turned), **{"omega2": 10.0, "loads": [load]} | changes)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("turns", [1, 2])
+def test_cubics_on_pieces_are_the_load(kind, turns):
+    """At places of pieces with several knots, measured from any frame, against the curves of scipy."""
+    loaded = scene(ls.Load("rocker", torque=table(turns), interpolation=kind))
+    known = polynomials(loaded)
+    edges = np.append(known.cuts, known.cuts[0] + loaded.period)
+    assert np.diff(edges).max() <= 60.0 and (known.per_piece == 1) == (kind in ("linear", "step"))
+    assert known.per_piece in range(1, 13) and loaded.period == 360.0 * turns
+    designs = np.arange(DESIGNS).repeat(len(known.cuts))
+    first, last = np.tile(edges[:-1], DESIGNS), np.tile(edges[1:], DESIGNS)
+    start, length = first + 0.25 * (last - first), 0.7 * (last - first)
+    places = places_of(loaded.at_one_angle.inputs.sizes, designs)
+    numbers = known.on_pieces(start - loaded.period, length, places)
+    of_load = [numbers[name] for name in names_on_piece("load1_torque", known.per_piece)]
+    for share in (0.01, 0.3, 0.8, 0.99):
+        away = (share - 0.5) * length
+        middle, place = (np.tan(np.radians(0.5 * x - 20.0)) for x in (0.0 * away, away))
+        angle = angle_on_piece(place, middle)
+        np.testing.assert_allclose(angle, np.radians(away), atol=1e-15)
+        values = [cubic_on_piece(*map(float, (angle[k], *(row[k] for row in of_load)))) for k in range(len(angle))]
+        curve = loaded.curves["loads[1].torque"].periodic(start + share * length)
+        np.testing.assert_allclose(values, curve[np.arange(len(angle)), designs], atol=2e-12)
+
+
+def test_what_is_no_cubic_is_none():
+    """Functions, changing speeds, ideal cycles; and scenes without loads over the angle."""
+    assert polynomials(scene(ls.Load("rocker", torque=lambda theta2: np.cos(np.radians(theta2))))) is None
+    assert polynomials(scene(ls.Load("rocker", torque=1.0))) is None
+    speed = 10.0 + 0.1 * table()
+    assert polynomials(scene(ls.Load("rocker", torque=table()), omega2=speed)) is None
+    engine = ls.SliderCrank(ls.Link(0.04, 1.0, 0.0), ls.Link(0.14, 1.0, 0.0), slider_mass=0.5)
+    gas = ls.GasPressure(
+        bore=0.086,
+        pressure=ls.OttoCycle(compression_ratio=10.0, peak_pressure=6e6),
+        crankcase=table().isel(design=0) + 1e5,
+    )
+    assert polynomials(ls.Scene(engine, omega2=300.0, loads=[gas])) is None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_peaks_with_tables_reach_the_densest_samples(kind):
+    """Of a machine whose frame is turned, with a torque and the gas pressure of two turns on an engine that rubs."""
+    rough = scene(ls.Load("rocker", torque=table(), interpolation=kind), gravity=(0.0, -9.81))
+    engine = ls.SliderCrank(
+        ls.Link(xr.DataArray([0.03, 0.04, 0.05], dims="design"), 1.0, 1e-3), ls.Link(0.14, 1.0, 1e-3), 0.5, friction=0.1
+    )
+    pressure = (1e5 * (3.0 + table(2).isel(design=0))).assign_attrs(interpolation=kind)
+    fired = replace(rough, mechanism=engine, loads=[ls.GasPressure(bore=0.05, pressure=pressure)])
+    for each, of in ((rough, ["F12", "F14", "T12"]), (fired, ["F12", "F32", "F14y", "T12"])):
+        assert polynomials(each) is not None
+        peaks, dense = ls.peaks(each, of=of), ls.peaks(each, of=of, theta2=15_000)
+        assert (peaks.status == 0).all()
+        between = {"linear": 1e-3, "step": 2e-2}.get(kind, 1e-4)  # a peak at a corner or a jump lies between samples
+        for name in (name for name in map(str, peaks.data_vars) if name.endswith(("_peak", "_max", "_min"))):
+            sign, size = -1.0 if name.endswith("min") else 1.0, dense[f"{name.split('_')[0]}_peak"]
+            excess = sign * (peaks[name] - dense[name]) / size
+            assert excess.min() > -1e-10 and excess.max() < between, (of, name)
+        at = peaks.T12_max_at.values
+        beside = ls.sweep(each, np.mod(np.concatenate([at - 1e-7, at, at + 1e-7]), each.period), of="T12").T12
+        beside = beside.transpose("design", "theta2").values[np.arange(DESIGNS)[:, None], np.arange(9).reshape(3, 3).T]
+        np.testing.assert_allclose(beside.max(axis=1), peaks.T12_max, rtol=1e-6)
+
+
+def test_status_and_samples_of_tables_are_those_of_other_loads():
+    """A design that cannot turn fully is searched on its arcs, with the same table."""
+    crank = xr.DataArray([0.1, 0.4, 2.0], dims="design")
+    links = (ls.Link(crank, 1.0, 1e-3), ls.Link(0.3, 1.0, 1e-3), ls.Link(0.2, 1.0, 1e-3))
+    mixed = ls.Scene(ls.FourBar(*links, ground=0.25), 10.0, loads=[ls.Load("rocker", torque=table().isel(design=0))])
+    peaks = ls.peaks(mixed, of=["T12", "T12_samples"])
+    assert peaks.status.values.tolist() == [0, 3, 2]
+    assert math.isnan(peaks.T12_peak[2]) and peaks.T12_samples[0] > 100
