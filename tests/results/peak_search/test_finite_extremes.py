@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 
 import linksweep as ls
-from linksweep.results.peaks import peaks_of_part
 
 DESIGNS = 16
 
@@ -53,7 +52,7 @@ def test_finite_extremes_of_what_is_unbounded_at_toggles(scene, rates, part):
     """They reach the densest samples, up to 1e-10, and are values of the quantity at their angle."""
     of, step = [rates, "F12x"], 0.05
     first, last = part or (0.0, 360.0)
-    peaks = ls.peaks(scene, of=of) if part is None else peaks_of_part(scene, of, part)
+    peaks = ls.peaks(scene, of=of, between=part)
     dense, bounded = ls.peaks(scene, of=of, theta2=np.arange(first + 0.3 * step, last, step)), 0
     for name in (f"{quantity}_{end}" for quantity in of for end in ("max", "min")):
         value, sample, sign = peaks[name].values, dense[name].values, 1.0 if name.endswith("max") else -1.0
