@@ -44,7 +44,7 @@ NO_SPEED = {
 
 
 def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
-    """Plot the crank's speed over the cycle with a flywheel, its largest and least marked.
+    """Plot the crank's speed over the cycle with a flywheel, its exact largest and least marked.
 
     Parameters
     ----------
@@ -70,17 +70,19 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     'crank speed $\\\\omega_2$ [rad/s]'
     """
     require_dataset(ds, "ls.flywheel")
-    refuse([] if "speed" in ds else ["ds has no speed: take what ls.flywheel returns"])
+    refuse([] if {"speed", "speed_max"} <= ds.keys() else ["ds has no speed: take what ls.flywheel returns"])
     signals.require_angles(ds)
     ds = results_in_shown_units(ds)
     angles, speed = signals.revolution(ds, ds["speed"])
     refuse([] if np.isfinite(speed).all() else ["ds has no speed at some angle: it stalls, or does not turn fully"])
     ax = grid(axes_or_new(ax))
-    middle = 0.5 * (np.max(speed) + np.min(speed))
-    ax.axhline(middle, color=GREY, linestyle="--", linewidth=1.0)
+    ax.axhline(0.5 * float(ds["speed_max"] + ds["speed_min"]), color=GREY, linestyle="--", linewidth=1.0)
     ax.plot(angles, speed, color=BLUE, label="_speed")
     unit, of_size = signals.unit(ds["speed"], ""), signals.unit(ds["flywheel_inertia"], "").replace("^2", "²")
-    _extremes(ax, angles, speed, unit)
+    for end in ("max", "min"):
+        place, value = float(ds[f"speed_{end}_at"]), float(ds[f"speed_{end}"])
+        if angles[0] <= place <= angles[-1]:  # of a cycle that was not cut
+            _mark(ax, end, place, value, unit)
     size, fluctuation = float(ds["flywheel_inertia"]), float(ds["fluctuation"])
     ax.set_title(f"flywheel {signals.number(size)} {of_size}, fluctuation {100.0 * fluctuation:.3g} %", loc="left")
     crank_angles(ax, angles)
@@ -146,12 +148,12 @@ def _torques(ax: Axes, wheel: xr.Dataset) -> None:
     legend_above(ax, ncols=4)
 
 
-def _extremes(ax: Axes, angles: np.ndarray, speed: np.ndarray, unit: str) -> None:
+def _mark(ax: Axes, end: str, place: float, value: float, unit: str) -> None:
+    """Mark an extreme, "max" or "min", with its value."""
     from linksweep.plot.kit.labels import label
 
-    for end, k in (("max", np.nanargmax(speed)), ("min", np.nanargmin(speed))):
-        ax.plot([angles[k]], [speed[k]], "o", color=BLUE, markersize=4.5, label=f"_{end}")
-        label(ax, angles[k], speed[k], (f"{end} {_five_digits(speed[k])} {unit}", BLUE))
+    ax.plot([place], [value], "o", color=BLUE, markersize=4.5, label=f"_{end}")
+    label(ax, place, value, (f"{end} {_five_digits(value)} {unit}", BLUE))
 
 
 def steady_cycle(ds: xr.Dataset) -> Figure:
@@ -202,8 +204,6 @@ def steady_cycle(ds: xr.Dataset) -> Figure:
 
 def _on_motor(ax: Axes, ds: xr.Dataset, name: str, angles: np.ndarray, values: np.ndarray) -> None:
     """Draw a curve of a steady cycle, with its mean over time and its exact extremes."""
-    from linksweep.plot.kit.labels import label
-
     system, of = units_of(ds), ds[f"{name}_max"].attrs["units"]
     unit, row = system.unit(of), system.value(values, of)
     grid(ax)
@@ -216,9 +216,7 @@ def _on_motor(ax: Axes, ds: xr.Dataset, name: str, angles: np.ndarray, values: n
     steady = np.ptp(row) <= ROUNDING * np.max(np.abs(row))
     for end, sign in () if steady else (("max", 1.0), ("min", -1.0)):
         value = float(system.value(float(ds[f"{name}_{end}"]), of))
-        place = _summit(angles, sign * row)
-        ax.plot([place], [value], "o", color=BLUE, markersize=4.5, label=f"_{end}")
-        label(ax, place, value, (f"{end} {_five_digits(value)} {unit}", BLUE))
+        _mark(ax, end, _summit(angles, sign * row), value, unit)
     ax.margins(y=0.2)
     if steady:
         ax.set_ylim(*sorted((0.0, 1.2 * row[0] or 1.0)))

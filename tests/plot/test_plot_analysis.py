@@ -22,8 +22,9 @@ def test_the_torque_with_a_flywheel_is_the_mean_torque():
     np.testing.assert_allclose(torque[:-1], cycle.T12, rtol=1e-9, atol=1e-9 * np.ptp(torque))
     constant = next(drawn for drawn in above.lines if drawn.get_label().startswith("with it, constant: −"))
     mean = np.trapezoid(torque, angles) / 720.0
-    np.testing.assert_allclose(constant.get_ydata(), mean, rtol=1e-4)
-    assert f"{abs(mean):.4g} N m" in constant.get_label()
+    np.testing.assert_allclose(constant.get_ydata(), mean, rtol=2e-4)  # samples beside jumps miss the rest
+    np.testing.assert_allclose(constant.get_ydata(), ls.duty(ls.example("engine")).effort_mean, rtol=1e-10)
+    assert f"{abs(constant.get_ydata()[0]):.4g} N m" in constant.get_label()
     gains, loses = (area.get_paths()[0].vertices[:, 1] for area in above.collections)
     assert gains.max() <= mean + 1.0 < mean + 100.0 < loses.max()  # the machine asks for less, and for more
     assert "max 317.30 rad/s" in texts(below)  # 314.16 · (1 + 0.02/2)

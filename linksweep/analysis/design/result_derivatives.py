@@ -288,7 +288,8 @@ def _mean(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
 def _flywheel(scene: Scene, to: tuple[str, ...], threads: int | None, fluctuation: float) -> Derived:
     """Return the flywheel for a coefficient of fluctuation."""
     value, slopes = flywheel_slopes(scene, to, fluctuation=fluctuation, threads=threads)
-    return Derived(value, slopes, xr.where(np.isfinite(value), OK, NONE))
+    unknown = JUMP if moving_unknown(scene, to) else OK
+    return Derived(value, slopes, xr.where(np.isfinite(value), unknown, NONE))
 
 
 def _life(scene: Scene, name: str, to: tuple[str, ...], threads: int | None, conditions: Conditions) -> Derived:

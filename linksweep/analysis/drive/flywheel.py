@@ -8,33 +8,56 @@ With ω between Ω1 = ω2 (1 + δ/2) and Ω2 = ω2 (1 − δ/2), touching both, 
 
     J_f = (max(E − ½ J Ω1²) − min(E − ½ J Ω2²)) / (δ ω2²)
 
-the two tangents of Wittenbauer's diagram. Source: F. Wittenbauer, Graphische Dynamik (1923); R. L. Norton, Design of
-Machinery, chapter "Dynamic Force Analysis" (flywheels), which neglects how J changes the speed.
+the two tangents of Wittenbauer's diagram; `linksweep.analysis.drive.wittenbauer` finds those of the continuous cycle.
+Source: F. Wittenbauer, Graphische Dynamik (1923); R. L. Norton, Design of Machinery, chapter "Dynamic Force Analysis"
+(flywheels), which neglects how J changes the speed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from linksweep.analysis.drive.duty import steady_problems
+from linksweep.analysis.drive.piecewise import piecewise
+from linksweep.analysis.drive.wittenbauer import NAMES, Turning, ahead
 from linksweep.base.checked_number import checked_number
 from linksweep.base.validate import Number, Rule, quote, refuse
-from linksweep.engine.run import Field
+from linksweep.engine.trace.derivatives import derivative_of
 from linksweep.results.compute import require
 from linksweep.results.cylinders.multi_cylinder import MultiCylinder, one_cylinder
 from linksweep.results.dataset import with_units
-from linksweep.results.derivatives.samples import sample_derivatives
+from linksweep.results.peak_search.between import EVERYWHERE
+from linksweep.results.peak_search.groups import assembled_groups, empty, empty_over_all
 from linksweep.results.sweep import sweep
+from linksweep.scene.derivatives.differentiated import Differentiated, differentiated
+from linksweep.scene.derivatives.sloped import Sloped, slopes_of, value_of
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 FLUCTUATION = Rule("dimensionless", above=0.0)
 INERTIA = Rule("inertia", at_least=0.0)
 ENERGY = "greatest less least work of the drive's constant torque ahead of the work needed at constant speed"
-BISECTIONS = 60
+TEXTS = {
+    "flywheel_inertia": ("kg m^2", "moment of inertia of the flywheel about the crank's axis"),
+    "speed": ("rad/s", "angular velocity of the crank with the flywheel"),
+    "speed_max": ("rad/s", "largest angular velocity of the crank with the flywheel"),
+    "speed_max_at": ("degree", "crank angle of the largest angular velocity of the crank with the flywheel"),
+    "speed_min": ("rad/s", "least angular velocity of the crank with the flywheel"),
+    "speed_min_at": ("degree", "crank angle of the least angular velocity of the crank with the flywheel"),
+    "fluctuation": ("1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
+    "drive_torque": ("N m", "constant torque of the drive on the crank, positive counter-clockwise"),
+    "energy_fluctuation": ("J", ENERGY),
+}
+BESIDE = 1e-7
+"""Distance from a jump [degree] at which its two sides are taken."""
+JUMPING = ("reduced_torque", "reduced_inertia_slope")
+OF_TORQUE = ("drive_torque", "energy_fluctuation")
+"""Results that do not depend on the flywheel."""
 
 
 def flywheel(
@@ -56,7 +79,7 @@ def flywheel(
     inertia : float or DataArray, default None
         Moment of inertia of a flywheel about the crank's axis [kg m²]; 0 for none.
     theta2 : int, default 720
-        Count of crank angles over the cycle.
+        Count of crank angles of `speed` over the cycle.
     threads : int, default None
         Largest number of threads; None for all cores.
 
@@ -66,7 +89,8 @@ def flywheel(
         Results over the design dims:
 
         - `flywheel_inertia` [kg m²], of the masses that turn with the crank besides its own; 0 where none is needed
-        - `speed` [rad/s] of the crank over theta2, with the drive's torque constant
+        - `speed` [rad/s] of the crank over theta2, with the drive's torque constant; `speed_max`, `speed_min` [rad/s],
+          its exact extremes, and `speed_max_at`, `speed_min_at` [degree]
         - `fluctuation` [1]: the coefficient that results; smaller than the allowed one where no flywheel is needed
         - `drive_torque` [N m]: that constant torque, on the crank
         - `energy_fluctuation` [J]: greatest less least stored energy at constant speed.
@@ -82,7 +106,8 @@ def flywheel(
     Notes
     -----
     Loads, friction and dampers are taken at their values at the mean speed; where they do not depend on the speed, the
-    result is that of the equation of motion, to the fourth order in the step (at jumps of loads, to the first).
+    result is that of the equation of motion, to 1e-10: integrals and extremes are those of the continuous cycle, and do
+    not depend on the count of angles.
 
     Examples
     --------
@@ -99,70 +124,14 @@ def flywheel(
         refuse(stalls if np.any(fluctuation >= 2.0) else [])
     else:
         inertia = checked_number("inertia", inertia, INERTIA)
-    cycle, one = _at_constant_speed(scene, theta2, threads), one_cylinder(scene)
-    index, mean = one.mechanism.index, abs(one.omega2)
-    J, torque = (cycle[name].broadcast_like(cycle[index]) for name in ("reduced_inertia", "reduced_torque"))
-    stored, drive = _work(torque, one.period, index)
-    E = stored + 0.5 * mean**2 * J
-    size = _inertia(E, J, mean, fluctuation, index) if inertia is None else inertia + 0.0 * drive
-    speed = _speed(E, J, size, mean, index)
-    (fastest, slowest), (most, least) = _extremes(speed, index), _extremes(stored, index)
-    spread = (fastest - slowest) / mean
-    results = {
-        "flywheel_inertia": (size, "kg m^2", "moment of inertia of the flywheel about the crank's axis"),
-        "speed": (np.sign(one.omega2) * speed, "rad/s", "angular velocity of the crank with the flywheel"),
-        "fluctuation": (spread, "1", "coefficient of fluctuation of the speed: (largest - least)/mean"),
-        "drive_torque": (drive, "N m", "constant torque of the drive on the crank, positive counter-clockwise"),
-        "energy_fluctuation": (most - least, "J", ENERGY),
-    }
+    steady = _at_constant_speed(scene)
+    cycle, index = _cycle(steady, theta2, threads), one_cylinder(scene).mechanism.index
+    sum_of_both = cycle[NAMES[0]] + cycle[NAMES[1]] + 0.0 * cycle[index]
+    known = sum_of_both.sum(index, skipna=False) + 0.0 * one_cylinder(scene).omega2  # NaN where it does not turn fully
+    number = fluctuation if inertia is None else inertia
+    arrays = _arrays(steady, known, cycle[index], number, inertia is None, threads)
+    results = {name: (arrays[name], *text) for name, text in TEXTS.items()}
     return cycle[["status"]].assign(with_units(results)).assign_attrs(command="linksweep.flywheel(scene, ...)")
-
-
-def flywheel_slopes(
-    scene: Scene, to: tuple[str, ...], *, fluctuation: float, theta2: int = 720, threads: int | None = None
-) -> tuple[xr.DataArray, dict[str, xr.DataArray]]:
-    """Return the inertia of the flywheel [kg m²] for a coefficient of fluctuation, and its derivatives to parameters.
-
-    Both extremes of the module's equation stay at their angles; the work of a torque is linear in it.
-    """
-    size = flywheel(scene, fluctuation=fluctuation, theta2=theta2, threads=threads).flywheel_inertia
-    steady = replace(scene, alpha2=0.0)
-    grid, index, names = steady.grid(theta2), steady.mechanism.index, ("reduced_torque", "reduced_inertia")
-    samples = sample_derivatives(steady, grid, names, tuple(path for path in to if path != "alpha2"), threads)
-    angles = xr.Variable(index, grid.angles)
-
-    def over_angles(field: Field) -> xr.DataArray:
-        return xr.DataArray(xr.Variable(*field), {index: angles} if index in field.dims else None) + 0.0 * xr.DataArray(
-            angles, {index: angles}
-        )
-
-    torque, J = (over_angles(samples.values[name]) for name in names)
-    mean, stored = abs(steady.omega2), _work(torque, steady.period, index)[0]
-    fast, slow = 1.0 + 0.5 * fluctuation, 1.0 - 0.5 * fluctuation
-    high, low = (stored + 0.5 * mean**2 * J * (1.0 - part**2) for part in (fast, slow))
-    known = np.isfinite(size)
-    at_high, at_low = high.fillna(0.0).argmax(index), low.fillna(0.0).argmin(index)
-    slopes = dict.fromkeys(to, 0.0 * size)
-    for path in to:
-        if path == "alpha2":
-            continue
-        d_torque, dJ = (over_angles(samples.derivatives[name, path]) for name in names)
-        of_speed = np.sign(steady.omega2) if path == "omega2" else 0.0
-        work = _work(d_torque, steady.period, index)[0]
-        d_high, d_low = (
-            work + 0.5 * mean**2 * dJ * (1.0 - part**2) + mean * of_speed * J * (1.0 - part**2) for part in (fast, slow)
-        )
-        rise = d_high.isel({index: at_high}, drop=True) - d_low.isel({index: at_low}, drop=True)
-        slope = rise / (fluctuation * mean**2) - 2.0 * of_speed * size / mean
-        slopes[path] = slope.where(size > 0.0, 0.0).where(known).reset_coords(drop=True)
-    return size, slopes
-
-
-def _at_constant_speed(scene: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:
-    names = ["reduced_torque", "reduced_inertia"]
-    if isinstance(scene, MultiCylinder):
-        return replace(scene, engine=replace(scene.engine, alpha2=0.0)).sweep(theta2, of=names, threads=threads)
-    return sweep(replace(scene, alpha2=0.0), theta2, of=names, threads=threads)
 
 
 def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
@@ -172,48 +141,155 @@ def _problems(scene: Scene, fluctuation: Any, inertia: Any) -> list[str]:
     return problems
 
 
-def _work(torque: xr.DataArray, period: float, index: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return ∫ (T_d − T) dθ from the first angle on, at every angle, and T_d; by the periodic cubic spline."""
-    from scipy.interpolate import CubicSpline
-
-    torque = torque.transpose(..., index)
-    angle = np.radians(np.append(torque[index].values, torque[index].values[0] + period))
-    closed = np.concatenate([torque.values, torque.values[..., :1]], axis=-1)
-    whole = np.isfinite(closed).all(axis=-1, keepdims=True)
-    integral = CubicSpline(angle, np.where(whole, closed, 0.0), axis=-1, bc_type="periodic").antiderivative()(angle)
-    integral = np.where(whole, integral - integral[..., :1], np.nan)
-    mean = integral[..., -1] / (angle[-1] - angle[0])
-    stored = mean[..., None] * (angle[:-1] - angle[0]) - integral[..., :-1]
-    return torque.copy(data=stored), torque.isel({index: 0}, drop=True).copy(data=mean)
+def _at_constant_speed(scene: Scene | MultiCylinder) -> Scene | MultiCylinder:
+    if isinstance(scene, MultiCylinder):
+        return replace(scene, engine=replace(scene.engine, alpha2=0.0))
+    return replace(scene, alpha2=0.0)
 
 
-def _inertia(E: xr.DataArray, J: xr.DataArray, mean: Number, fluctuation: Number, index: str) -> xr.DataArray:
-    """Return J_f of the module's equation, 0 where none is needed."""
-    fast, slow = mean * (1.0 + 0.5 * fluctuation), mean * (1.0 - 0.5 * fluctuation)
-    highest, lowest = (E - 0.5 * J * fast**2).max(index, skipna=False), (E - 0.5 * J * slow**2).min(index, skipna=False)
-    size = (highest - lowest) / (fluctuation * mean**2)
-    return size.where(~(size < 0.0), 0.0)
+def _cycle(steady: Scene | MultiCylinder, theta2: int, threads: int | None) -> xr.Dataset:
+    if isinstance(steady, MultiCylinder):
+        return steady.sweep(theta2, of=NAMES[:2], threads=threads)
+    return sweep(steady, theta2, of=NAMES[:2], threads=threads)
 
 
-def _speed(E: xr.DataArray, J: xr.DataArray, size: xr.DataArray, mean: Number, index: str) -> xr.DataArray:
-    """Return the speed at every angle whose largest and least have this mean; E0 by bisection."""
-    total = size + J
-    low = -E.min(index, skipna=False)
-    stalls = _middle(E + low, total, index) > mean
-    high = (0.5 * total * mean**2 - E).max(index, skipna=False)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        above = _middle(E + middle, total, index) > mean
-        low, high = low.where(above, middle), high.where(~above, middle)
-    return ((2.0 * (E + high).clip(min=0.0) / total) ** 0.5).where(~stalls)
+# -------------------------------------------------------------------------------------------- arrays over the designs
 
 
-def _middle(energy: xr.DataArray, total: xr.DataArray, index: str) -> xr.DataArray:
-    """Return the mean of largest and least speed."""
-    fastest, slowest = _extremes((2.0 * energy.clip(min=0.0) / total) ** 0.5, index)
-    return 0.5 * (fastest + slowest)
+def _arrays(
+    steady: Scene | MultiCylinder,
+    known: xr.DataArray,
+    angles: xr.DataArray,
+    number: Any,
+    sized: bool,
+    threads: int | None,
+) -> dict[str, xr.DataArray]:
+    """Return all results by name, NaN where a design is not `known`, for a number: the fluctuation (`sized`), or the
+    inertia."""
+    number = xr.align(known, xr.DataArray(number), join="left")[1]
+    own = empty_over_all(steady, NAMES).dims
+    frame = (0.0 * known + 0.0 * number).transpose(*own, ...)
+    numbers = number.broadcast_like(frame).transpose(*frame.dims).values.reshape(known.size, -1)
+    values = {name: np.full((*numbers.shape, angles.size if name == "speed" else 1), np.nan) for name in TEXTS}
+    for _, group in assembled_groups(steady, NAMES, (EVERYWHERE,)):
+        places, shape = [group.places[dim] for dim in own], tuple(frame.sizes[dim] for dim in own)
+        at = np.ravel_multi_index(places, shape) if own else np.zeros(1, dtype=int)
+        turning = Turning.of(group.some(np.arange(len(at))), threads)
+        for k in range(numbers.shape[1]):
+            for name, row in _results(turning, numbers[at, k], sized, angles.values).items():
+                values[name][at, k] = row
+    results = {name: frame + frame.copy(data=row[..., 0].reshape(frame.shape)) for name, row in values.items()}
+    results["speed"] = frame + xr.DataArray(
+        values["speed"].reshape(*frame.shape, -1), {**frame.coords, **angles.coords}, (*frame.dims, *angles.dims)
+    )
+    of_torque = empty(steady, NAMES[:1])[NAMES[0]].dims
+    for name in OF_TORQUE:
+        results[name] = results[name].max([dim for dim in frame.dims if dim not in of_torque])
+    return results
 
 
-def _extremes(values: xr.DataArray, index: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return the largest and the least over the index; NaN where one value is."""
-    return values.max(index, skipna=False), values.min(index, skipna=False)
+def _results(turning: Turning, number: Array, sized: bool, angles: Array) -> dict[str, Array]:
+    """Return the results of some designs, (design, angles or 1), for a fluctuation (`sized`) or an inertia of each."""
+    size, s = number, 0.5 * number
+    if sized:
+        size = turning.size(s)
+        size = np.where(size < 0.0, 0.0, size)
+    if not sized or (size == 0.0).any():
+        s = np.where(sized & (size > 0.0), s, turning.half_fluctuation(size))
+    tangents, way = turning.tangents(s), np.sign(turning.omega2)
+    at_high, at_low = (
+        np.where(np.isnan(s), np.nan, turning.cycle.angles(place)) for place in (tangents.at_high, tangents.at_low)
+    )
+    fast, slow = turning.omega2 * (1.0 + s), turning.omega2 * (1.0 - s)
+    results = {
+        "flywheel_inertia": size,
+        "speed_max": np.maximum(fast, slow),
+        "speed_max_at": np.where(way > 0.0, at_high, at_low),
+        "speed_min": np.minimum(fast, slow),
+        "speed_min_at": np.where(way > 0.0, at_low, at_high),
+        "fluctuation": 2.0 * s,
+        "drive_torque": turning.drive,
+        "energy_fluctuation": turning.energy_fluctuation,
+    }
+    speed = way[:, None] * turning.speed(size, s, angles)
+    return {name: values[:, None] for name, values in results.items()} | {"speed": speed}
+
+
+# ------------------------------------------------------------------------------------------------------ derivatives
+
+
+class MovingJump(NamedTuple):
+    """A jump of the torque that parameters move: its angle [degree], the torque before and after it [N m], dJ/dθ there,
+    and dθ*/dp [rad], each for every design."""
+
+    angle: Array
+    before: Array
+    after: Array
+    inertia_slope: Array
+    moves: Mapping[str, Array]
+
+    def rise(self, turning: Turning, angle: Array, factor: float) -> Array:
+        """Return dG/dθ* at an angle of each design, of G = S + factor·ω2² J; one within `BESIDE` goes along with θ*."""
+        first, period = turning.cycle.start[:, 0], turning.cycle.period
+        own, jump = (np.mod(each - first, period) for each in (angle, self.angle))
+        along = np.abs(own - jump) < 10.0 * BESIDE
+        slope = turning.drive - self.before + factor * turning.omega2**2 * self.inertia_slope
+        drop = self.before - self.after
+        return drop * (own / period - ((own > jump) & ~along)) + np.where(along, slope, 0.0)
+
+
+def flywheel_slopes(
+    scene: Scene, to: tuple[str, ...], *, fluctuation: float, threads: int | None = None
+) -> tuple[xr.DataArray, dict[str, xr.DataArray]]:
+    """Return the inertia of the flywheel [kg m²] for a coefficient of fluctuation, and its derivatives to parameters.
+
+    Both extremes of the module's equation stay at their angles (the envelope theorem); the work of a torque is linear
+    in it. A jump that moves by dθ* adds (T(θ*−) − T(θ*+))·dθ* to the work, and takes an extreme at it along.
+    """
+    size = flywheel(scene, fluctuation=fluctuation, threads=threads).flywheel_inertia.reset_coords(drop=True)
+    paths = tuple(path for path in to if path != "alpha2")
+    own = differentiated(replace(scene, alpha2=0.0), NAMES[:2], paths)
+    names = tuple(derivative_of(name, path) for path in paths for name in NAMES[:2])
+    fields = {path: empty_over_all(own, (*NAMES, *names)) for path in paths}
+    for _, group in assembled_groups(own, (*NAMES, *names), (EVERYWHERE,)):
+        slopes = _slopes(group, own, names, 0.5 * fluctuation, threads)
+        for path, field in fields.items():
+            field.values[tuple(group.places[dim] for dim in field.dims)] = (
+                slopes[path] if field.dims else slopes[path][0]
+            )
+    arrays = {path: xr.DataArray(field.values, dims=field.dims) for path, field in fields.items()}
+    every = {path: 0.0 * size + arrays.get(path, 0.0) for path in to}
+    return size, {path: slope.where(size > 0.0, 0.0).where(np.isfinite(size)) for path, slope in every.items()}
+
+
+def _slopes(group: Any, own: Differentiated, names: tuple[str, ...], s: float, threads: int | None) -> dict[str, Array]:
+    """Return the derivatives of the inertia of each design by parameter; `names` are those of torque and inertia."""
+    turning, changes, jumps = Turning.of(group, threads), piecewise(group, names, threads), _moving_jumps(group, own)
+    square, tangents = turning.omega2**2, turning.tangents(np.full(len(group.designs), s))
+    size = (tangents.high - tangents.low) / (2.0 * s * square)
+    ends = (1.0, tangents.at_high, -s * (1.0 + 0.5 * s)), (-1.0, tangents.at_low, s * (1.0 - 0.5 * s))
+    slopes = {}
+    for k, path in enumerate(own.to):
+        faster = 2.0 * turning.omega2 if path == "omega2" else 0.0  # derivative of the square of the speed
+        work, _ = ahead(changes, 2 * k)
+        rise = np.zeros(len(size))
+        for sign, place, factor in ends:
+            angle = turning.cycle.angles(place)
+            of_work, of_inertia = (changes.at(each, angle[:, None])[:, 0] for each in (work, changes.terms[2 * k + 1]))
+            rise += sign * (of_work + factor * (square * of_inertia + faster * turning.inertia_at(place)))
+            rise += sign * sum(jump.rise(turning, angle, factor) * jump.moves.get(path, 0.0) for jump in jumps)
+        slopes[path] = (rise / (2.0 * s) - size * faster) / square
+    return slopes
+
+
+def _moving_jumps(group: Any, own: Differentiated) -> list[MovingJump]:
+    """Return the jumps of the torque that parameters move, in every turn of the cycle."""
+    rows, jumps = np.arange(len(group.designs)), []
+    for jump in own.moving_jumps:
+        if isinstance(jump, Sloped):
+            moves = {path: np.radians(group.number(slope)) for path, slope in slopes_of(jump).items()}
+            for turn in np.arange(0.0, own.period, own.mechanism.period):
+                angle = group.number(value_of(jump)) + turn
+                before, after = (group.values(JUMPING, rows, angle + side) for side in (-BESIDE, BESIDE))
+                jumps.append(MovingJump(angle, before[0], after[0], before[1], moves))
+    return jumps

@@ -188,7 +188,8 @@ def test_the_speed_solves_the_equation_of_motion(mechanism, omega2):
     scene = ls.Scene(mechanism, omega2, 55.0, gravity=(1.0, -9.81), loads=[ls.Load("crank", torque=-2.0), SPRING])
     wheel = ls.flywheel(scene, inertia=0.05)
     speed = np.append(wheel.speed.values, wheel.speed.values[0])
-    np.testing.assert_allclose(0.5 * (speed.max() + speed.min()), omega2, rtol=1e-12)
+    np.testing.assert_allclose(0.5 * (wheel.speed_max + wheel.speed_min), omega2, rtol=1e-12)
+    np.testing.assert_allclose([speed.max(), speed.min()], [wheel.speed_max, wheel.speed_min], rtol=1e-5)
 
     angles = np.append(wheel.theta2.values, 360.0)
     static = ls.sweep(replace(scene, omega2=0.0, alpha2=0.0), of=["T12", "reduced_inertia", "reduced_inertia_slope"])
@@ -327,7 +328,11 @@ def test_the_plots_show_the_results():
     wheel = ls.flywheel(ls.example("press"), fluctuation=0.05)
     ax = ls.plot.flywheel(wheel)
     np.testing.assert_array_equal(line(ax, "_speed").get_ydata()[:-1], wheel.speed)
-    assert line(ax, "_max").get_ydata()[0] == wheel.speed.max()
+    for end in ("max", "min"):
+        assert line(ax, f"_{end}").get_xydata().tolist() == [[wheel[f"speed_{end}_at"], wheel[f"speed_{end}"]]]
+    assert f"max {float(wheel.speed_max):.5g} rad/s" in texts(ax)[0]
+    part = ls.plot.flywheel(wheel.sel(theta2=slice(200, 300)))  # which has the largest speed alone
+    assert [each.get_label() for each in part.lines if each.get_label() in ("_max", "_min")] == ["_max"]
     assert "fluctuation 5 %" in ax.get_title(loc="left")
     weak = ls.Motor((0.0, 600.0), (1.0, 0.2))
     load = ls.motor_load(ls.example("press"), weak, ratio=10.0)
