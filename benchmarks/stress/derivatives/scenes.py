@@ -302,14 +302,20 @@ MACHINES: dict[str, Draw] = {
         f"single machines, speed, {kind}": of_machine(partial(speed, kind))
         for kind in ("table", "function", "given acceleration")
     },
-    **{f"car in a loop, {profile}": of_machine(partial(car, profile)) for profile in ls.LoopTrack.profiles},
 }
 """Single machines: all drives, all loads."""
 LINKAGES: dict[str, Draw] = {name: partial(linkages, family) for name, family in ALL.items()}
+EXAMPLES: dict[str, Draw] = {
+    f"example {name}": partial(changed_example, name) for name in sorted(example_names()) if name != "loop"
+}
+CARS: dict[str, Draw] = {
+    **{f"car in a loop, {profile}": of_machine(partial(car, profile)) for profile in ls.LoopTrack.profiles},
+    "example loop": partial(changed_example, "loop"),
+}
 OVER_POSITIONS: dict[str, Draw] = {
     f"{name}, load over a position": partial(over_position, family)
     for name, family in AWAY_FROM_TOGGLES.items()
-    if not name.startswith("pins in other orders")  # none of whose links swing about a ground pin
+    if not name.startswith("pins in other orders")  # none of whose links swings about a ground pin
 }
-EXAMPLES: dict[str, Draw] = {f"example {name}": partial(changed_example, name) for name in sorted(example_names())}
-FAMILIES = MACHINES | LINKAGES | OVER_POSITIONS | EXAMPLES
+FAMILIES = MACHINES | LINKAGES | EXAMPLES | CARS | OVER_POSITIONS
+"""All families; each draws by its place here, so that new ones stand behind the others."""
