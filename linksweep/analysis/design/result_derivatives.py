@@ -10,8 +10,10 @@ A stroke is the travel of the slider, a swing that of the rocker.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import reduce
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -38,6 +40,7 @@ from linksweep.results.derivatives.of_peaks import (
     OK,
     TIE,
     UNBOUNDED,
+    ZERO,
     peak_derivatives,
     turning_point_derivatives,
     unlike,
@@ -52,6 +55,8 @@ OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
 """The position of which a closed form gives the travel."""
 TRAVEL = "_travel"
 FLYWHEEL = "flywheel_inertia"
+NOTHING = 1e-13
+"""Part of what a parameter as large again would change a magnitude by, below which it is zero but for rounding."""
 MOTION = "omega2", "alpha2"
 """Parameters that move no place."""
 STATUS_OF_LIFE = np.array([OK, ARC_END, NONE, UNBOUNDED, NONE])
@@ -170,9 +175,8 @@ def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     value = ds[f"{stem}_{end}"]
     if quantity.squared:
         square = _extreme(scene, quantity.squared, ds[f"{stem}_peak_at"], value * value, to, True)
-        status = xr.where(value == 0.0, NONE, square.status)  # a magnitude that is 0 has a corner there
         slopes = {path: slope / (2.0 * value) for path, slope in square.slopes.items()}
-        return Derived(value, slopes, status, square.corners)
+        return Derived(value, slopes, with_zeros(scene, value, slopes, square.status), square.corners)
     above, below = (
         _extreme(scene, stem, ds[f"{stem}_{word}_at"], ds[f"{stem}_{word}"], to, word == "max")
         for word in ("max", "min")
@@ -180,6 +184,19 @@ def _peak(scene: Scene, stem: str, end: str, to: tuple[str, ...], threads: int |
     if end != "peak":
         return above if end == "max" else below
     return _of_both(scene, value, above, below)
+
+
+def with_zeros(
+    scene: Scene, value: xr.DataArray, slopes: Mapping[str, xr.DataArray], status: xr.DataArray
+) -> xr.DataArray:
+    """Return the status of a magnitude's derivatives, with those where it is zero, as where a slide bears nothing.
+
+    There it has a corner, and rounding alone would decide the direction of its derivative.
+    """
+    numbers = {path: free(scene)[path][0] for path in slopes}
+    changes = [abs(slope * (0.0 if numbers[path] is None else numbers[path])) for path, slope in slopes.items()]
+    zero = reduce(operator.or_, (value < NOTHING * change for change in changes), value == 0.0)
+    return xr.where(zero, ZERO, status)
 
 
 def _of_both(scene: Scene, value: xr.DataArray, above: Derived, below: Derived) -> Derived:

@@ -10,13 +10,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from linksweep.analysis.design.conditions import checked_conditions
-from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, whole_name
+from linksweep.analysis.design.result_derivatives import Derived, derived, result_problems, whole_name, with_zeros
 from linksweep.analysis.pins.bearing import Bearing
 from linksweep.base.validate import UNITS, count_problems, name_problems, quote, refuse
 from linksweep.engine.run import Field
 from linksweep.results.compute import angles_of, quantity_problems, requested, require_scene
 from linksweep.results.dataset import design_coordinates, flags, index_coordinate, provenance, status_attributes
-from linksweep.results.derivatives.of_peaks import MEANINGS
+from linksweep.results.derivatives.of_peaks import MEANINGS, OK
 from linksweep.results.derivatives.samples import sample_derivatives
 from linksweep.scene.at_sections import with_sections
 from linksweep.scene.derivatives.differentiated import number_problem
@@ -72,8 +72,9 @@ def sensitivities(
         it, and `F32_peak_elasticity` [1], the percent by which the result grows for one percent of the parameter.
         `F32_peak_status` states whether a peak has derivatives: "ok"; "tie", of two equal rises of which some
         derivatives differ; "moving_jump", at a jump or a kink whose way is not known; "unbounded", at infinity;
-        "arc_end", at an end of the motion, or under a load over a distance that counts from there; "no_peak". Where it
-        is not ok they are NaN, in a tie those that differ. With angles there is the `status` of a sweep.
+        "arc_end", at an end of the motion, or under a load over a distance that counts from there; "no_peak";
+        "zero_magnitude", of a force that is 0, but for rounding. Where it is not ok they are NaN, in a tie those that
+        differ. With angles there is the `status` of a sweep, and of a magnitude such as F32 its `F32_status`.
 
     Raises
     ------
@@ -83,9 +84,9 @@ def sensitivities(
     Notes
     -----
     Derivatives are exact: of the operations themselves, to rounding. A peak has that of its quantity at its own angle,
-    to 1e-8. Friction, jumps and magnitudes have one-sided derivatives: where a slide bears nothing, those of the side
-    on which its normal force is positive. Equations and sources: `linksweep.engine.trace.gradient`,
-    `linksweep.results.derivatives.of_peaks`.
+    to 1e-8. Friction and jumps have one-sided derivatives: where a slide bears nothing, those of the side on which its
+    normal force is positive; the magnitude of its force has none there. Equations and sources:
+    `linksweep.engine.trace.gradient`, `linksweep.results.derivatives.of_peaks`.
 
     Examples
     --------
@@ -192,8 +193,10 @@ def _of_samples(scene: Scene, angles: Any, of: Any, paths: tuple[str, ...], thre
         quantity = scene.table.quantity[name]
         value = array(samples.values[name]).assign_attrs(units=quantity.units, long_name=quantity.long_name)
         slopes = {path: array(samples.derivatives[name, path]) for path in paths}
-        own = _variables(scene, name, Derived(value, slopes, xr.DataArray(0)))
-        variables |= {key: variable for key, variable in own.items() if key != f"{name}_status"}
+        smooth = xr.DataArray(OK)
+        zeros = with_zeros(scene, value, slopes, smooth) if quantity.squared else smooth
+        own = _variables(scene, name, Derived(value, slopes, zeros).only_ok())
+        variables |= {key: of for key, of in own.items() if quantity.squared or key != f"{name}_status"}
     status = samples.status
     words = status_attributes(scene.mechanism.status_meanings)
     variables["status"] = xr.Variable(status.dims, status.values, words)

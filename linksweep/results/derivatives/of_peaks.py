@@ -36,9 +36,9 @@ from linksweep.scene.inputs import as_field
 from linksweep.scene.pairs import Array, in_period
 from linksweep.scene.scene import Scene
 
-MEANINGS = ("ok", "tie", "moving_jump", "unbounded", "no_peak", "arc_end")
-"""Status of the derivatives of a peak."""
-OK, TIE, JUMP, UNBOUNDED, NONE, ARC_END = range(len(MEANINGS))
+MEANINGS = ("ok", "tie", "moving_jump", "unbounded", "no_peak", "arc_end", "zero_magnitude")
+"""Status of the derivatives of a peak, or of a magnitude."""
+OK, TIE, JUMP, UNBOUNDED, NONE, ARC_END, ZERO = range(len(MEANINGS))
 STEP = 1e-7
 """First step of the secants [rad]."""
 SECANTS = 4

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 from long import long_but
 from references import mp
+from scipy.optimize import brentq
 from shifted import derivative, shifted, step_of
 
 import linksweep as ls
@@ -241,7 +242,19 @@ def test_derivatives_of_exact_peaks_are_those_of_60_digits(kind, seed):
 
 def test_a_force_that_is_zero_has_no_derivative():
     ds = ls.sensitivities(ls.example("scotch-yoke"), of=["F13"], to=["crank.length"])
-    assert float(ds.F13_peak) == 0.0 and int(ds.F13_peak_status) == 4
+    assert float(ds.F13_peak) == 0.0 and int(ds.F13_peak_status) == 6
+
+
+def test_the_force_of_a_slide_that_bears_nothing_has_a_corner():
+    """F14 = √(1 + μ²)·|F14y|: the normal force has derivatives at its zero, the magnitude has none."""
+    piston = replace(PISTON, slide_angle=0.0)
+    scene = ls.Scene(piston, omega2=30.0, gravity=(0.0, -9.81), loads=[ls.Load("slider", force=(300.0, 50.0))])
+    at = brentq(lambda angle: float(ls.sweep(scene, [angle], of=["F14y"]).F14y[0]), 198.0, 199.0, xtol=1e-14)
+    ds = ls.sensitivities(scene, of=["F14", "F14y"], to=["slider_mass", "rod.mass"], theta2=[at, at + 1e-3])
+    assert float(ds.F14[0]) < 1e-10 and ds.F14_status.values.tolist() == [6, 0]
+    assert np.isnan(ds.F14_derivative[0]).all() and np.isfinite(ds.F14y_derivative).all()
+    side = np.sign(ds.F14y[1]) * math.hypot(1.0, 0.12)
+    assert ds.F14_derivative[1].values == pytest.approx((side * ds.F14y_derivative[1]).values, rel=1e-12)
 
 
 def test_two_equal_rises_that_change_differently_have_no_derivative():
