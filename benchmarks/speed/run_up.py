@@ -10,10 +10,11 @@ import xarray as xr
 
 import linksweep as ls
 from benchmarks.cases import GENERAL, Size, few, scene
-from benchmarks.rivals import exudyn_run_up
+from benchmarks.rivals import exudyn_on_motor
 from benchmarks.timing import FASTER, SHARE, Row, race
 
 MOTOR = ls.DCMotor(stall_torque=12.0, no_load_speed=40.0)
+ON_CRANK = exudyn_on_motor.OnCrank(MOTOR.stall_torque, MOTOR.no_load_speed)
 AT_REST = replace(GENERAL, omega2=0.0, alpha2=0.0)
 STEPS = 40_000
 """Steps of the multibody program; half as many are run beside them, to extrapolate."""
@@ -41,7 +42,7 @@ def _against_exudyn(one: ls.Scene, size: Size) -> Row:
     peer, time = PEER.format(STEPS // 2, STEPS), float(run.time[-1])
 
     def theirs() -> np.ndarray:
-        return exudyn_run_up.end_of_run(AT_REST, MOTOR.stall_torque, MOTOR.no_load_speed, time, STEPS)
+        return exudyn_on_motor.end_of_run(AT_REST, ON_CRANK, time, STEPS)
 
     try:
         angle, speed = theirs()
