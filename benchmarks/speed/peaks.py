@@ -42,7 +42,7 @@ def rows(size: Size) -> list[Row]:
     return [
         row(FASTER, PEAKS, LAPACK, 200),
         row(FASTER, KERNEL, LAPACK),
-        row(SHARE, KERNEL, C, 1.4),
+        row(SHARE, KERNEL, C, 0.8),
         row(FASTER, C, LAPACK),
     ]
 

@@ -22,6 +22,7 @@ from linksweep.engine.interpreter import evaluate as interpreter
 from linksweep.engine.kernel import reduce
 from linksweep.engine.kernel.compile import SIGNATURE, compiled
 from linksweep.engine.kernel.fuse import REDUCTIONS_SOURCE, fuse
+from linksweep.engine.kernel.side_by_side import fits_side_by_side, parity
 from linksweep.engine.kernel.vectors import LANES
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.patience import Patience
@@ -100,10 +101,21 @@ class Runner(Patience):
     plan: Plan
     reductions: tuple[Reduction, ...]
     layouts: dict[tuple[int, ...], Layout] = field(default_factory=dict)
+    writers: dict[tuple[int, ...], Writer] = field(default_factory=dict)
 
     @cached_property
     def fused(self) -> Writer:
         return fuse(self.plan, self.reductions)
+
+    def fused_for(self, designs: int, profiles: np.ndarray, at: np.ndarray) -> Writer:
+        """Return the kernel for this many designs in the innermost loop, and the samples of its profiles."""
+        if designs < LANES or not fits_side_by_side(self.fused):
+            return self.fused
+        rows = zip(self.fused.profiles, profiles[at[:-1]], strict=True)
+        key = tuple(parity(row) if len(node.dims) == 1 else 0 for node, row in rows)
+        if key not in self.writers:
+            self.writers[key] = fuse(self.plan, self.reductions, key)
+        return self.writers[key]
 
     def layout(self, sizes: Sizes) -> Layout:
         key = tuple(sizes[dim] for dim in self.plan.loops)
@@ -201,7 +213,9 @@ def _execute(
     ready: Runner, inputs: Fields, grid: Grid, sizes: Sizes, threads: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Flatten the inputs, run the kernel over all designs by a pool of threads, and return block and single."""
-    plan, fused, layout = ready.plan, ready.fused, ready.layout(sizes)
+    plan, layout = ready.plan, ready.layout(sizes)
+    profiles, profile_at = _profiles(plan, ready.fused.profiles, inputs, grid)
+    fused = ready.fused_for(int(layout.sizes[-1]), profiles, profile_at)
     (block_at, block_rows), (single_at, single_size) = layout.places(layout.rows), layout.places(layout.singles)
     samples = len(grid.angles)
     room = max(samples, LANES)
@@ -212,17 +226,16 @@ def _execute(
         fused.source, REDUCTIONS_SOURCE if ready.reductions else "", SIGNATURE, "block" if streamed else ""
     )
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in fused.parameters])
-    profiles, profile_at = _profiles(plan, fused.profiles, inputs, grid)
     missing = room - len(grid.angles)
     profiles = np.pad(profiles, ((0, 0), (0, missing)), mode="edge") if missing else profiles
     numbers = block_rows * room + single_size
     require_memory(f"{numbers} numbers (results × designs × angles): ask for fewer", 8.0 * numbers)
     block, single = new_block(block_rows, room), np.empty(single_size)
-    unit, length = (1, int(layout.sizes[0])) if plan.loops else (LANES, samples)
+    unit, length = (fused.unit, int(layout.sizes[0])) if plan.loops else (LANES, samples)
 
     def work(first: int, last: int) -> None:
         apart = room + LANES if room % 512 == 0 else room  # else all rows would compete for the same cache sets
-        scratch, values = np.empty((fused.scratch_rows, apart)), np.empty(fused.value_count)
+        scratch, values = np.empty((fused.scratch_rows, apart)), new_block(1, fused.value_count)[0]
         kernel(
             first * unit, min(last * unit, length), samples, layout.sizes, parameters, parameter_at, profiles,
             profile_at, block, block_at, single, single_at, scratch, values, grid.angles, np.empty(reduce.WORK),

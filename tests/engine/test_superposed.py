@@ -1,7 +1,6 @@
 """Superposed requests sum a few cycles for parameters that enter linearly: equal results, less work a design."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from long import long_but
 import linksweep as ls
 from benchmarks.cases import GENERAL, LENGTHS, LOADS, MASSES, batch, scene, stacked
 from benchmarks.rivals import peers
-from benchmarks.speed.kernel import kernel_of
 from linksweep.engine.trace.plan import plan
 from linksweep.engine.trace.superpose import superposed
 from linksweep.scene.designs.selection import selected
@@ -103,17 +101,6 @@ def test_at_rest_only_what_stands_is_left():
     alone = ls.sweep(replace(machine, omega2=0.0), TURN)
     for name in ("T12", "F32x", "F14y", "alpha3"):
         np.testing.assert_allclose(summed[name], alone[name], rtol=1e-13, atol=1e-13)
-
-
-@pytest.mark.parametrize("solver", long_but(["fast", "superposed"], "superposed"))
-@pytest.mark.parametrize("count", [1, 3, 4, 6])
-def test_batched_designs_have_the_bits_of_those_interpreted(count, solver, monkeypatch):
-    machine = scene(batch(count, "m3"))
-    find = partial(ls.peaks, machine, theta2=TURN, threads=1, solver=solver)
-    interpreted = find()
-    monkeypatch.setattr("linksweep.engine.run.COMPILE_AFTER", -1)
-    assert "for front in range(first, last, 4):" in kernel_of(find).sources[0]
-    xr.testing.assert_identical(find(), interpreted)
 
 
 def test_parts_of_a_superposed_batch_have_its_bits():

@@ -1,4 +1,4 @@
-"""Write and compile the kernel of a plan: nested loops over design dims, batched designs, reductions.
+"""Write and compile the kernel of a plan: nested loops over design dims, designs side by side, reductions.
 
 Only `compile` imports numba.
 """

@@ -1,18 +1,20 @@
-"""fuse(plan): choose the writer of its kernel: of one design at a time, or of several side by side."""
+"""fuse(plan): choose the writer of its kernel: of one design at a time, or of designs side by side."""
 
 from __future__ import annotations
 
 import inspect
 
 from linksweep.engine.kernel import reduce
-from linksweep.engine.kernel.batched import BatchedWriter, shares_rows
+from linksweep.engine.kernel.side_by_side import SideBySideWriter
 from linksweep.engine.kernel.writer import Reduction, Writer
 from linksweep.engine.trace.plan import Plan
 
 REDUCTIONS_SOURCE = inspect.getsource(reduce)
 
 
-def fuse(plan: Plan, reductions: tuple[Reduction, ...]) -> Writer:
-    """Return the kernel that stores the plan's outputs or reduces them row by row."""
-    writer = Writer(plan, reductions)
-    return BatchedWriter(plan, reductions) if shares_rows(writer) else writer
+def fuse(plan: Plan, reductions: tuple[Reduction, ...], of_profiles: tuple[int, ...] | None = None) -> Writer:
+    """Return the kernel that stores the plan's outputs or reduces them row by row.
+
+    With the parities of its profiles, return that of designs side by side.
+    """
+    return Writer(plan, reductions) if of_profiles is None else SideBySideWriter(plan, reductions, of_profiles)

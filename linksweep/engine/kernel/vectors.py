@@ -14,6 +14,15 @@ Run on the values of this module, each operation writes one instruction (`engine
 samples side by side as the processor takes: nothing is left to a compiler that may or may not vectorise a loop. The
 last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `LANES`
 samples, and no function changes a row that it reads.
+
+Designs stand side by side in the same way, with their samples one after the other, and running summaries of these:
+
+    for i0 in in_vectors(first, last, sizes[0]):
+        x5 = parameters[i0]
+        s0 = running("largest_sample", values, 0)
+        for j in each(0, samples):
+            s0.take(profiles[0, j] * x5, j)
+        s0.write_to(single, i0, sizes[0] + i0, angles)
 """
 
 from __future__ import annotations
@@ -27,12 +36,14 @@ from functools import partial
 from types import FunctionType
 from typing import Any
 
-from linksweep.engine.kernel import instructions
+from linksweep.engine.kernel import instructions, running
 from linksweep.engine.kernel.instructions import REGISTER, Instructions
 
 LANES = 2 * REGISTER
 """Samples side by side on processors with the widest registers; the least length of a row."""
-SOURCE = inspect.getsource(sys.modules[__name__]) + instructions.SOURCE
+VECTORS, ONE_BY_ONE = "by vectors", "one by one"
+"""How loops count."""
+SOURCE = inspect.getsource(sys.modules[__name__]) + running.SOURCE + instructions.SOURCE
 """All that enters the machine code besides the functions themselves."""
 
 
@@ -58,6 +69,13 @@ def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
     return instructions.intrinsic(emit, names)
 
 
+def _align_stack(function: Any) -> None:
+    """Let vectors that wait in memory begin with a line of the cache: across two, kernels took up to a third longer,
+    in three processes of four."""
+    function.attributes.alignstack = 64
+    function.attributes.add("nounwind")  # llvmlite writes an alignment beside other attributes only
+
+
 def _operation(name: str, reflected: bool = False) -> Callable[..., _Value]:
     def operation(self: _Value, *others: _Value | float) -> _Value:
         return self.writer.operation(name, *((*others, self) if reflected else (self, *others)))
@@ -66,21 +84,25 @@ def _operation(name: str, reflected: bool = False) -> Callable[..., _Value]:
 
 
 class _Value:
-    """A number, integer or condition in machine code, or a vector of them; operations on it write instructions."""
+    """A number, integer or condition in machine code, or a vector of them; operations on it write instructions.
 
-    def __init__(self, writer: _Writer, llvm: Any) -> None:
-        self.writer, self.llvm = writer, llvm
+    An integer that a loop changes is `counted`: by vectors, or one by one.
+    """
+
+    def __init__(self, writer: _Writer, llvm: Any, counted: str = "") -> None:
+        self.writer, self.llvm, self.counted = writer, llvm, counted
 
     __add__, __radd__ = _operation("+"), _operation("+", reflected=True)
     __sub__, __rsub__ = _operation("-"), _operation("-", reflected=True)
     __mul__, __rmul__ = _operation("*"), _operation("*", reflected=True)
     __truediv__, __rtruediv__ = _operation("/"), _operation("/", reflected=True)
+    __floordiv__ = _operation("//")
     __lt__, __gt__ = _operation("<"), _operation(">")
     __neg__, __abs__ = _operation("negate"), _operation("abs")
 
 
 class _Array:
-    """An array in machine code: elements are loaded and stored, or, within a loop, vectors of rows."""
+    """An array in machine code: elements are loaded and stored, or, where a loop counts by vectors, vectors."""
 
     def __init__(self, writer: _Writer, struct: Any, streamed: bool) -> None:
         self.writer, self.struct, self.streamed = writer, struct, streamed
@@ -92,15 +114,15 @@ class _Array:
     def __setitem__(self, index: Any, value: _Value | float) -> None:
         self.writer.store(value, *self._place(index), self.streamed)
 
-    def _place(self, index: Any) -> tuple[Any, Any]:
-        """Return a pointer to an element, or to the start of a row and the sample of it where a vector begins."""
+    def _place(self, index: Any) -> tuple[Any, _Value | None]:
+        """Return a pointer to an element, or to the start of a row and the place in it that a loop has reached."""
         writer, (*row, last) = self.writer, index if isinstance(index, tuple) else (index,)
-        in_loop = last is writer.sample
+        in_loop = isinstance(last, _Value) and last.counted
         with writer.before_loop():  # where rows start does not change in it
             row_length = [_Value(writer, writer.builder.extract_value(self.struct.shape, 1)) for _ in row]
             start = sum((x * length for x, length in zip(row, row_length, strict=True)), 0 if in_loop else last)
             pointer = writer.builder.gep(self.struct.data, [writer.integer(start)])
-        return pointer, last.llvm if in_loop else None
+        return pointer, last if in_loop else None
 
 
 class _Writer:
@@ -108,15 +130,15 @@ class _Writer:
 
     def __init__(self, builder: Any) -> None:
         self.builder, self.instructions = builder, Instructions(builder, width())
+        _align_stack(builder.function)
         self.head: Any = None
-        """The block before the loop that is being written."""
-        self.sample: _Value | None = None
-        """The first of the samples that the loop works on."""
+        """The block before the outermost loop that is being written."""
 
     def names(self) -> dict[str, Any]:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
-        return {"math": math, "in_vectors": self.in_vectors, "number": self.number} | operations
+        loops = {"in_vectors": self.in_vectors, "each": self.each, "running": self.running}
+        return {"math": math, "number": self.number} | loops | operations
 
     def argument(self, llvm: Any, streamed: bool) -> _Value | _Array:
         return _Array(self, llvm, streamed) if hasattr(llvm, "data") else _Value(self, llvm)
@@ -124,17 +146,31 @@ class _Writer:
     # ------------------------------------------------------------------------------------------ loops
 
     def in_vectors(self, first: _Value | int, last: _Value | int, samples: _Value | int) -> Iterator[_Value]:
-        """Write a loop over the samples, with the instructions that are written until the next value is asked for."""
+        """Write a loop over the samples, with the instructions that are written until the next value is asked for; it
+        yields the first of those in a vector."""
+        builder, step = self.builder, self.integer(self.instructions.width)
+        latest = builder.sub(self._larger(self.integer(samples), self.integer(LANES)), step)
+        for j in self._loop(first, last, step):
+            yield _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest), VECTORS)
+
+    def each(self, first: _Value | int, last: _Value | int, step: _Value | int = 1) -> Iterator[_Value]:
+        """Write a loop over samples one by one, as `in_vectors` does."""
+        for j in self._loop(first, last, self.integer(step)):
+            yield _Value(self, j, ONE_BY_ONE)
+
+    def _loop(self, first: _Value | int, last: _Value | int, step: Any) -> Iterator[Any]:
         from numba.core import cgutils
 
-        builder, step = self.builder, self.integer(self.instructions.width)
-        first, last, samples = map(self.integer, (first, last, samples))
-        latest = builder.sub(self._larger(samples, self.integer(LANES)), step)
-        self.head = builder.block
-        with cgutils.for_range_slice(builder, first, last, step, step.type) as (j, _):
-            self.sample = _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest))
-            yield self.sample
-        self.head = None
+        outermost = self.head is None
+        self.head = self.head or self.builder.block
+        with cgutils.for_range_slice(self.builder, self.integer(first), self.integer(last), step, step.type) as (j, _):
+            yield j
+        self.head = None if outermost else self.head
+
+    def running(self, kind: str, memory: _Array, place: int) -> Any:
+        """Return a summary of samples to come, kept in an array from this place on."""
+        pointer = self.builder.gep(memory.struct.data, [self.integer(place)])
+        return running.KINDS[kind](self.instructions, pointer)
 
     def _larger(self, x: Any, y: Any) -> Any:
         return self.builder.select(self.builder.icmp_signed(">", x, y), x, y)
@@ -151,10 +187,15 @@ class _Writer:
     def operation(self, name: str, *operands: _Value | float) -> _Value:
         values = [x.llvm if isinstance(x, _Value) else x for x in operands]
         if any(getattr(x, "type", None) == self.instructions.integer for x in values):
-            with self.before_loop():
-                whole = {"+": self.builder.add, "*": self.builder.mul}[name]
-                return _Value(self, whole(*(self.integer(x) for x in operands)))
+            return self._whole(name, *operands)
         return _Value(self, self.instructions.operators[name](*values))
+
+    def _whole(self, name: str, *operands: _Value | float) -> _Value:
+        """Write an operation on integers: before the loop, unless the loop counts one of them."""
+        builder, counted = self.builder, {x.counted for x in operands if isinstance(x, _Value) and x.counted}
+        function = {"+": builder.add, "-": builder.sub, "*": builder.mul, "//": builder.sdiv}[name]
+        with nullcontext() if counted else self.before_loop():
+            return _Value(self, function(*(self.integer(x) for x in operands)), *counted)
 
     def number(self, value: float) -> _Value:
         return _Value(self, self.instructions.double(value))
@@ -162,16 +203,18 @@ class _Writer:
     def integer(self, value: _Value | float) -> Any:
         return value.llvm if isinstance(value, _Value) else self.instructions.integer(int(value))
 
-    def load(self, pointer: Any, sample: Any) -> Any:
-        if sample is not None:
-            return self.instructions.load(pointer, sample)
-        with self.before_loop():
-            return self.builder.load(pointer)
+    def load(self, pointer: Any, at: _Value | None) -> Any:
+        if at is None:
+            with self.before_loop():
+                return self.builder.load(pointer)
+        if at.counted == VECTORS:
+            return self.instructions.load(pointer, at.llvm)
+        return self.builder.load(self.builder.gep(pointer, [at.llvm]))
 
-    def store(self, value: _Value | float, pointer: Any, sample: Any, streamed: bool) -> None:
+    def store(self, value: _Value | float, pointer: Any, at: _Value | None, streamed: bool) -> None:
         llvm = value.llvm if isinstance(value, _Value) else value
-        if sample is not None:
-            write = self.instructions.stream if streamed else self.instructions.store
-            write(llvm, pointer, sample)
-        else:
+        if at is None:
             self.builder.store(self.instructions.as_number(llvm), pointer)
+        else:
+            write = self.instructions.stream if streamed else self.instructions.store
+            write(llvm, pointer, at.llvm)

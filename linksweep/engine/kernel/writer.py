@@ -86,6 +86,11 @@ class Writer:
         return node.operator not in ("input", "constant")
 
     @property
+    def unit(self) -> int:
+        """Designs of the outermost loop that are done together."""
+        return 1
+
+    @property
     def scratch_rows(self) -> int:
         return len(self.scratch)
 
@@ -132,19 +137,17 @@ class Writer:
     def counter(self, loop: int) -> str:
         return f"i{loop}"
 
-    def designs(self, level: int) -> Iterator[int]:
-        """Yield the designs that a level processes side by side; names belong to the current one."""
-        yield 0
-
     # ------------------------------------------------------------------------------- functions of arithmetic
 
     def _function(self, name: str, level: int) -> None:
         """Begin a function, and call it with the arguments of the kernel and the counters of the loops."""
         loops = range(level if level < self.innermost else len(self.plan.loops))
-        counters = dict.fromkeys(self.counter(loop) for _ in self.designs(level) for loop in loops)
-        call = f"{name}_{level}({', '.join([ARGUMENTS, *counters])})"
+        self._begin(f"{name}_{level}", [self.counter(loop) for loop in loops], level + 1)
+
+    def _begin(self, name: str, counters: Iterable[str], depth: int) -> None:
+        call = f"{name}({', '.join([ARGUMENTS, *counters])})"
         self.functions += ["", "", "@vectorised", f"def {call}:"]
-        self.write(level + 1, call)
+        self.write(depth, call)
         self.known = set()
 
     def _line(self, depth: int, line: str) -> None:
@@ -163,24 +166,23 @@ class Writer:
         if not work and not singles:
             return
         self._function("values", level)
-        for _ in self.designs(level):
-            self._read_singles({*singles, *_operands(work)} - set(work))
-            for node in work:
-                self._define(1, node, self._expression(node))
-                self._line(1, f"{self._single(node)} = {self.name(node)}")
-            for node in singles:
-                self._line(1, f"single[{self._at('single', self.singles.index(node), node)}] = {self.name(node)}")
+        self._read_singles({*singles, *operands(work)} - set(work))
+        for node in work:
+            self._define(1, node, self._expression(node))
+            self._line(1, f"{self._single(node)} = {self.name(node)}")
+        for node in singles:
+            self._line(1, f"single[{self._at('single', self.singles.index(node), node)}] = {self.name(node)}")
 
-    def _read_singles(self, nodes: Iterable[Node]) -> None:
+    def _read_singles(self, nodes: Iterable[Node], depth: int = 1) -> None:
         """Write the lines that read those of the nodes which depend on no angle."""
         for node in _in_order(nodes):
             if node in self.values or node in self.parameters:
-                self._define(1, node, self._single(node))
+                self._define(depth, node, self._single(node))
 
     def _single(self, node: Node) -> str:
         """Return the place of a number that depends on no angle, or the number itself."""
         if node in self.values:
-            return f"values[{self.value_number(node)}]"
+            return f"values[{self.values[node]}]"
         if node in self.parameters:
             return f"parameters[{self._at('parameter', self.parameters.index(node), node)}]"
         return self.name(node)
@@ -190,18 +192,16 @@ class Writer:
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
         if written:
             work = [node for node in self._needed(written) if self.level(node) == level]
-            read = {*written, *_operands(work)} - set(work)
+            read = {*written, *operands(work)} - set(work)
             self._function("rows", level)
-            for _ in self.designs(level):
-                self._read_singles(read)
+            self._read_singles(read)
             bounds = "0, samples" if self.plan.loops else "first, last"
             self._line(1, f"for j in in_vectors({bounds}, samples):")
-            for _ in self.designs(level):
-                for node in _in_order({*read, *work}):
-                    if self.per_sample(node):
-                        self._define(2, node, self._expression(node) if node in work else self._sample(node))
-                    for cell in self._cells(node) if node in written else ():
-                        self._line(2, f"{cell} = {self.name(node)}")
+            for node in _in_order({*read, *work}):
+                if self.per_sample(node):
+                    self._define(2, node, self._expression(node) if node in work else self._sample(node))
+                for cell in self._cells(node) if node in written else ():
+                    self._line(2, f"{cell} = {self.name(node)}")
 
     def _needed(self, rows: Iterable[Node]) -> list[Node]:
         """Return all operations per sample on which rows depend, of every level."""
@@ -214,30 +214,22 @@ class Writer:
                 waiting.extend(node.operands)
         return _in_order(needed)
 
-    def _sample(self, node: Node) -> str:
+    def _sample(self, node: Node, number: str = "j") -> str:
         """Return the place from which a sample is read."""
         if node in self.scratch:
-            return f"scratch[{self.row_number(node)}, j]"
-        return f"profiles[{self._at('profile', self.profiles.index(node), node)}, j]"
+            return f"scratch[{self.scratch[node]}, {number}]"
+        return f"profiles[{self._at('profile', self.profiles.index(node), node)}, {number}]"
 
     def _cells(self, node: Node) -> Iterator[str]:
         """Yield the places where a sample is stored."""
         if node in self.scratch:
-            yield f"scratch[{self.row_number(node)}, j]"
+            yield f"scratch[{self.scratch[node]}, j]"
         if node in self.rows:
             yield f"block[{self._at('block', self.rows.index(node), node)}, j]"
 
-    def row_number(self, node: Node) -> int:
-        """Return the number of a node's row in scratch."""
-        return self.scratch[node]
-
     def _row(self, node: Node) -> str:
         """Return a node's row of scratch."""
-        return f"scratch[{self.row_number(node)}, :samples]"
-
-    def value_number(self, node: Node) -> int:
-        """Return the place of a node in `values`."""
-        return self.values[node]
+        return f"scratch[{self.scratch[node]}, :samples]"
 
     def _at(self, table: str, k: int, node: Node) -> str:
         """Return the position of a node's value for the current design: row-major over the node's own loops."""
@@ -263,16 +255,15 @@ class Writer:
 
     def _reductions(self, level: int) -> None:
         depth = level + 1
-        for _ in self.designs(level):
-            for k, reduction in enumerate(self.reductions):
-                node = self.plan.outputs[reduction.name]
-                if self.level(node) == level:
-                    self.write(depth, f"value, at = {reduction.kind}({self._row(node)}, angles, work)")
-                    self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
-                    self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
+        for k, reduction in enumerate(self.reductions):
+            node = self.plan.outputs[reduction.name]
+            if self.level(node) == level:
+                self.write(depth, f"value, at = {reduction.kind}({self._row(node)}, angles, work)")
+                self.write(depth, f"single[{self._at('single', 2 * k, node)}] = value")
+                self.write(depth, f"single[{self._at('single', 2 * k + 1, node)}] = at")
 
 
-def _operands(nodes: Iterable[Node]) -> set[Node]:
+def operands(nodes: Iterable[Node]) -> set[Node]:
     return {x for node in nodes for x in node.operands}
 
 

@@ -29,11 +29,12 @@ from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCod
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
+from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
 
 Values = dict[Node, Any]
 """Values of nodes: numbers, arrays, or instructions that compute vectors."""
-SOURCE = inspect.getsource(sys.modules[__name__])
+SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(parities)
 """All that enters the machine code besides nodes and instructions."""
 TANGENT, FAR = "half_tangent", "far_half"
 """Inputs that place a sample: the tangent of half its angle from the middle of its half turn, and which half."""
@@ -42,9 +43,6 @@ ALONG, END = "piece_tangent", "piece_end"
 the angle from the piece's start or end, and which of the two."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
-
-
-SUMS = {"+", "-", "sum_low", "difference_low", "ordered_low"}
 
 
 class Functions(NamedTuple):
@@ -175,22 +173,7 @@ class Evaluators:
     @cached_property
     def parity(self) -> dict[Node, int]:
         """1 for nodes with the same value at opposite tangents, −1 for those with opposite ones, else 0."""
-        parity: dict[Node, int] = {}
-        for node in self.plan.nodes:
-            x = [parity[operand] for operand in node.operands]
-            if not x:
-                parity[node] = -1 if node is self.tangent else 1
-            elif node.operator in ("*", "/", "product_low"):
-                parity[node] = x[0] * x[1]
-            elif node.operator == "negate" or (node.operator in SUMS and x[0] == x[1]):
-                parity[node] = x[0]
-            elif node.operator == "where" and x[0] == 1 and x[1] == x[2]:
-                parity[node] = x[1]
-            elif node.operator == "abs":
-                parity[node] = x[0] * x[0]
-            else:
-                parity[node] = 1 if all(each == 1 for each in x) else 0
-        return parity
+        return parities(self.plan.nodes, {self.tangent: -1})
 
     def _emit_evaluate(
         self, builder: Any, constants: Any, table: Any, x: Any, value: Any, far: Any, signal: Any, first: Any, last: Any
