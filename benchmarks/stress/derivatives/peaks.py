@@ -2,7 +2,7 @@
 
 A smooth peak is the vertex of a parabola through three points so close that it is exact to 20 digits, of each moved
 scene its own. One beside a jump lies where a velocity is zero, at that angle of each moved scene, or at an angle that
-stays; its value is that on the side where linksweep finds it.
+stays; its value is that on the side where linksweep finds it, or at the jump itself, where a slide stands still.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ import linksweep as ls
 from benchmarks.stress.decimals import Array, exactly, fifty_digits
 from benchmarks.stress.derivatives.loads import dead_centres, level_of
 from benchmarks.stress.derivatives.machine import near_pins, results
-from benchmarks.stress.derivatives.numbers import Numbers, over_designs, some, turning_point
+from benchmarks.stress.derivatives.numbers import AtRest, Numbers, over_designs, some, turning_point
 from benchmarks.stress.derivatives.samples import parameters_of
 from benchmarks.stress.linkages.multibody import Unsolved
 from linksweep.results.derivatives.of_peaks import MEANINGS, OK
@@ -92,9 +93,10 @@ def _errors(
     numbers = Numbers(scene, paths, STEP)
     pins = near_pins(scene, at)
 
-    def every(theta2: Array) -> Mapping[str, Array]:
-        return results(numbers, theta2, pins)
+    def every(theta2: Array, of: Numbers = numbers) -> Mapping[str, Array]:
+        return results(of, theta2, pins)
 
+    at_rest = partial(every, of=AtRest(scene, paths, STEP))
     with fifty_digits():
         try:
             start = numbers.columns(exactly(at))
@@ -102,7 +104,7 @@ def _errors(
             smooth = _alike(numbers, height, value) & (np.abs(numbers.middle(place).astype(float) - at) < NEAR)
             known = smooth
             if not smooth.all():
-                beside = _beside_jumps(numbers, every, stem, start, value)
+                beside = _beside_jumps(numbers, every, at_rest, stem, start, value)
                 known = smooth | _alike(numbers, beside, value)
                 height = np.where(numbers.columns(smooth), height, beside)
         except (Unsolved, np.linalg.LinAlgError, ZeroDivisionError):
@@ -118,8 +120,9 @@ def _alike(numbers: Numbers, height: Array, value: Array) -> Array:
     return np.abs(numbers.middle(height).astype(float) - value) <= SAME * np.abs(value)
 
 
-def _beside_jumps(numbers: Numbers, every: Every, stem: str, start: Array, value: Array) -> Array:
-    """Return the values beside the jumps and bends near these angles, on the sides where they are nearest to the peaks.
+def _beside_jumps(numbers: Numbers, every: Every, at_rest: Every, stem: str, start: Array, value: Array) -> Array:
+    """Return the values beside the jumps and bends near these angles, on the sides where they are nearest to the peaks,
+    or between them, where the slides stand still and do not rub.
 
     NaN where none is near.
     """
@@ -135,9 +138,11 @@ def _beside_jumps(numbers: Numbers, every: Every, stem: str, start: Array, value
             zero = _zero(lambda theta2, name=name, level=level: every(theta2)[name] - np.tile(level, 2), start + away)
             place = np.where(here, zero, place)
     known = ~np.isnan(place.astype(float))
-    sides = [every(np.where(known, place, start) + side)[stem] for side in (-BESIDE, BESIDE)]
+    near = np.where(known, place, start)
+    sides = np.stack([of(near + side)[stem] for of in (every, at_rest) for side in (-BESIDE, BESIDE)])
     away = [np.abs(numbers.middle(side).astype(float) - value) for side in sides]
-    return np.where(known, np.where(numbers.columns(away[0] < away[1]), *sides), exactly(np.nan))
+    nearest = np.take_along_axis(sides, numbers.columns(np.argmin(away, axis=0))[None], axis=0)[0]
+    return np.where(known, nearest, exactly(np.nan))
 
 
 def events(numbers: Numbers, known: Mapping[str, Array]) -> Iterator[tuple[str, Array]]:

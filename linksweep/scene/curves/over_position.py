@@ -117,6 +117,9 @@ def _looked_up(
 
 def _called(path: str, function: Any, rule: Rule, positions: np.ndarray) -> np.ndarray:
     known = np.isfinite(positions)
+    loads = np.full(known.shape, np.nan)
+    if not known.any():  # it is assembled at none of the angles
+        return loads
     try:
         values = np.broadcast_to(np.asarray(function(positions[known])), known.sum())
     except Exception as error:
@@ -126,6 +129,5 @@ def _called(path: str, function: Any, rule: Rule, positions: np.ndarray) -> np.n
             f"write it with numpy, as in lambda x: np.where(x < 0.012, -5000.0, 0.0)"
         ) from error
     refuse(number_problems(path, xr.DataArray(values, dims=POSITION), rule))
-    loads = np.full(known.shape, np.nan)
     loads[known] = values
     return loads

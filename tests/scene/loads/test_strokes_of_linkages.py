@@ -231,6 +231,22 @@ def test_other_words_are_refused(words, message):
         knuckle_press(push("ram", **words))
 
 
+def test_a_function_of_a_position_of_a_machine_that_moves_on_an_arc_alone():
+    """At 0 degrees it is not assembled; the function is the table's line."""
+    line = xr.DataArray([0.0, -120.0], {"position": [0.0, 0.6]}, "position")
+    parts = {"crank": ls.Link(0.3, 1.0, 0.01), "rod": ls.Link(0.2, 1.0, 0.01), "ram": ls.Slider(3.0)}
+    machine = ls.Linkage(
+        "crank A-B, rod B-C, ram C on slide",
+        ground={"A": (0.0, 0.0)},
+        guides={"slide": ls.Guide(through=(0.0, 0.35))},
+        **parts,
+    )
+    loads = (ls.Load("ram", force=(force, 0.0), over="ram.to_end") for force in (line, lambda x: -200.0 * x))
+    by_table, by_function = (ls.sweep(ls.Scene(machine, 3.0, loads=[load]), [0.0, 60.0]).T12 for load in loads)
+    assert by_table.isnull().values.tolist() == [True, False]
+    np.testing.assert_allclose(by_function, by_table, rtol=1e-13)
+
+
 def test_both_branches_are_refused():
     both = replace(knuckle_press(push("ram")).mechanism, branch={"C": "both"})
     with pytest.raises(ValueError, match=r'over = .ram.to_end.: is a position of one branch; give branch.C="open"'):
