@@ -18,6 +18,7 @@ from linksweep.plot.kit.style import axes_or_new, crank_angles, grid, legend_abo
 from linksweep.results.compute import require_dataset
 from linksweep.results.origin.in_shown_units import results_in_shown_units, units_of
 from linksweep.results.sweep import sweep
+from linksweep.scene.shown_units import UnitSystem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -250,7 +251,7 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     Returns
     -------
     matplotlib Axes
-        Axes with the path in red where the motor is too weak.
+        Axes with the path in red where the motor is too weak, and the exact least margin of the torque.
 
     Raises
     ------
@@ -266,9 +267,10 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     'motor speed [rad/s]'
     """
     require_dataset(ds, "ls.motor_load")
-    refuse([] if "motor_torque" in ds else ["ds has no motor_torque: take what ls.motor_load returns"])
+    known = {"motor_torque", "torque_margin_min"} <= ds.keys()
+    refuse([] if known else ["ds has no motor_torque: take what ls.motor_load returns"])
     signals.require_angles(ds)
-    system, ds = units_of(ds), results_in_shown_units(ds)
+    results, system, ds = ds, units_of(ds), results_in_shown_units(ds)
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])
     ax = grid(axes_or_new(ax))
     side = -1.0 if np.nanmean(speed) < 0.0 else 1.0
@@ -281,20 +283,27 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     if (margin < 0.0).any():
         ax.plot(speed, np.where(margin < 0.0, torque, np.nan), color=VERMILION, linewidth=2.4, label="too much")
     ax.axhline(0.0, color=GREY, linewidth=0.8)
-    _worst(ax, speed, torque, margin, system.unit("N m"))
+    _least_margin(ax, results, motor, system)
     ax.set(xlabel=f"motor speed [{system.unit('rad/s')}]", ylabel=f"motor torque [{system.unit('N m')}]")
     ax.margins(y=0.12)
     ax.legend(fontsize="small", frameon=False)
     return ax
 
 
-def _worst(ax: Axes, speed: np.ndarray, torque: np.ndarray, margin: np.ndarray, unit: str) -> None:
+def _least_margin(ax: Axes, ds: xr.Dataset, motor: AnyMotor, system: UnitSystem) -> None:
+    """Mark the exact least margin of a motor's torque, of results in SI units."""
     from linksweep.plot.kit.labels import label
 
-    k = int(np.nanargmin(margin))
-    color = VERMILION if margin[k] < 0.0 else BLUE
-    ax.plot([speed[k]], [torque[k]], "o", color=color, markersize=4.5, label="_worst")
-    label(ax, speed[k], torque[k], (f"least margin {signals.number(margin[k])} {unit}", color))
+    angles, speeds, torques = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"])
+    place, margin = float(ds["torque_margin_min_at"]), float(ds["torque_margin_min"])
+    if not (angles[0] <= place <= angles[-1] and np.isfinite(margin)):  # of a cycle that was cut
+        return
+    speed, side = np.interp(place, angles, speeds), np.sign(np.interp(place, angles, torques))
+    x, y = system.value(speed, "rad/s"), system.value(side * (float(motor.torque_at(abs(speed))) - margin), "N m")
+    color = VERMILION if margin < 0.0 else BLUE
+    ax.plot([x], [y], "o", color=color, markersize=4.5, label="_worst")
+    text = f"least margin {signals.number(float(system.value(margin, 'N m')))} {system.unit('N m')}"
+    label(ax, x, y, (text, color))
 
 
 def run_up(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:

@@ -122,7 +122,7 @@ def _raise(peak: SignalPeak, at: Array, best: Array, best_angle: Array, best_bou
 # ------------------------------------------------------------------------------------- lanes about summits
 
 
-def highest(group: Group, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
+def highest(group: Any, signals: tuple[str, ...], paths: Paths, current: Array, threads: int | None) -> Best:
     """Return the highest of each signal on each path; lanes that cannot exceed `current` (path, signal) are dropped."""
     best = _search(group, signals, paths, current, threads)
     return best if paths.steps is None else _with_limits(group, signals, paths, best, threads)

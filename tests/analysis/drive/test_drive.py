@@ -287,6 +287,46 @@ def test_a_gear_with_losses_by_hand(torque, needed):
     np.testing.assert_allclose(motor.reflected_inertia, 1e-4 * 100.0)
 
 
+@pytest.mark.parametrize(
+    ("theta2", "margin", "at"),
+    [
+        (7, -0.25, (45.0, 225.0)),
+        (np.linspace(-60.0, 30.0, 5), 1.0 - (4.0 + 3.0 * np.sqrt(3.0)) / 8.0, (30.0,)),
+        ([100.0], 1.0 - (4.0 - 6.0 * np.sin(np.radians(20.0))) / 8.0, (100.0,)),
+    ],
+)
+def test_the_least_margin_is_that_between_the_samples(theta2, margin, at):
+    """4 + 6 sin 2θ through 10:1 and 80 % is an eighth of it; the motor gives 1 N m at 200 rad/s."""
+    load = ls.Load("crank", torque=lambda angle: -4.0 - 6.0 * np.sin(np.radians(2.0 * angle)))
+    scene = ls.Scene(ls.FourBar(*LIGHT, ground=0.2), 20.0, loads=[load])
+    motor = ls.motor_load(scene, DC, ratio=10.0, efficiency=0.8, theta2=theta2)
+    np.testing.assert_allclose(motor.torque_margin_min, margin, rtol=1e-10)
+    assert np.min(np.abs(motor.torque_margin_min_at.item() - np.array(at))) < 1e-4
+
+
+def test_least_margins_of_several_designs_motors_and_gears_by_dense_samples():
+    """The third frame lets the crank turn to toggles alone, at which the torque grows without bound."""
+    weak = ls.DCMotor(stall_torque=xr.DataArray([3.0, 2.0], dims="motor"), no_load_speed=400.0, inertia=1e-3)
+    ground = xr.DataArray([0.2, 0.205, 0.05], dims="frame")
+    scene = ls.Scene(replace(FOUR_BAR, ground=ground), 20.0, 300.0, gravity=(0.0, -9.81), loads=[SPRING])
+    request = {"ratio": xr.DataArray([5.0, 10.0, 15.0], dims="ratio"), "efficiency": 0.9}
+    result = ls.motor_load(scene, weak, theta2=36, **request)
+    dense = ls.motor_load(scene, weak, theta2=14400, **request).torque_margin.min("theta2")
+    least, whole = result.torque_margin_min.transpose(*dense.dims), {"frame": slice(2)}
+    assert np.isneginf(least.isel(frame=2)).all()
+    np.testing.assert_allclose(least.isel(whole), dense.isel(whole), rtol=1e-5)
+    assert (least <= dense + 1e-9).all()
+
+
+def test_a_motor_on_the_rocker_has_no_least_margin_over_its_dead_centres():
+    scene = ls.Scene(FOUR_BAR, 20.0, gravity=(0.0, -9.81), drive="rocker")
+    assert np.isneginf(ls.motor_load(scene, DC, theta2=36).torque_margin_min)
+    part = ls.motor_load(scene, DC, ratio=5.0, theta2=np.linspace(70.0, 110.0, 9))
+    dense = ls.motor_load(scene, DC, ratio=5.0, theta2=np.linspace(70.0, 110.0, 40001)).torque_margin
+    np.testing.assert_allclose(part.torque_margin_min, dense.min(), rtol=1e-7)
+    np.testing.assert_allclose(part.torque_margin_min_at, dense.idxmin("theta2"), atol=1e-3)
+
+
 def test_a_motor_on_the_rocker_with_several_ratios():
     ratio = xr.DataArray([5.0, 10.0], dims="ratio")
     scene = ls.Scene(FOUR_BAR, 20.0, drive="rocker")
@@ -339,6 +379,7 @@ def test_the_plots_show_the_results():
     ax = ls.plot.motor_load(load, weak)
     assert "too much" in [text.get_text() for text in ax.get_legend().get_texts()]
     (speed,), (torque,) = line(ax, "_worst").get_data()
-    worst = load.isel(theta2=int(np.argmin(load.torque_margin.values)))
-    assert (speed, torque) == (worst.motor_speed, worst.motor_torque)
-    assert f"{float(worst.torque_margin):.4g}".replace("-", "−") in texts(ax)[0]
+    worst = ls.motor_load(ls.example("press"), weak, ratio=10.0, theta2=[float(load.torque_margin_min_at)])
+    np.testing.assert_allclose([speed, torque], [worst.motor_speed.item(), worst.motor_torque.item()], rtol=1e-9)
+    np.testing.assert_allclose(load.torque_margin_min, worst.torque_margin_min, rtol=1e-9)
+    assert f"{float(load.torque_margin_min):.4g}".replace("-", "−") in texts(ax)[0]
