@@ -74,7 +74,8 @@ def test_a_linkage_gives_what_the_named_machine_gives(pair, name):
             values = values.reindex_like(expected)
         if "frame" in expected.dims:
             values, expected = (array.sel(frame="ground") for array in (values, expected))
-        np.testing.assert_allclose(values.values, expected.values, rtol=1e-9, atol=1e-9, err_msg=key)
+        angle = 1e-5 if key.endswith("_at") else 0.0  # degrees: what the search for peaks promises of an angle
+        np.testing.assert_allclose(values.values, expected.values, rtol=1e-9, atol=1e-9 + angle, err_msg=key)
 
 
 def test_shares_of_the_sources_add_up_to_each_force_of_a_six_bar():
