@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+FINE = 41
+"""Sections between the neighbours of the worst one: they miss its moment by a millionth at most."""
+
 
 def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     """Plot the bending moment along a link at its worst crank angle, and its envelope over the cycle.
@@ -41,7 +45,8 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     -------
     matplotlib Axes
         Axes with the link as a thick line, its pins as circles, and the moment over the distance from its first pin, in
-        N m over mm unless other units were chosen. The envelope is the exact largest and least moment of each section.
+        N m over mm unless other units were chosen. The envelope is the exact largest and least moment of each section;
+        the largest of all is marked.
 
     Raises
     ------
@@ -60,11 +65,13 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     (role,) = beams_of(scene, [link])
     system = shown_units(scene.units)
     unit, size = (system.unit("m"), system.size("m")) if system.chosen else ("mm", 1e-3)
-    along = _at_sections(scene, role)
+    name = f"bending_moment{2 + scene.mechanism.roles.index(role)}"
+    coarse = _at_sections(scene, role)
+    along = _at_sections(scene, role, _beside(coarse, _worst_moments(coarse, name).section))
     start, stop = (end / size for end in _ends(scene, role))
     x = start + (stop - start) * along.section.values
-    worst = _worst_moments(along, f"bending_moment{2 + scene.mechanism.roles.index(role)}")
-    moment, top, low = (system.value(moments, "N m") for moments in worst[1:])
+    worst = _worst_moments(along, name)
+    moment, top, low = (system.value(each, "N m") for each in (worst.moment, worst.largest, worst.least))
     ax = grid(axes_or_new(ax))
     ax.fill_between(x, moment, color=SKY, alpha=0.5, linewidth=0.0)
     ax.plot(x, moment, color=BLUE, label=f"at $\\theta_2$ = {worst.angle:.1f}°")
@@ -73,8 +80,9 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
     ax.plot([start, stop], [0.0, 0.0], color=BLACK, linewidth=2.5, solid_capstyle="round")
     pins = np.array([0.0, float(scene.mechanism.parts[role].length), *scene.mechanism.third_pins_along(role)]) / size
     ax.plot(pins, np.zeros_like(pins), "o", color=BLACK, markerfacecolor="white", markersize=6.0)
-    largest, torque = moment[np.nanargmax(np.abs(moment))], system.unit("N m")
-    ax.set_title(f"{role}: {signals.number(largest)} {torque}", loc="right")
+    torque = system.unit("N m")
+    ax.plot(x[worst.section], moment[worst.section], "o", color=BLUE, markersize=4.5, label="_worst")
+    ax.set_title(f"{role}: {signals.number(moment[worst.section])} {torque}", loc="right")
     ax.set(xlabel=f"distance from the first pin [{unit}]", ylabel=f"bending moment [{torque}]")
     ax.margins(y=0.15)
     legend_above(ax, ncols=2)
@@ -82,8 +90,10 @@ def moment_diagram(scene: Scene, link: str, *, ax: Axes | None = None) -> Axes:
 
 
 class WorstMoments(NamedTuple):
-    """Bending moments of sections [N m] at the worst crank angle [degree], and their extremes over the cycle."""
+    """Bending moments of sections [N m] at the worst crank angle [degree], and their extremes over the cycle; `section`
+    is the number of the section that bears the largest."""
 
+    section: int
     angle: float
     moment: np.ndarray
     largest: np.ndarray
@@ -99,7 +109,7 @@ def _worst_moments(along: Scene, name: str) -> WorstMoments:
     k = int(np.nanargmax(np.abs(values)))
     at = float(worst[f"{name}_{end}_at"].broadcast_like(along.section).values[k])
     moment = sweep(along, [at], of=[name])[name].isel(theta2=0).broadcast_like(along.section).values
-    return WorstMoments(at, moment, top, low)
+    return WorstMoments(k, at, moment, top, low)
 
 
 def moment_diagrams(scene: Scene) -> Figure:
@@ -134,10 +144,17 @@ def moment_diagrams(scene: Scene) -> Figure:
     return figure
 
 
-def _at_sections(scene: Scene, role: str) -> Scene:
-    """Return the scene with sections along a link, and on either side of each force on it."""
+def _at_sections(scene: Scene, role: str, more: Sequence[float] = ()) -> Scene:
+    """Return the scene with sections along a link, on either side of each force on it, and at `more` places."""
     at_forces = [float(share) for share in marks(scene, role)]
-    return replace(scene, section=places(np.unique([*np.linspace(0.0, 1.0, COUNT), *at_forces])))
+    return replace(scene, section=places(np.unique([*np.linspace(0.0, 1.0, COUNT), *at_forces, *more])))
+
+
+def _beside(along: Scene, section: int) -> Sequence[float]:
+    """Return places between the neighbours of a section: the moment bends between two of them."""
+    shares = along.section.values
+    ends = shares[max(section - 1, 0)], shares[min(section + 1, len(shares) - 1)]
+    return np.linspace(*ends, FINE).tolist()
 
 
 def _ends(scene: Scene, role: str) -> tuple[float, float]:

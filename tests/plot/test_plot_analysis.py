@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from drawn import closed_figures, line, texts  # noqa: F401
 
 import linksweep as ls
@@ -156,3 +157,15 @@ def test_a_balanced_force_is_drawn_as_zero():
     for ax in figure.axes:
         frame, legend = ax.get_window_extent(), ax.get_legend().get_window_extent()
         assert frame.x0 < legend.x0 and legend.x1 < frame.x1
+
+
+@pytest.mark.parametrize("loads", [(), ls.example("press").loads], ids=["by inertia", "at the load"])
+def test_the_largest_moment_is_marked_between_the_sections(loads):
+    scene = replace(ls.example("press"), loads=loads)
+    ax = ls.plot.moment_diagram(scene, "coupler")
+    shares = np.linspace(0.0, 1.0, 2001)
+    dense = replace(scene, section=xr.DataArray(shares, {"section": shares}, "section"))
+    largest = ls.peaks(dense, of=["bending_moment3"]).bending_moment3_peak.max()
+    (marked,) = line(ax, "_worst").get_ydata()
+    np.testing.assert_allclose(abs(marked), largest, rtol=2e-4 if loads else 1e-6)
+    assert f"{abs(marked):.4g} N m" in ax.get_title("right")
