@@ -52,6 +52,8 @@ def add_motor(parser: argparse.ArgumentParser, *, required: bool = True) -> None
     text = f'kind and numbers, as in dc stall_torque="10 N m" no_load_speed="1500 rpm"; {kinds}; of each its inertia'
     parser.add_argument("--motor", nargs="+", required=required, metavar=("KIND", "NAME=VALUE"), help=text)
     parser.add_argument("--ratio", type=float, default=1.0, help="speed of the motor per that of the crank (1)")
+    lossy = "efficiency of the gear (1)"
+    parser.add_argument("--efficiency", type=float, default=1.0, metavar="ETA", help=lossy)
     wheel = 'moment of inertia of a flywheel on the crank, such as "0.2 kg m^2" (0)'
     parser.add_argument("--flywheel", type=a_number("inertia"), default=0.0, metavar="INERTIA", help=wheel)
 
@@ -124,7 +126,7 @@ def _run_down(options: argparse.Namespace) -> None:
 
 
 def _train(options: argparse.Namespace) -> dict[str, Any]:
-    return {"ratio": options.ratio, "flywheel": options.flywheel}
+    return {"ratio": options.ratio, "flywheel": options.flywheel, "efficiency": options.efficiency}
 
 
 def _run(options: argparse.Namespace) -> dict[str, Any]:

@@ -48,6 +48,7 @@ STEADY = {  # title by variable, and the variable beside which less than 1e-12 i
     "motor_power_min": ("motor power, least", "motor_power_max"),
     "motor_power_mean": ("motor power, mean", "motor_power_max"),
     "motor_work": ("work of the motor in a cycle", "motor_power_max"),
+    "gear_loss": ("lost in the gear in a cycle", "motor_power_max"),
     "motor_heat_mean": ("heat in the motor", "motor_power_max"),
     "cycle_time": ("time of a cycle", "cycle_time"),
 }
@@ -61,8 +62,8 @@ def steady_table(cycle: xr.Dataset) -> Table:
     rows: list[Row] = []
     for name, (title, beside) in STEADY.items():
         number, size = float(cycle[name]), abs(float(cycle[beside]))
-        if np.isfinite(number):
-            size *= float(cycle["cycle_time"]) if name == "motor_work" else 1.0
+        if np.isfinite(number) and not (name == "gear_loss" and number == 0.0):
+            size *= float(cycle["cycle_time"]) if name in ("motor_work", "gear_loss") else 1.0
             rows.append((title, without_rounding(number, size), unit_of(cycle[name]).removesuffix("1")))
     return Table(("on its motor", "", ""), rows, right=(1,))
 

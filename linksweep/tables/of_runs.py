@@ -16,6 +16,7 @@ NUMBERS = {
     "operating_speed": "speed of the operating point",
     "motor_work": "work of the motor",
     "motor_heat": "heat in the motor",
+    "gear_loss": "lost in the gear",
     "kinetic_energy": "kinetic energy",
 }
 """Title of each number of a run."""
@@ -39,7 +40,8 @@ def run_parts(ds: xr.Dataset) -> Iterator[Part]:
         ends = [(name, ds[name].isel(step=last)) for name in ("time", "angle", "speed")]
         yield Table(("where it ends", "", ""), [_row(title, value) for title, value in ends], right=(1,))
         return
-    rows = [_row(title, ds[name]) for name, title in NUMBERS.items() if name in ds and np.isfinite(float(ds[name]))]
+    known = {name: float(ds[name]) for name in NUMBERS if name in ds}
+    rows = [_row(NUMBERS[name], ds[name]) for name, number in known.items() if np.isfinite(number) and number != 0.0]
     yield Table(("the run", "", ""), rows, right=(1,))
     names = [str(name) for name in ds.data_vars if f"{name}_at" in ds]
     header = ("largest on the way", "value", "unit", "at time", "at theta2")

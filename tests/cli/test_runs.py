@@ -21,13 +21,14 @@ def folder(tmp_path, monkeypatch):
 
 def test_run_up_prints_the_table_and_writes_the_steps_and_their_figure(tmp_path, capsys):
     """Each option reaches the run, in its unit."""
-    options = ["--ratio", "5", "--flywheel", "500 kg cm^2", "--until", "0.5", "--start", "0.5 rad", "--of", "F32,T12"]
+    gear = ["--ratio", "5", "--efficiency", "0.9"]
+    options = [*gear, "--flywheel", "500 kg cm^2", "--until", "0.5", "--start", "0.5 rad", "--of", "F32,T12"]
     assert main(["run-up", "press", *DC, *options, "-o", "run.nc", "--plot", "run.svg"]) == 0
-    train = {"ratio": 5.0, "flywheel": 0.05}
+    train = {"ratio": 5.0, "efficiency": 0.9, "flywheel": 0.05}
     run = ls.run_up(PRESS, ls.DCMotor(6.0, 160.0), **train, until=0.5, start="0.5 rad", of=["F32", "T12"])
     out = capsys.readouterr().out
     assert out == f"{run.linksweep}\n\nwritten: run.nc\n\nwritten: run.svg\n"
-    assert "it takes" in out and "heat in the motor" in out and "F32_peak" in out
+    assert "it takes" in out and "heat in the motor" in out and "lost in the gear" in out and "F32_peak" in out
     assert (tmp_path / "run.svg").read_text("utf-8").count("<path") > 20
     with xr.open_dataset("run.nc") as ds:
         np.testing.assert_array_equal(ds.speed, run.speed)

@@ -47,11 +47,12 @@ def test_the_help_has_every_number_of_every_kind():
 def test_steady_prints_the_table_and_writes_the_cycle_and_its_figure(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     files = ["-o", "cycle.nc", "--plot", "cycle.svg"]
-    train = ["--ratio", "5", "--flywheel", "2000 kg cm^2", "--theta2", "72"]
+    train = ["--ratio", "5", "--efficiency", "0.9", "--flywheel", "2000 kg cm^2", "--theta2", "72"]
     assert main(["steady", "press", *DC, *train, *files]) == 0
     motor = ls.DCMotor("53.1 lbf in", 160.0)
-    cycle = ls.steady_cycle(PRESS, motor, ratio=5.0, flywheel=0.2, theta2=72)
-    assert capsys.readouterr().out == f"{cycle.linksweep}\n\nwritten: cycle.nc\n\nwritten: cycle.svg\n"
+    cycle = ls.steady_cycle(PRESS, motor, ratio=5.0, efficiency=0.9, flywheel=0.2, theta2=72)
+    out = capsys.readouterr().out
+    assert "lost in the gear" in out and out == f"{cycle.linksweep}\n\nwritten: cycle.nc\n\nwritten: cycle.svg\n"
     assert (tmp_path / "cycle.svg").read_text("utf-8").count("<path") > 30
     with xr.open_dataset(tmp_path / "cycle.nc") as ds:
         np.testing.assert_array_equal(ds.omega2, cycle.omega2)

@@ -4,10 +4,12 @@ The drive of a machine that turns at ω with α must give the torque T(θ, ω, �
 it: it has the inertia of all links in it (Eksergian's J α + ½ J' ω²), weights, loads, springs, dampers and friction. A
 motor behind a gear of the ratio i, and the inertias J_s on the crank's shaft, give
 
-    T(θ, ω, α) + J_s α = i M(i ω),        J_s = J_flywheel + i² J_rotor
+    T(θ, ω, α) + J_s α + L = i M(i ω),        J_s = J_flywheel + i² J_rotor
 
-an equation for α at each angle and speed. T and its exact derivatives to ω and α come from one kernel, so no term of it
-is written a second time here. Source: R. Eksergian, Dynamical Analysis of Machines (1930).
+an equation for α at each angle and speed. A gear of the efficiency η passes the torque P = i M − i² J_rotor α to the
+crank's shaft and takes from it L = (1 − η) P where the motor drives, L = (1 − 1/η) P where the machine does. T and its
+exact derivatives to ω and α come from one kernel, so no term of it is written a second time here. Source: R. Eksergian,
+Dynamical Analysis of Machines (1930).
 
 For `steady_cycle` and `run_up`: `drive_train` checks a request, `DriveTrain.at` takes any list of angles, `balance` and
 `acceleration` evaluate arrays (*designs, angles). Speed and acceleration are those along the crank's travel φ, which
@@ -41,6 +43,7 @@ from linksweep.scene.scene import Scene
 
 RATIO = Rule("dimensionless", above=0.0)
 INERTIA = Rule("inertia", at_least=0.0)
+EFFICIENCY = Rule("dimensionless", above=0.0, at_most=1.0)
 ROUNDS = 8
 """Newton steps for an acceleration: the torque is a straight line over it, with corners where friction turns round."""
 
@@ -48,7 +51,7 @@ Array = np.ndarray
 
 
 class Balance(NamedTuple):
-    """Torque on the crank that is lacking, T + J_s α − i M [N m], and its derivatives to speed and acceleration."""
+    """Torque on the crank that is lacking, T + J_s α + L − i M [N m], and its derivatives to speed and acceleration."""
 
     lack: Array
     to_speed: Array
@@ -63,6 +66,7 @@ class DriveTrain:
     ----------
     scene : scene whose omega2 is the speed at which the motor no longer drives, over all designs, and alpha2 is 0
     motor, ratio, flywheel : motor, its speed per that of the crank, inertia of the flywheel on the crank's shaft
+    efficiency : efficiency of the gear
     direction : 1 for a crank that turns counter-clockwise, -1 for clockwise
     threads : largest number of threads; None for all cores
     plans : plans of the torque that have been made, by the forms of their inputs: one for all angles and blocks
@@ -72,6 +76,7 @@ class DriveTrain:
     motor: AnyMotor
     ratio: Number
     flywheel: Number
+    efficiency: Number
     direction: float
     threads: int | None = None
     plans: dict[InputForms, Plan] = field(default_factory=dict)
@@ -126,13 +131,30 @@ class DriveTrain:
         def some(array: xr.DataArray) -> xr.DataArray:
             return array.isel({dim: part for dim, part in block.items() if dim in array.dims})
 
-        motor, ratio, flywheel = (with_arrays(each, some) for each in (self.motor, self.ratio, self.flywheel))
-        return replace(self, scene=selected(self.scene, block), motor=motor, ratio=ratio, flywheel=flywheel)
+        names = ("motor", "ratio", "flywheel", "efficiency")
+        return replace(
+            self, scene=selected(self.scene, block), **{name: with_arrays(getattr(self, name), some) for name in names}
+        )
 
     @cached_property
     def plain_ratio(self) -> Array:
         """Ratio over the designs."""
         return self.over_designs(bare(self.ratio))
+
+    @cached_property
+    def rotor_inertia(self) -> Array:
+        """Inertia of the rotor at the crank's shaft, i² J_rotor [kg m²], over the designs."""
+        return self.plain_ratio**2 * self.over_designs(bare(self.motor.inertia))
+
+    @cached_property
+    def lossless(self) -> bool:
+        """Whether the gear of no design takes anything."""
+        return bool(np.all(np.asarray(self.efficiency) == 1.0))
+
+    @cached_property
+    def plain_efficiency(self) -> Array:
+        """Efficiency of the gear over the designs."""
+        return self.over_designs(bare(self.efficiency))
 
     @cached_property
     def plain_motor(self) -> AnyMotor:
@@ -147,6 +169,11 @@ class DriveTrain:
         """Return the derivative of that torque to the speed of the crank, i²·M'(i·ω) [N m s/rad]."""
         ratio = self.plain_ratio
         return ratio * ratio * self.plain_motor.torque_slope_at(ratio * speed)
+
+    def gear_loss(self, speed: Array, acceleration: Array) -> Array:
+        """Return the torque on the crank's shaft that the gear takes [N m], never negative."""
+        passed = self.drive_torque(speed) - self.rotor_inertia * acceleration
+        return lost_part(passed, self.plain_efficiency) * passed
 
     def motor_heat(self, speed: Array) -> Array:
         """Return the power that the motor turns into heat [W]."""
@@ -185,9 +212,14 @@ class TrainAtAngles:
             np.broadcast_to(aligned(fields[name], dims), speed.shape) for name in train.names
         )
         lack = sign * torque + train.shaft_inertia * acceleration
-        if powered:
-            lack, to_speed = lack - train.drive_torque(speed), to_speed - train.drive_slope(speed)
-        return Balance(lack, to_speed, to_acceleration + train.shaft_inertia)
+        to_acceleration = to_acceleration + train.shaft_inertia
+        given, slope = (train.drive_torque(speed), train.drive_slope(speed)) if powered else (0.0, 0.0)
+        lack, to_speed = lack - given, to_speed - slope
+        if train.lossless:
+            return Balance(lack, to_speed, to_acceleration)
+        passed = given - train.rotor_inertia * acceleration
+        part = lost_part(passed, train.plain_efficiency)
+        return Balance(lack + part * passed, to_speed + part * slope, to_acceleration - part * train.rotor_inertia)
 
     def acceleration(self, speed: Array, *, powered: bool = True) -> Array:
         """Return the acceleration that the motor's torque gives the machine at a speed [rad/s²]."""
@@ -214,22 +246,31 @@ class TrainAtAngles:
         return plans[forms]
 
 
-def drive_train(scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, threads: int | None = None) -> DriveTrain:
+def lost_part(passed: Array, efficiency: Array) -> Array:
+    """Return the part of a torque that a gear takes, of one that it passes to the machine or, negative, from it."""
+    return np.where(passed > 0.0, 1.0 - efficiency, 1.0 - 1.0 / efficiency)
+
+
+def drive_train(
+    scene: Scene, motor: AnyMotor, ratio: Any, flywheel: Any, efficiency: Any = 1.0, threads: int | None = None
+) -> DriveTrain:
     """Return a scene on its motor.
 
     Raises
     ------
     ValueError
-        For a machine whose crank is not driven, or whose omega2 has no sign; for anything but a motor; and for a ratio
-        or an inertia that is out of bounds.
+        For a machine whose crank is not driven, or whose omega2 has no sign; for anything but a motor; and for a ratio,
+        an inertia or an efficiency that is out of bounds.
     """
     require(scene, "drives")
     refuse(_problems(scene, motor) + count_problems("threads", threads))
     ratio, flywheel = checked_number("ratio", ratio, RATIO), checked_number("flywheel", flywheel, INERTIA)
+    efficiency = checked_number("efficiency", efficiency, EFFICIENCY)
     direction = 1.0 if np.all(np.asarray(scene.at(scene.grid(1)).omega2) > 0.0) else -1.0
     designs = sum(0.0 * number for _, number, _ in numbers(motor) if is_array(number))
-    top = direction * (motor.top_speed / ratio) + 0.0 * flywheel + designs
-    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, direction, threads)
+    designs = designs + 0.0 * flywheel + 0.0 * (efficiency - 1.0)
+    top = direction * (motor.top_speed / ratio) + designs
+    return DriveTrain(replace(scene, omega2=top, alpha2=0.0), motor, ratio, flywheel, efficiency, direction, threads)
 
 
 def _problems(scene: Scene, motor: Any) -> list[str]:

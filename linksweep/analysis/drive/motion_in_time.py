@@ -3,10 +3,11 @@
 In the direction of the crank's travel φ, with its speed w = dφ/dt, a motor of torque M(i·w) behind a gear of the ratio
 i, and the inertia J_f of flywheel and rotor about the crank's axis,
 
-    J_f dw/dt + T(φ, w, dw/dt) = i M(i w)
+    J_f dw/dt + T(φ, w, dw/dt) + L(w, dw/dt) = i M(i w)
 
-T is the torque on the crank by inverse dynamics, with inertia, weights, loads, springs, dampers and friction in it.
-Without friction it is T(φ, w, 0) + J(φ) dw/dt, J the reduced inertia; with it, dw/dt is found by the secant method.
+T is the torque on the crank by inverse dynamics, with inertia, weights, loads, springs, dampers and friction in it, and
+L what the gear takes (`drive_train`). Without both friction and L it is T(φ, w, 0) + J(φ) dw/dt, J the reduced inertia;
+with one of them, dw/dt is found by the secant method.
 Source: R. Eksergian, Dynamical Analysis of Machines (1930).
 """
 
@@ -23,8 +24,8 @@ from linksweep.engine.time_steps import GIVEN_UP, GOES_ON, LANDING, Level, Syste
 from linksweep.scene.pairs import Array, Pairs
 from linksweep.scene.scene import Scene
 
-ANGLE, SPEED, WORK, HEAT = range(4)
-"""Components of the state: φ [rad], w [rad/s], work and heat of the motor [J]."""
+ANGLE, SPEED, WORK, HEAT, LOSS = range(5)
+"""Components of the state: φ [rad], w [rad/s]; work and heat of the motor, work that the gear takes [J]."""
 TOLERANCE = 1e-10
 """Error of a step, relative to a radian and to a usual speed."""
 LONGEST = np.radians(30.0)
@@ -45,12 +46,13 @@ takes too many turns."""
 
 
 class Drive(NamedTuple):
-    """A motor on the crank's shaft: torque [N m] and heat [W] of some designs at speeds of the crank, and its inertia
-    with that of the flywheel [kg m²]."""
+    """A motor on the crank's shaft: torque [N m] and heat [W] of some designs at speeds of the crank, its inertia with
+    that of the flywheel [kg m²]; and the torque that its gear takes at speeds and accelerations [N m], if any."""
 
     torque: Callable[[Array, Array], Array]
     heat: Callable[[Array, Array], Array]
     inertia: Array
+    loss: Callable[[Array, Array, Array], Array] | None = None
 
 
 @dataclass(eq=False)
@@ -88,17 +90,21 @@ class Crank:
         torque, inertia, status = self.values((self.torque, "reduced_inertia", "status"), pairs, speed, still)
         excess = np.where(status == 0.0, self.drive.torque(rows, speed) - self.direction[rows] * torque, np.nan)
         total = inertia + self.drive.inertia[rows]
-        if "friction_power" not in self.scene.table.quantity:
+        if "friction_power" not in self.scene.table.quantity and self.drive.loss is None:
             return excess / total
-        return self._with_friction(pairs, speed, excess, total)
+        return self._with_losses(pairs, speed, excess - self.loss(rows, speed, still), total)
 
-    def _with_friction(self, pairs: Pairs, speed: Array, excess: Array, total: Array) -> Array:
+    def loss(self, rows: Array, speed: Array, rise: Array) -> Array:
+        """Return the torque that the gear takes at w and dw/dt."""
+        return 0.0 * speed if self.drive.loss is None else self.drive.loss(rows, speed, rise)
+
+    def _with_losses(self, pairs: Pairs, speed: Array, excess: Array, total: Array) -> Array:
         """Return dw/dt by the secant method, from the excess of torque at dw/dt = 0 and the inertia of all."""
         rows, last, rise, slope = pairs.designs, np.zeros(len(speed)), excess / total, -total
         drive, inertia = self.drive.torque(rows, speed), self.drive.inertia[rows]
         for _ in range(ROUNDS):
             torque, status = self.values((self.torque, "status"), pairs, speed, rise)
-            needed = self.direction[rows] * torque + inertia * rise
+            needed = self.direction[rows] * torque + inertia * rise + self.loss(rows, speed, rise)
             excess, before = np.where(status == 0.0, drive - needed, np.nan), excess
             going = abs(excess) > 1e-14 * (abs(drive) + abs(slope * rise))
             if not going.any():
@@ -114,7 +120,8 @@ class Crank:
         speed = state[:, SPEED]
         rise = self.rise(self.at(rows, state[:, ANGLE]), speed)
         power = self.drive.torque(rows, speed) * speed
-        return np.stack([speed, rise, power, self.drive.heat(rows, speed)], axis=1)
+        lost = self.loss(rows, speed, rise) * speed
+        return np.stack([speed, rise, power, self.drive.heat(rows, speed), lost], axis=1)
 
 
 @dataclass(eq=False)
@@ -143,7 +150,7 @@ class Run:
         self.rest_level = Level(SPEED, np.zeros(count), -1.0)
         self.most = np.ceil(2.0 * np.pi * self.turns / self.cycle - 1e-9)
         self.cycle_level = Level(ANGLE, np.full(count, self.cycle))
-        self.scale = np.full((count, 4), np.inf)
+        self.scale = np.full((count, 5), np.inf)
         self.scale[:, ANGLE], self.scale[:, SPEED] = 1.0, self.usual
 
     @cached_property
@@ -155,7 +162,7 @@ class Run:
     def trace(self) -> Trace:
         """Every step of the run; no step of designs that do not speed up from rest."""
         rows = np.arange(len(self.speeds))
-        start = np.zeros((len(rows), 4))
+        start = np.zeros((len(rows), 5))
         start[:, SPEED] = self.speeds
         starts = (self.speeds > 0.0) | ~(self.crank.slopes(rows, start)[:, SPEED] <= 0.0)
         outcome = np.where(self._turns_fully(), np.where(starts, GOES_ON, NOT_STARTED), GIVEN_UP)

@@ -1,8 +1,8 @@
 """Operating point of a machine on its motor: the speed at which the motor gives what the machine takes on average.
 
 At a constant speed w the machine takes the mean T̄(w) over the cycle of the torque of inverse dynamics; at the operating
-point i·M(i·w) = T̄(w). Of several such speeds it is the fastest, which a motor of falling torque keeps. The motor's own
-fluctuation over the cycle shifts the mean speed by its square only.
+point i·M(i·w) = T̄(w) + L, with the torque L that the gear takes. Of several such speeds it is the fastest, which a
+motor of falling torque keeps. The motor's own fluctuation over the cycle shifts the mean speed by its square only.
 """
 
 from __future__ import annotations
@@ -33,15 +33,17 @@ def operating_speed(designs: Designs) -> Array:
         torque, status = crank.values((crank.torque, "status"), pairs, np.repeat(speed, n), still)
         return np.mean(np.where(status == 0.0, crank.direction[rows] * torque, np.nan).reshape(count, n), axis=1)
 
+    def given(speed: Array) -> Array:
+        every = np.arange(count)
+        return designs.torque(every, speed) - crank.loss(every, speed, 0.0 * speed)
+
     def excess(speed: Array) -> Array:
-        return designs.torque(np.arange(count), speed) - load(speed)
+        return given(speed) - load(speed)
 
     near = np.stack([load(part * top) for part in PARTS])
     powers = np.linalg.solve(np.vander(PARTS), near)
     places = np.linspace(1.0, 0.0, PLACES)
-    surplus = [
-        designs.torque(np.arange(count), part * top) - np.vander([part], len(PARTS))[0] @ powers for part in places
-    ]
+    surplus = [given(part * top) - np.vander([part], len(PARTS))[0] @ powers for part in places]
     enough = np.stack(surplus) >= -1e-12 * np.max(abs(np.stack(surplus)), axis=0)
     first = np.argmax(enough, axis=0)
     last, speed = top * places[np.maximum(first - 1, 0)], top * places[first]

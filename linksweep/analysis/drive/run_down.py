@@ -31,6 +31,7 @@ def run_down(
     *,
     ratio: Number = 1.0,
     flywheel: Number = 0.0,
+    efficiency: Number = 1.0,
     until: float = 0.01,
     start: Number = 0.0,
     of: Names = None,
@@ -49,6 +50,8 @@ def run_down(
         Ratio of the gear: the motor's speed per that of the crank [1].
     flywheel : float or DataArray, default 0.0
         Moment of inertia of a flywheel on the crank's shaft [kg m²].
+    efficiency : float or DataArray, default 1.0
+        Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
     until : float, default 0.01
         Speed at which the run-down is over, per that at its start [1]; 0 for standstill, which dampers alone never
         bring about.
@@ -68,7 +71,7 @@ def run_down(
         Results over the design dims:
 
         - `duration` [s] and `turns` [1] until the speed is first reached; `kinetic_energy` [J] at the start, of the
-          machine with flywheel and rotor
+          machine with flywheel and rotor; `gear_loss` [J], the work that the gear takes from the rotor's
         - of each quantity `F32_peak`, the largest magnitude on the way, `F32_peak_at` [degree] and `F32_peak_time` [s]
         - `time` [s], `angle` [degree], `speed` [rad/s] and `acceleration` [rad/s²] over `step`, the ends of the steps
           of integration; NaN after the last one. Crank angles count whole turns, from `start` on
@@ -100,7 +103,7 @@ def run_down(
     scene, until = in_memory(scene), one_part(until, UNTIL)
     refuse([f"until = {quote(until)}: must be less than 1"] if until >= 1.0 else [])
     start, turns, names = checked(scene, start, turns, of, threads)
-    train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel)
+    train = drive_train(scene, NO_MOTOR if motor is None else motor, ratio, flywheel, efficiency)
     designs = Designs(scene, train, start, threads)
     speed = designs.flat(_speed(scene, start))
     run = Run(designs.crank(powered=False), speed, until * speed, -1.0, turns, speed)

@@ -36,6 +36,7 @@ def run_up(
     *,
     ratio: Number = 1.0,
     flywheel: Number = 0.0,
+    efficiency: Number = 1.0,
     until: float = 0.99,
     start: Number = 0.0,
     of: Names = None,
@@ -54,6 +55,8 @@ def run_up(
         Ratio of the gear: the motor's speed per that of the crank [1].
     flywheel : float or DataArray, default 0.0
         Moment of inertia of a flywheel on the crank's shaft [kg m²].
+    efficiency : float or DataArray, default 1.0
+        Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
     until : float, default 0.99
         Speed at which the run-up is over, per that of the operating point [1]: there the motor gives the mean torque
         that the machine takes over a cycle at constant speed. A machine without one is to reach that part of the speed
@@ -74,6 +77,7 @@ def run_up(
         Results over the design dims:
 
         - `duration` [s] and `turns` [1] until the speed is first reached; `operating_speed` [rad/s]
+        - `gear_loss` [J]: work that the gear takes
         - `motor_work`, `motor_heat`, `kinetic_energy` [J]: work on the motor's shaft, heat in its rotor or winding (NaN
           of a motor whose curve does not tell), and energy of the machine with flywheel and rotor at the end
         - of each quantity `F32_peak`, the largest magnitude on the way, `F32_peak_at` [degree] and `F32_peak_time` [s]
@@ -106,7 +110,7 @@ def run_up(
     require(scene, "drives")
     scene, until = in_memory(scene), one_part(until, UNTIL)
     start, turns, names = checked(scene, start, turns, of, threads)
-    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel), start, threads)
+    designs = Designs(scene, drive_train(scene, motor, ratio, flywheel, efficiency), start, threads)
     usual, top = operating_speed(designs), designs.top_speed
     target = until * np.where(np.isfinite(usual), usual, top)
     run = Run(designs.crank(), np.zeros(designs.count), target, 1.0, turns, top)

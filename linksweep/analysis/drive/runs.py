@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from linksweep.analysis.drive.drive_train import DriveTrain
-from linksweep.analysis.drive.motion_in_time import ANGLE, HEAT, SPEED, WORK, Crank, Drive, Run
+from linksweep.analysis.drive.drive_train import DriveTrain, lost_part
+from linksweep.analysis.drive.motion_in_time import ANGLE, HEAT, LOSS, SPEED, WORK, Crank, Drive, Run
 from linksweep.analysis.drive.motors.motor import AnyMotor
 from linksweep.analysis.drive.peaks_in_time import peaks_in_time
 from linksweep.base.checked_number import checked_number
@@ -43,7 +43,8 @@ class Designs:
         self.order = tuple(dict.fromkeys((*scene.at_one_angle.inputs.sizes, *self.sizes)))
         self.count = int(np.prod([*self.sizes.values()], dtype=int))
         self.start, self.ratio = self.flat(start), self.flat(train.ratio)
-        self.inertia = self.flat(train.flywheel) + self.ratio**2 * self.flat(train.motor.inertia)
+        self.rotor, self.efficiency = self.ratio**2 * self.flat(train.motor.inertia), self.flat(train.efficiency)
+        self.inertia = self.flat(train.flywheel) + self.rotor
 
     @property
     def top_speed(self) -> Array:
@@ -63,10 +64,21 @@ class Designs:
 
     def crank(self, powered: bool = True) -> Crank:
         """Return the cranks of all designs, at rest or turning; without power the motor's rotor turns along."""
-        idle = Drive(lambda rows, speed: 0.0 * speed, lambda rows, speed: 0.0 * speed, self.inertia)
-        drive = Drive(self.torque, lambda rows, speed: np.nan_to_num(self.heat(rows, speed)), self.inertia)
+
+        def idle(rows: Array, speed: Array) -> Array:
+            return 0.0 * speed
+
+        def heat(rows: Array, speed: Array) -> Array:
+            return np.nan_to_num(self.heat(rows, speed))
+
+        def loss(rows: Array, speed: Array, rise: Array) -> Array:
+            passed = torque(rows, speed) - self.rotor[rows] * rise
+            return lost_part(passed, self.efficiency[rows]) * passed
+
+        torque = self.torque if powered else idle
+        drive = Drive(torque, heat if powered else idle, self.inertia, None if self.train.lossless else loss)
         way = np.full(self.count, self.train.direction)
-        return Crank(self.scene, drive if powered else idle, way, self.start, self.threads)
+        return Crank(self.scene, drive, way, self.start, self.threads)
 
     def torque(self, rows: Array, speed: Array) -> Array:
         """Return the torque of the motors of some designs on the crank's shaft [N m]."""
@@ -185,6 +197,7 @@ def turned(run: Run) -> Results:
     return {
         "duration": (time, "s", "time until the speed is reached"),
         "turns": (state[:, ANGLE] / (2.0 * np.pi), "1", "turns of the crank until then"),
+        "gear_loss": (state[:, LOSS], "J", "work that the gear takes until then"),
     }
 
 

@@ -50,7 +50,8 @@ TEXTS = {
     "speed_min": ("rad/s", "least speed of the crank"),
     "fluctuation": ("1", "coefficient of fluctuation of the speed: (largest - least)/mean of the two"),
     "cycle_time": ("s", "time of a cycle"),
-    "motor_work": ("J", "work of the motor in a cycle, which loads and friction take"),
+    "motor_work": ("J", "work of the motor in a cycle, which loads, friction and the gear take"),
+    "gear_loss": ("J", "work that the gear takes in a cycle"),
     "motor_torque_max": ("N m", "largest torque of the motor"),
     "motor_torque_min": ("N m", "least torque of the motor, negative where it brakes"),
     "motor_torque_rms": ("N m", "root mean square over time of the motor's torque"),
@@ -69,6 +70,7 @@ def steady_cycle(
     *,
     ratio: Number = 1.0,
     flywheel: Number = 0.0,
+    efficiency: Number = 1.0,
     theta2: int = 720,
     threads: int | None = None,
 ) -> xr.Dataset:
@@ -81,9 +83,11 @@ def steady_cycle(
     motor : Motor, InductionMotor, DCMotor or GovernedMotor
         Motor with its torque over speed, and the inertia of its rotor.
     ratio : float or DataArray, default 1.0
-        Ratio of the gear: the motor's speed per that of the crank [1]; without losses.
+        Ratio of the gear: the motor's speed per that of the crank [1].
     flywheel : float or DataArray, default 0.0
         Moment of inertia of a flywheel on the crank's shaft [kg m²].
+    efficiency : float or DataArray, default 1.0
+        Efficiency of the gear, in (0, 1] [1]: power is lost on the way to the machine, and again on the way back.
     theta2 : int, default 720
         Count of crank angles over the cycle.
     threads : int, default None
@@ -92,7 +96,7 @@ def steady_cycle(
     Returns
     -------
     Dataset
-        Results over the design dims of scene, motor, ratio and flywheel; over theta2 those that change:
+        Results over the design dims of scene, motor, gear and flywheel; over theta2 those that change:
 
         - `omega2` [rad/s] and `alpha2` [rad/s²] of the crank: ``ds.linksweep.scene`` is the scene with this motion,
           which `linksweep.sweep`, `linksweep.peaks` and all others take
@@ -100,8 +104,8 @@ def steady_cycle(
         - `drive_torque` [N m] on the crank: what inverse dynamics asks for
         - `speed_mean` over time, `speed_max` and `speed_min` [rad/s], `fluctuation` [1], `cycle_time` [s]
         - `motor_torque_max` and `motor_torque_min` [N m], `motor_power_max` and `motor_power_min` [W]: exact extremes
-        - `motor_work` [J] in a cycle; over time `motor_power_mean` [W], `motor_torque_rms` [N m] and `motor_heat_mean`
-          [W], which is NaN for motors that do not tell it
+        - `motor_work` and `gear_loss` [J] in a cycle; over time `motor_power_mean` [W], `motor_torque_rms` [N m] and
+          `motor_heat_mean` [W], which is NaN for motors that do not tell it
         - `deviation_factor` [1]: a deviation of the speed shrinks by it from cycle to cycle
         - `energy_residual` [J]: by so much energy, at most, the motion misses its equation over the cycle
         - `status`: not_whole (no whole revolution), stalls (the motor is too weak), runs_away (the loads drive the
@@ -117,10 +121,10 @@ def steady_cycle(
 
     Notes
     -----
-    The motion is the periodic solution of T(θ, ω, α) + J_s α = i·M(i·ω), with the torque T of inverse dynamics and
-    the inertia J_s of flywheel and rotor: see `linksweep.analysis.drive.drive_train`. Loads, dampers and friction act
-    at the speeds of the motion itself. Sources: R. Eksergian, Dynamical Analysis of Machines (1930); F. Wittenbauer,
-    Graphische Dynamik (1923).
+    The motion is the periodic solution of T(θ, ω, α) + J_s α + L = i·M(i·ω), with the torque T of inverse dynamics,
+    the inertia J_s of flywheel and rotor, and the torque L that the gear takes: see
+    `linksweep.analysis.drive.drive_train`. Loads, dampers and friction act at the speeds of the motion itself. Sources:
+    R. Eksergian, Dynamical Analysis of Machines (1930); F. Wittenbauer, Graphische Dynamik (1923).
 
     Examples
     --------
@@ -132,7 +136,7 @@ def steady_cycle(
     >>> ls.sweep(cycle.linksweep.scene, of="T12").sizes["theta2"]  # with the fluctuation in
     720
     """
-    train = drive_train(scene, motor, ratio, flywheel, threads)
+    train = drive_train(scene, motor, ratio, flywheel, efficiency, threads)
     refuse(count_problems("theta2", theta2) + _curve_problems(motor))
     sizes = {dim: n for dim, n in design_sizes(train.scene).items() if dim in train.dims}
     numbers = {name: np.full((*train.shape, theta2 if name in OVER_ANGLES else 1), np.nan) for name in TEXTS}
@@ -178,14 +182,14 @@ def _over_angles(train: DriveTrain, motion: Motion, count: int) -> dict[str, Arr
     speed = np.sqrt(2.0 * motion.w[:, order]).reshape(*train.shape, count)
     acceleration = train.at(count).acceleration(speed)
     ratio = train.plain_ratio
-    torque = train.drive_torque(speed)
+    torque, lost = train.drive_torque(speed), train.gear_loss(speed, acceleration)
     results = {
         "omega2": train.direction * speed,
         "alpha2": train.direction * acceleration,
         "motor_speed": ratio * speed,
         "motor_torque": torque / ratio,
         "motor_power": torque * speed,
-        "drive_torque": train.direction * (torque - train.shaft_inertia * acceleration),
+        "drive_torque": train.direction * (torque - train.shaft_inertia * acceleration - lost),
     }
     if isinstance(train.plain_motor, InductionMotor):
         results["slip"] = train.plain_motor.slip_at(ratio * speed)
@@ -196,8 +200,9 @@ def _over_cycle(train: DriveTrain, motion: Motion) -> dict[str, Array]:
     """Return the results of the whole cycle: extremes, and integrals over its time or angle."""
     shape, widths = motion.a.shape, motion.widths
     speed = np.sqrt(2.0 * motion.inside(POINTS)[0])
-    over_designs = speed.reshape(*train.shape, -1)
+    over_designs, acceleration = (each.reshape(*train.shape, -1) for each in (speed, motion.a))
     torque, heat = (of(over_designs).reshape(shape) for of in (train.drive_torque, train.motor_heat))
+    lost = train.gear_loss(over_designs, acceleration).reshape(shape)
     ratio = train.plain_ratio.ravel()
     time, work = integral(1.0 / speed, widths), integral(torque, widths)
     w = turning_points(motion.w, motion.a, widths)
@@ -209,6 +214,7 @@ def _over_cycle(train: DriveTrain, motion: Motion) -> dict[str, Array]:
         "fluctuation": (fastest - slowest) / (0.5 * (fastest + slowest)),
         "cycle_time": time,
         "motor_work": work,
+        "gear_loss": integral(lost, widths),
         "motor_power_mean": work / time,
         "motor_torque_rms": np.sqrt(integral(torque * torque / speed, widths) / time) / ratio,
         "motor_heat_mean": integral(heat / speed, widths) / time,

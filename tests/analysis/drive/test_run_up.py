@@ -141,6 +141,27 @@ def test_a_flywheel_on_a_motor_with_a_straight_curve():
     xr.testing.assert_allclose(run.operating_speed, speed + 0.0 * wheel, rtol=1e-10)
 
 
+def test_a_gear_with_losses():
+    """The rotor speeds up without loss, the rest through the gear: η (i M − i² J_r dω/dt) = J dω/dt."""
+    efficiency = xr.DataArray([1.0, 0.75], dims="gear")
+    run = ls.run_up(FLYWHEEL, MOTOR, ratio=RATIO, flywheel=WHEEL, efficiency=efficiency, until=0.95, of=["F12"])
+    rest, rotor, speed = 5e-3 + WHEEL, RATIO**2 * 1e-3, 120.0 / RATIO
+    tau = (rest + efficiency * rotor) * speed / (efficiency * 1.5 * RATIO)
+    xr.testing.assert_allclose(run.duration, -tau * np.log(0.05), rtol=1e-9)
+    lost = (1.0 / efficiency - 1.0) * 0.5 * rest * (0.95 * speed) ** 2
+    np.testing.assert_allclose(run.gear_loss, lost, rtol=1e-8)
+    np.testing.assert_allclose(run.motor_work, run.kinetic_energy + run.gear_loss, rtol=1e-8)
+
+    damped = replace(FLYWHEEL, omega2=25.0, loads=[ls.TorsionDamper("ground", "crank", coefficient=0.5)])
+    stop = ls.run_down(damped, MOTOR, ratio=RATIO, flywheel=WHEEL, efficiency=efficiency, until=0.1, of=["F12"])
+    xr.testing.assert_allclose(stop.duration, (rest + efficiency * rotor) / 0.5 * np.log(10.0), rtol=1e-9)
+    np.testing.assert_allclose(stop.gear_loss, (1.0 - efficiency) * 0.5 * rotor * 25.0**2 * 0.99, rtol=1e-8)
+
+    held = replace(FLYWHEEL, loads=[ls.Load("crank", torque=-2.0)])
+    usual = ls.run_up(held, MOTOR, ratio=RATIO, efficiency=0.75, until=0.9, of=["F12"]).operating_speed
+    np.testing.assert_allclose(usual, speed * (1.0 - 2.0 / (0.75 * 1.5 * RATIO)), rtol=1e-12)
+
+
 def test_the_operating_point_by_hand():
     """A damper takes c ω: on a straight curve, M0 (1 − i ω/ω0) i = c ω; a load of constant torque besides."""
     loads = [ls.TorsionDamper("ground", "crank", coefficient=0.3), ls.Load("crank", torque=-2.0)]

@@ -60,6 +60,39 @@ def test_a_slider_crank_with_friction_against_newton_euler_and_dop853():
     np.testing.assert_allclose(cycle.omega2, omega, rtol=1e-10)
 
 
+def test_a_gear_with_losses_against_lagrange_and_dop853():
+    """Power goes to and fro in each cycle, and is lost both ways; the motor's work is what dampers and gear take."""
+    scene, reference = four_bar(-12.0, 0.25)
+    motor = replace(DC, inertia=2e-3)
+    cycle = ls.steady_cycle(scene, motor, ratio=5.0, flywheel=0.01, efficiency=0.7)
+    gear = {"ratio": 5.0, "shaft_inertia": 0.01, "rotor": 25.0 * 2e-3, "efficiency": 0.7}
+    machine = oracle_motion.OnMotor(reference, lambda speed: 6.0 * (1.0 - speed / 160.0), **gear)
+    omega = machine.steady(float(cycle.omega2[0]) + 0.1, ANGLES, cycles=6)
+    assert float(cycle.deviation_factor) < 1e-2
+    np.testing.assert_allclose(cycle.omega2, omega, rtol=1e-9)
+    passed = 5.0 * cycle.motor_torque - 25.0 * 2e-3 * cycle.alpha2
+    assert float(passed.min()) < -1.0 < 1.0 < float(passed.max())
+    lost = (passed - np.where(passed > 0.0, 0.7 * passed, passed / 0.7)).mean() * 2.0 * np.pi
+    np.testing.assert_allclose(cycle.gear_loss, lost, rtol=1e-4)  # its corners lie between the angles
+    taken = -(ls.sweep(cycle.linksweep.scene, 720, of=["load_power"]).load_power / cycle.omega2).mean() * 2.0 * np.pi
+    np.testing.assert_allclose(cycle.motor_work, taken + cycle.gear_loss, rtol=1e-7)
+
+
+def test_a_gear_takes_its_part_of_what_it_passes_on_either_way():
+    """η·i·M(i·ω) = c·ω + T while the motor drives, i·M(i·ω)/η where the load drives it."""
+    efficiency = xr.DataArray([1.0, 0.8], dims="gear")
+    for torque, part in ((-3.0, efficiency), (40.0, 1.0 / efficiency)):
+        scene = disk([ls.TorsionDamper("ground", "crank", 0.3), ls.Load("crank", torque=torque)])
+        motor = replace(DC, inertia=1e-3)
+        cycle = ls.steady_cycle(scene, motor, ratio=2.0, efficiency=efficiency, theta2=24)
+        speed = (12.0 * part + torque) / (4.0 * 6.0 / 160.0 * part + 0.3)
+        np.testing.assert_allclose(cycle.speed_mean, speed, rtol=1e-13)
+        np.testing.assert_allclose(
+            cycle.gear_loss, 2.0 * np.pi * abs(1.0 - part) * abs(cycle.motor_torque[:, 0]) * 2.0, rtol=1e-12
+        )
+        np.testing.assert_allclose(cycle.motor_work, 2.0 * np.pi * (0.3 * speed - torque) + cycle.gear_loss, rtol=1e-12)
+
+
 def disk(loads):
     """Return a weightless four-bar with a disk of 0.5 kg m² on its crank."""
     weightless = [ls.Link(length, 0.0, 0.0, 0.0) for length in (0.08, 0.22, 0.18)]
@@ -274,6 +307,7 @@ def test_what_machines_do_that_do_not_turn_steadily():
         ({"motor": 3.0}, "motor = 3.0: must be a Motor, InductionMotor, DCMotor or GovernedMotor"),
         ({"motor": ls.Motor((0.0, 9.0), (4.0, 1.0))}, "motor.torques: must end with 0, at the speed at which"),
         ({"ratio": "3 m"}, 'ratio = "3 m": m is a unit of length'),
+        ({"efficiency": 1.2}, "efficiency = 1.2: must be greater than 0 and at most 1"),
         ({"theta2": 0}, "theta2 = 0: must be a whole number, 1 or more"),
         ({"threads": 0}, "threads = 0: must be a whole number, 1 or more"),
         ({"scene": ls.example("excavator")}, "must be the crank, for its motor to turn it"),

@@ -140,17 +140,27 @@ class SliderCrank:
 
 @dataclass(frozen=True)
 class OnMotor:
-    """A machine behind a gear on a motor, of which `torque` returns the torque at its speed."""
+    """A machine behind a gear on a motor, of which `torque` returns the torque at its speed.
+
+    `rotor` is the inertia of the rotor at the crank's shaft; what the gear passes on arrives with its `efficiency`.
+    """
 
     machine: FourBar | SliderCrank
     torque: object = field(repr=False)
     ratio: float = 1.0
     shaft_inertia: float = 0.0
+    rotor: float = 0.0
+    efficiency: float = 1.0
 
     def slope(self, theta, w):
         """Return dw/dθ; inertia on the shaft of a slider-crank belongs into its crank's own."""
-        inertia, left = self.machine.rise(theta, w, self.ratio * self.torque(self.ratio * np.sqrt(2.0 * w)))
-        return left / (inertia + self.shaft_inertia)
+        torque = self.ratio * self.torque(self.ratio * np.sqrt(2.0 * w))
+        for part in (self.efficiency, 1.0 / self.efficiency):  # to the machine, or from it
+            inertia, left = self.machine.rise(theta, w, part * torque)
+            alpha = left / (inertia + self.shaft_inertia + part * self.rotor)
+            if (torque > self.rotor * alpha) == (part < 1.0):
+                break
+        return alpha
 
     def slowest(self, omega, cycles):
         """Return the least ω of the last of some cycles; 0 where the machine comes to rest before."""
