@@ -163,7 +163,9 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     grid = scene.grid(angles)
     assembly, (signals, powers) = assembly_of(scene, threads), needed(items)
     names = tuple(dict.fromkeys((*signals, *(name for name, _ in powers))))
-    own = known_names(scene, names, unless_jammed) if scene.mechanism.rubs else {name: name for name in names}
+    sampled, own = scene.at_one_angle, {name: name for name in names}
+    if scene.mechanism.rubs:
+        own = known_names(sampled, names, unless_jammed)
     searched = tuple(own[signal] for signal in signals)
     if not signals:
         peaks = {}
@@ -172,7 +174,6 @@ def _exact(scene: Scene, items: list[Request], threads: int | None, part: Part |
     else:
         peaks = peaks_within(scene, searched, part, threads)
     largest = {signal: peaks[own[signal]] for signal in signals}
-    sampled = scene.at_one_angle
     averages = _means(scene, powers, own, part, threads)
     if part is None:
         known, by_samples = with_dead_centres(scene, assembly), scene.table.limits is not None

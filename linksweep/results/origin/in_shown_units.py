@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 
 from linksweep.results.dataset import OWN_UNITS
@@ -35,7 +36,7 @@ def in_shown_units(ds: xr.Dataset, system: UnitSystem | None = None) -> xr.Datas
     }
     coordinates = {name: values for name, values in changed.items() if name in ds.coords}
     results = {name: values for name, values in changed.items() if name not in coordinates}
-    return ds.assign_coords(coordinates).assign(results) if changed else ds
+    return _per_shown_unit(ds.assign_coords(coordinates).assign(results) if changed else ds, system)
 
 
 def results_in_shown_units(ds: xr.Dataset) -> xr.Dataset:
@@ -51,6 +52,18 @@ def results_in_shown_units(ds: xr.Dataset) -> xr.Dataset:
 def units_of(ds: xr.Dataset) -> UnitSystem:
     """Return the units in which to show a Dataset."""
     return shown_units(ds.attrs.get(OWN_UNITS, ""))
+
+
+def _per_shown_unit(ds: xr.Dataset, system: UnitSystem) -> xr.Dataset:
+    """Return a Dataset with its derivatives per unit in which their parameters are shown."""
+    slopes = [name for name in ds.data_vars if str(name).endswith("_derivative") and "parameter" in ds[name].dims]
+    units = [str(unit) for unit in ds.parameter_unit.values] if slopes and "parameter_unit" in ds else []
+    shown = [system.unit(unit) for unit in units]
+    if shown == units:
+        return ds
+    per = xr.Variable("parameter", [system.size(unit) for unit in units])
+    values = {name: ds[name].copy(data=(ds[name].variable * per).transpose(*ds[name].dims)) for name in slopes}
+    return ds.assign(values).assign_coords(parameter_unit=ds.parameter_unit.copy(data=np.array(shown)))
 
 
 def _converted(values: xr.Variable, unit: str, system: UnitSystem) -> xr.Variable:

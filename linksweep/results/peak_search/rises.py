@@ -79,7 +79,7 @@ def sector_peaks(scene: Scene, signals: tuple[str, ...], sectors: int) -> tuple[
 
 def _known(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names of the signals' values that exist: none where friction jams a machine."""
-    known = known_names(scene, signals, unless_jammed) if scene.mechanism.rubs else {}
+    known = known_names(scene.at_one_angle, signals, unless_jammed) if scene.mechanism.rubs else {}
     return tuple(known.get(signal, signal) for signal in signals)
 
 

@@ -161,3 +161,10 @@ def test_commands_take_the_capacity_of_bearings(capsys):
     assert f"{float(expected.L10_B):.6g}" in capsys.readouterr().out
     assert main(["sensitivities", "press", "--of", "L10_B"]) == 2
     assert "give --capacity" in capsys.readouterr().err
+
+
+def test_the_command_shows_derivatives_per_shown_unit_of_the_parameter(capsys):
+    """A pound force is 0.45359237·9.80665 N, an inch 0.0254 m."""
+    assert main(["sensitivities", "press", "--of", "F32_peak", "--to", "ground", "--units", "US"]) == 0
+    slope = ls.sensitivities(PRESS, of="F32_peak", to="ground").F32_peak_derivative.item()
+    assert f"{slope * 0.0254 / (0.45359237 * 9.80665):.5g}  lbf per in" in capsys.readouterr().out

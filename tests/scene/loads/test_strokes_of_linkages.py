@@ -247,6 +247,16 @@ def test_a_function_of_a_position_of_a_machine_that_moves_on_an_arc_alone():
     np.testing.assert_allclose(by_function, by_table, rtol=1e-13)
 
 
+def test_peaks_of_a_machine_that_rubs_under_a_function_of_a_position():
+    """The function is the table's line."""
+    line = xr.DataArray([0.0, -120.0], {"position": [0.0, 0.6]}, "position")
+    press = ls.example("knuckle-press")
+    assert press.mechanism.guides["slide"].friction
+    loads = (ls.Load("ram", force=(force, 0.0), over="ram.to_end") for force in (line, lambda x: -200.0 * x))
+    by_table, by_function = (ls.peaks(replace(press, loads=[load]), of=OF) for load in loads)
+    close(by_function, by_table, 1e-12)
+
+
 def test_both_branches_are_refused():
     both = replace(knuckle_press(push("ram")).mechanism, branch={"C": "both"})
     with pytest.raises(ValueError, match=r'over = .ram.to_end.: is a position of one branch; give branch.C="open"'):
