@@ -20,8 +20,6 @@ typedef struct {
     double m3, k3, l3, J3, m4gx, m4gy, k4, l4, J4;               /* coupler, rocker */
 } Constants;
 
-typedef struct { double F12x, F12y, F32x, F32y, F43x, F43y, F14x, F14y, T12; } Nine;
-
 static Constants prepare(const Design *p)
 {
     double a = p->a, b = p->b, c = p->c, d = p->d, gx = p->gx, gy = p->gy;
@@ -40,43 +38,15 @@ static Constants prepare(const Design *p)
     };
 }
 
-static inline Nine solve(Constants k, double cos2, double sin2, double sin_half2, double cos_half2)
-{
-    /* position: two circles meet at C */
-    double Bx = k.a * cos2, By = k.a * sin2, rx = k.d - Bx;   /* ry = -By */
-    double low = k.low0 + k.ad * sin_half2, high = k.high0 + k.ad * cos_half2, f2 = low + k.gap;
-    double det = k.sign * sqrt(low * high), shared = 0.5 / (f2 * det);
-    double scale = shared * det, idet = shared * f2, across = scale * det;
-    double along = scale * (low + k.along_u), alongv = scale * (k.along_v - low);
-    double px = across * By, py = across * rx;
-    double ux = px + along * rx, uy = py - along * By, vx = px + alongv * rx, vy = py - alongv * By;
-
-    /* rates squared; accelerations, C's seen from both sides */
-    double rate = k.omega2 * idet, omega3 = (By * vx - Bx * vy) * rate, omega4 = (By * ux - Bx * uy) * rate;
-    double w3 = omega3 * omega3, w4 = omega4 * omega4;
-    double ax = k.gx + k.radial * cos2 + k.tangential * sin2;   /* gravity less the acceleration of B */
-    double ay = k.gy + k.radial * sin2 - k.tangential * cos2;
-    double Kx = ax - k.gx + w3 * ux - w4 * vx, Ky = ay - k.gy + w3 * uy - w4 * vy;
-    double alpha3 = (Kx * vx + Ky * vy) * idet, alpha4 = (Kx * ux + Ky * uy) * idet;
-
-    /* d'Alembert: Q force of weight and inertia on a link, -M their moment about its first pin */
-    double hx = k.k3 * ux - k.l3 * uy, hy = k.k3 * uy + k.l3 * ux;
-    double ix = k.k4 * vx - k.l4 * vy, iy = k.k4 * vy + k.l4 * vx;
-    double Q3x = k.m3 * ax + alpha3 * hy + w3 * hx, Q3y = k.m3 * ay - alpha3 * hx + w3 * hy;
-    double Q4x = k.m4gx + alpha4 * iy + w4 * ix, Q4y = k.m4gy - alpha4 * ix + w4 * iy;
-    double M2 = k.M2 - k.M2c * cos2 + k.M2s * sin2;
-    double M3 = k.J3 * alpha3 + hy * ax - hx * ay, M4 = k.J4 * alpha4 + iy * k.gx - ix * k.gy;
-
-    /* the two moments of the dyad give F43, sums of forces and of moments the rest */
-    double n3 = M3 * idet, n4 = M4 * idet;
-    Nine f;
-    f.F43x = n4 * ux + n3 * vx, f.F43y = n4 * uy + n3 * vy;
-    f.F32x = f.F43x + Q3x, f.F32y = f.F43y + Q3y;
-    f.F14x = f.F43x - Q4x, f.F14y = f.F43y - Q4y;
-    f.F12x = k.P2x - k.P2r * cos2 - k.P2t * sin2 - f.F32x, f.F12y = k.P2y - k.P2r * sin2 + k.P2t * cos2 - f.F32y;
-    f.T12 = M2 + By * f.F32x - Bx * f.F32y;
-    return f;
-}
+#define NUMBER double
+#define ROOT sqrt
+#define NINE Nine
+#define SOLVE solve
+#include "limit_formulas.h"
+#undef NUMBER
+#undef ROOT
+#undef NINE
+#undef SOLVE
 
 /* The nine unknowns, in rows of n. Nothing aliases: without the simd pragma gcc 12 gives up on the nine rows. */
 void store(int64_t n, const double *restrict cos2, const double *restrict sin2, const double *restrict sin_half2,
@@ -89,6 +59,46 @@ void store(int64_t n, const double *restrict cos2, const double *restrict sin2, 
         out[i] = f.F12x, out[n + i] = f.F12y, out[2 * n + i] = f.F32x, out[3 * n + i] = f.F32y;
         out[4 * n + i] = f.F43x, out[5 * n + i] = f.F43y, out[6 * n + i] = f.F14x, out[7 * n + i] = f.F14y;
         out[8 * n + i] = f.T12;
+    }
+}
+
+/* The same with vectors of two registers written by hand, as one alone would wait for its own results. */
+#if defined __AVX512F__
+enum { WIDE = 16 };
+#elif defined __AVX__
+enum { WIDE = 8 };
+#else
+enum { WIDE = 4 };
+#endif
+
+typedef double Wide __attribute__((vector_size(8 * WIDE), aligned(8)));
+
+static inline Wide roots(Wide x)
+{
+    Wide y;
+    for (int l = 0; l < WIDE; l++) y[l] = sqrt(x[l]);
+    return y;
+}
+
+#define NUMBER Wide
+#define ROOT roots
+#define NINE WideNine
+#define SOLVE solve_wide
+#include "limit_formulas.h"
+
+/* As `store`; the last vector steps back over angles seen. n must be at least WIDE. */
+void store_wide(int64_t n, const double *restrict cos2, const double *restrict sin2, const double *restrict sin_half2,
+                const double *restrict cos_half2, const Design *design, double *restrict out)
+{
+    Constants k = prepare(design);
+    for (int64_t start = 0; start < n; start += WIDE) {
+        int64_t i = start + WIDE <= n ? start : n - WIDE;
+        WideNine f = solve_wide(k, *(const Wide *)(cos2 + i), *(const Wide *)(sin2 + i),
+                                *(const Wide *)(sin_half2 + i), *(const Wide *)(cos_half2 + i));
+        Wide *row[9];
+        for (int r = 0; r < 9; r++) row[r] = (Wide *)(out + r * n + i);
+        *row[0] = f.F12x, *row[1] = f.F12y, *row[2] = f.F32x, *row[3] = f.F32y;
+        *row[4] = f.F43x, *row[5] = f.F43y, *row[6] = f.F14x, *row[7] = f.F14y, *row[8] = f.T12;
     }
 }
 
@@ -140,4 +150,29 @@ void peaks(int64_t n_designs, int64_t n, const double *restrict cos2, const doub
             at[SIGNALS * j + s] = none ? -1 : first;
         }
     }
+}
+
+#if defined __AVX512F__ || defined __AVX__ || defined __SSE2__
+#include <immintrin.h>
+#endif
+
+/* The bytes that a long sweep of the nine moves, without its arithmetic: three rows of n are read, nine written past the
+ * caches, for samples first ... last, in eights. out begins with a line of the cache, and n is a multiple of 8.
+ */
+void move(int64_t first, int64_t last, int64_t n, const double *restrict in, double *restrict out)
+{
+    for (int64_t i = first; i < last; i += 8)
+        for (int64_t row = 0; row < 9; row++) {
+            const double *from = in + row % 3 * n + i;
+            double *to = out + row * n + i;
+#if defined __AVX512F__
+            _mm512_stream_pd(to, _mm512_load_pd(from));
+#elif defined __AVX__
+            for (int l = 0; l < 8; l += 4) _mm256_stream_pd(to + l, _mm256_load_pd(from + l));
+#elif defined __SSE2__
+            for (int l = 0; l < 8; l += 2) _mm_stream_pd(to + l, _mm_load_pd(from + l));
+#else
+            for (int l = 0; l < 8; l++) to[l] = from[l];
+#endif
+        }
 }

@@ -11,16 +11,22 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.rivals.peers import Array, Design, grid
+from linksweep.engine.blocks import block
 
 # sqrt is vectorised only with -fno-math-errno; -fno-trapping-math makes the comparisons of peaks cheaper.
 # Neither changes a value. -ffast-math would (it reorders sums): left out. a * b + c is contracted by default.
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fopenmp-simd")
+FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fopenmp-simd", "-Wno-psabi")
+SCHEDULED = (*FLAGS, "-mprefer-vector-width=512", "-fschedule-insns")
+"""Flags for vectors by hand: instructions in the order in which their operands are ready, though more results wait in
+memory then."""
 LANES = 16  # as in limit.c
 
 
@@ -42,10 +48,16 @@ def build(cc: str | None = None, flags: tuple[str, ...] = FLAGS) -> ctypes.CDLL 
         return ctypes.CDLL(str(library))
 
 
-def bind_store(lib: ctypes.CDLL, design: Design, theta2: Array) -> tuple[Callable[[], object], Array]:
-    """Return a call that computes the nine unknowns at theta2 [degree], and the array (9, n) that it fills."""
-    out = np.empty((9, len(theta2)))
-    return _bind(lib.store, [len(theta2)], [*_tables(theta2), _pack(design), out]), out
+def bind_store(
+    lib: ctypes.CDLL, design: Design, theta2: Array, function: str = "store"
+) -> tuple[Callable[[], object], Array]:
+    """Return a call that computes the nine unknowns at theta2 [degree], and the array (9, n) that it fills; `function`
+    is "store", or "store_wide" for at least `LANES` angles."""
+    if function == "store_wide" and len(theta2) < LANES:
+        raise ValueError(f"{len(theta2)} angles: must be at least {LANES}, the lanes of limit.c")
+    out, tables = block(9, len(theta2)), block(4, len(theta2))
+    tables[:] = _tables(theta2)
+    return _bind(getattr(lib, function), [len(theta2)], [*tables, _pack(design), out]), out
 
 
 def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callable[[], object], tuple[Array, Array]]:
@@ -60,6 +72,21 @@ def bind_peaks(lib: ctypes.CDLL, designs: Design, n_angles: int) -> tuple[Callab
     values, at = np.empty((len(packed), 6)), np.empty((len(packed), 6))
     counts, arrays = [len(packed), n_angles], [*_tables(grid(n_angles)), packed, values, at]
     return _bind(lib.peaks, counts, arrays), (values, at)
+
+
+def bind_move(lib: ctypes.CDLL, n_angles: int, threads: int) -> Callable[[], object]:
+    """Return a call that moves the bytes of a sweep of the nine, to the next multiple of 8 angles, by some threads."""
+    n = -(-n_angles // 8) * 8
+    arrays = block(3, n), block(9, n)
+    arrays[0][:] = 1.0
+    bounds = [n // 8 * k // threads * 8 for k in range(threads + 1)]
+    parts = [_bind(lib.move, [*part, n], [*arrays]) for part in pairwise(bounds)]
+
+    def call() -> None:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(lambda part: part(), parts))
+
+    return call
 
 
 def store(lib: ctypes.CDLL, design: Design, theta2: Array) -> Array:

@@ -10,6 +10,7 @@ import xarray as xr
 
 import linksweep as ls
 from benchmarks.cases import ALL, GENERAL, NINE, Size, batch, few, scene
+from benchmarks.rivals import limit
 from benchmarks.speed.exact import crank_rockers
 from benchmarks.speed.kernel import way
 from benchmarks.timing import FASTER, Call, Row, cores, race
@@ -25,7 +26,21 @@ def rows(size: Size) -> list[Row]:
         _row("ls.sweep, many designs", partial(ls.sweep, many, size.turn, of=NINE), size, size.designs * size.turn),
         _row("ls.sweep, one design", partial(ls.sweep, one, size.angles, of=NINE), size, size.angles),
         _row("ls.sweep, a million angles", partial(ls.sweep, one, long, of=NINE), few(size), long, goal=1.7),
+        _memory(few(size), long),
     ]
+
+
+def _memory(size: Size, angles: int) -> Row:
+    """Return what a second thread can gain where memory alone counts: the bytes of that sweep, moved in C."""
+    alone, both = (f"its bytes moved in C, {number}" for number in ("1 thread", "2 threads"))
+    lib = limit.build()
+    if cores() < 2 or not lib:
+        return Row(both, alone, FASTER, note="not measured: one core only, or no C compiler found")
+    calls = {name: limit.bind_move(lib, angles, threads) for name, threads in ((alone, 1), (both, 2))}
+    timed = race(calls, size, angles, perf_counter)
+    moved = 8 * (9 + 3) / 1e9 * angles
+    rates = " and ".join(f"{moved / min(timed.seconds[name]):.0f}" for name in (alone, both))
+    return timed.row(FASTER, both, alone, note=f"{rates} GB/s")
 
 
 def _row(job: str, call: Call, size: Size, samples: int | None = None, goal: float | None = None) -> Row:

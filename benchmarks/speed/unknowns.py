@@ -14,6 +14,7 @@ from benchmarks.timing import FASTER, SHARE, WALL, Row, race
 
 SWEEP, KERNEL, LAPACK, CLOSED, C = "ls.sweep", "kernel alone", "numpy + LAPACK", "numpy closed form", "limit.c"
 DENSE, ALONE, SOLVE = "ls.sweep, solver='dense'", "its 9×9 alone", "numpy.linalg.solve of the same 9×9"
+WIDE = "limit.c, vectors by hand"
 BLOCKS, ANEW, DEFAULT = "numpy + LAPACK, a tenth at a time", "ls.sweep, scene built anew", "ls.sweep, kinematics too"
 
 
@@ -38,6 +39,9 @@ def rows(size: Size) -> list[Row]:
         if lib := limit.build():
             calls[C], results[C] = limit.bind_store(lib, GENERAL, theta2)
             calls[C]()
+        if lib := limit.build(flags=limit.SCHEDULED):
+            calls[WIDE], results[WIDE] = limit.bind_store(lib, GENERAL, theta2, "store_wide")
+            calls[WIDE]()
         calls[ALONE], calls[SOLVE] = eliminations(machine, size.angles)
         results[ALONE] = calls[ALONE]()
         dense, results[BLOCKS] = calls[LAPACK](), np.concatenate(calls[BLOCKS](), axis=1)
@@ -53,6 +57,8 @@ def rows(size: Size) -> list[Row]:
         row(WALL, DEFAULT, SWEEP, 18e-9 * size.angles),
         row(FASTER, KERNEL, LAPACK, 250),
         row(SHARE, KERNEL, C, 1.3),
+        row(SHARE, KERNEL, WIDE, 1.1),
+        row(SHARE, WIDE, C),
         row(FASTER, C, LAPACK),
         row(FASTER, BLOCKS, LAPACK),
         row(FASTER, CLOSED, LAPACK),

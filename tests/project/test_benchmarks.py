@@ -17,8 +17,8 @@ from benchmarks.timing import FASTER, SHARE, WALL, Race, Row, cores, race
 SLOW = ("missed", "first", "growth", "skipping")
 CHECKED = {"solves", "grids", "unknowns", "peaks", "skipping", "mechanisms", "linkages", "warm", "threads"}
 GOALS = {
-    "unknowns": {60, 250, 1.3, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
-    "peaks": {200, 1.4},
+    "unknowns": {60, 250, 1.3, 1.1, 5, 10e-9 * QUICK.angles, 18e-9 * QUICK.angles},
+    "peaks": {200, 0.8},
     "exact": {0.35, 0.5, 0.7, 1.0, 400},
     "missed": set(),
     "skipping": {0.35, 0.75},
@@ -59,7 +59,7 @@ def test_rows_exist_and_rivals_agree(name, rows):
 
 @pytest.mark.skipif(cores() < 2, reason="one core only")
 def test_two_threads_give_the_same_bits(rows):
-    assert [row.error for row in rows("threads")] == [0.0] * 5
+    assert [row.error for row in rows("threads")] == [0.0] * 5 + [None]  # the last moves bytes alone
 
 
 @pytest.mark.long
@@ -85,6 +85,13 @@ def test_the_limit_stores_what_the_dense_solve_gives(library, n_angles, sign):
     design, theta2 = replace(GENERAL, sign=sign), peers.grid(n_angles)
     dense = peers.numpy_lapack(design, theta2)
     np.testing.assert_allclose(limit.store(library, design, theta2), dense, rtol=0, atol=1e-12 * np.abs(dense).max())
+
+
+def test_vectors_by_hand_agree_with_the_loop(library):
+    theta2, by_hand = peers.grid(37), limit.build(flags=limit.SCHEDULED)
+    call, nine = limit.bind_store(by_hand, GENERAL, theta2, "store_wide")
+    call()
+    np.testing.assert_allclose(nine, limit.store(library, GENERAL, theta2), rtol=1e-12)
 
 
 @pytest.mark.parametrize("n_angles", [16, 100, 720])
