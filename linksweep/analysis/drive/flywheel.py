@@ -15,6 +15,7 @@ Source: F. Wittenbauer, Graphische Dynamik (1923); R. L. Norton, Design of Machi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -169,11 +170,11 @@ def _arrays(
     number = xr.align(known, xr.DataArray(number), join="left")[1]
     own = empty_over_all(steady, NAMES).dims
     frame = (0.0 * known + 0.0 * number).transpose(*own, ...)
-    numbers = number.broadcast_like(frame).transpose(*frame.dims).values.reshape(known.size, -1)
+    shape = tuple(frame.sizes[dim] for dim in own)
+    numbers = number.broadcast_like(frame).transpose(*frame.dims).values.reshape(math.prod(shape), -1)
     values = {name: np.full((*numbers.shape, angles.size if name == "speed" else 1), np.nan) for name in TEXTS}
     for _, group in assembled_groups(steady, NAMES, (EVERYWHERE,)):
-        places, shape = [group.places[dim] for dim in own], tuple(frame.sizes[dim] for dim in own)
-        at = np.ravel_multi_index(places, shape) if own else np.zeros(1, dtype=int)
+        at = np.ravel_multi_index([group.places[dim] for dim in own], shape) if own else np.zeros(1, dtype=int)
         turning = Turning.of(group.some(np.arange(len(at))), threads)
         for k in range(numbers.shape[1]):
             for name, row in _results(turning, numbers[at, k], sized, angles.values).items():

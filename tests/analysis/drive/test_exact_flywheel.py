@@ -68,6 +68,15 @@ def test_a_yoke_by_its_closed_form():
     )
 
 
+def test_designs_whose_torque_is_one_share_their_flywheel():
+    """The rocker's length has no part in the torque, but one of these lengths lets the crank not turn."""
+    rocker = replace(LIGHT.rocker, length=xr.DataArray([0.18, 0.1, 0.17], dims="rocker"))
+    load = ls.Load("crank", torque=lambda angle: -4.0 - 6.0 * np.sin(np.radians(2.0 * angle)))
+    wheel = ls.flywheel(ls.Scene(replace(LIGHT, rocker=rocker), 20.0, loads=[load]), fluctuation=0.03)
+    whole = wheel.flywheel_inertia.where(wheel.status.max("theta2") == 0)
+    np.testing.assert_allclose(whole, [0.5, np.nan, 0.5], rtol=1e-12)
+
+
 def by_fourier_series(scene, fluctuation):
     """Return the inertia, from series of samples: extremes of eight times as many, with the vertex of parabolas."""
     cycle = ls.sweep(replace(scene, alpha2=0.0), COUNT, of=["reduced_torque", "reduced_inertia"])
@@ -131,6 +140,7 @@ BLOW = replace(PRESS, loads=[*PRESS.loads, ls.Load("crank", torque=lambda angle:
 """Whose speed has its extremes elsewhere."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "path"), [(PRESS, "offset"), (BLOW, "omega2")], ids=["extreme at a jump", "elsewhere"]
 )
