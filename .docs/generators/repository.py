@@ -15,6 +15,7 @@ COPIES = {"notebooks": "*.py", "benchmarks": "*.md"}
 """Folders of the repository, with the files that become pages below `generated`."""
 INSERTED = {"index": "README.md", "contributing": ".github/CONTRIBUTING.md"}
 """Pages that begin with a file of the repository."""
+EXPONENT = re.compile(r"(?<=\de)-(?=\d)")
 LINK = re.compile(r"\]\((?!https?:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -23,7 +24,10 @@ def write(folder: Path) -> None:
     for name, pattern in COPIES.items():
         for path in (ROOT / name).glob(pattern):
             if path.name != "__init__.py" and (path.suffix == ".md" or name == "notebooks"):
-                write_if_changed(folder / name / path.name, path.read_text(encoding="utf-8"))
+                text = path.read_text(encoding="utf-8")
+                if name == "benchmarks":
+                    text = EXPONENT.sub("\N{NON-BREAKING HYPHEN}", text)  # else a narrow cell breaks 1e-15
+                write_if_changed(folder / name / path.name, text)
 
 
 def fit_links(app, name: str, source: list[str]) -> None:
