@@ -31,6 +31,7 @@ PACKAGE = Path(ls.__file__).parent
 SAMPLES = 24
 BEARING = ls.Bearing(diameter=0.02, length=0.03, friction=0.05, capacity=5e4)
 MOTOR = ls.Motor([0.0, 1e4], [1e6, 0.0], inertia=0.01)
+CURVE = ["--motor", "curve", "speeds=0,1e4", "torques=1e6,0", "inertia=0.01"]
 STEEL = ls.material("S355")
 WEIGHT = {"mass": 0.1, "at": (0.05, 180.0)}
 
@@ -205,11 +206,8 @@ COMMANDS = {
     "explore": lambda s, path: ["explore", written(s, path)],
     "flywheel": lambda s, path: ["flywheel", written(s, path)],
     "steady": lambda s, path: ["steady", written(s, path), "--motor", "dc", "stall_torque=1e4", "no_load_speed=5"],
-    "run-up": lambda s, path: [
-        *("run-up", written(s, path), "--of", s.drive, "--until", 1e-3),
-        *("--motor", "curve", "speeds=0,1e4", "torques=1e6,0", "inertia=0.01"),
-    ],
-    "run-down": lambda s, path: [*("run-down", written(s, path), "--of", s.drive, "--until", 0.99, "--turns", 0.1)],
+    "run-up": lambda s, path: ["run-up", written(s, path), *CURVE, "--of", s.drive, "--until", 1e-3],
+    "run-down": lambda s, path: ["run-down", written(s, path), "--of", s.drive, "--until", 0.99, "--turns", 0.1],
     "sensitivities": lambda s, path: ["sensitivities", written(s, path), "--of", s.force, "--to", s.word],
     "tolerance": lambda s, path: ["tolerance", written(s, path), "--of", s.force, "--tol", s.word, 0, 0.1, "-n", 4],
 }
@@ -237,10 +235,7 @@ LACKING: dict[str, str] = {
     """,
     "six-bar": "counterweights position_equation plot.loop command.balance",
     "knuckle-press": NO_CLOSED_FORM,
-    "scotch-yoke": """
-        counterweights position_equation plot.loop command.balance size_links strength plot.moment_diagram
-        plot.moment_diagrams command.strength
-    """,
+    "scotch-yoke": f"counterweights position_equation plot.loop command.balance {OF_BEAMS}",
     "excavator": """
         counterweights motor_load position_equation plot.loop plot.motor_load plot.over_speed command.balance
         command.breakdown size_links strength plot.moment_diagram plot.moment_diagrams command.strength plot.tornado
@@ -248,10 +243,7 @@ LACKING: dict[str, str] = {
     """,
     "whitworth": NO_CLOSED_FORM,
     "geared-five-bar": NO_CLOSED_FORM,
-    "yoke": """
-        counterweights position_equation plot.heat_map plot.loop command.balance size_links strength plot.moment_diagram
-        plot.moment_diagrams command.strength
-    """,
+    "yoke": f"counterweights position_equation plot.heat_map plot.loop command.balance {OF_BEAMS}",
     "inline-four": """
         best_counterweights breakdown check choose_bearings compare counterweights coupler_curve explore geometry
         load_scene motor_load draw grid objective open_study pin_friction position_equation quantities regressor sample

@@ -213,11 +213,11 @@ class TrainAtAngles:
         )
         lack = sign * torque + train.shaft_inertia * acceleration
         to_acceleration = to_acceleration + train.shaft_inertia
-        given, slope = (train.drive_torque(speed), train.drive_slope(speed)) if powered else (0.0, 0.0)
-        lack, to_speed = lack - given, to_speed - slope
+        supply, slope = (train.drive_torque(speed), train.drive_slope(speed)) if powered else (0.0, 0.0)
+        lack, to_speed = lack - supply, to_speed - slope
         if train.lossless:
             return Balance(lack, to_speed, to_acceleration)
-        passed = given - train.rotor_inertia * acceleration
+        passed = supply - train.rotor_inertia * acceleration
         part = lost_part(passed, train.plain_efficiency)
         return Balance(lack + part * passed, to_speed + part * slope, to_acceleration - part * train.rotor_inertia)
 

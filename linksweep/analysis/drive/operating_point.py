@@ -33,17 +33,18 @@ def operating_speed(designs: Designs) -> Array:
         torque, status = crank.values((crank.torque, "status"), pairs, np.repeat(speed, n), still)
         return np.mean(np.where(status == 0.0, crank.direction[rows] * torque, np.nan).reshape(count, n), axis=1)
 
-    def given(speed: Array) -> Array:
+    def supply(speed: Array) -> Array:
+        """Return the torque of the motors behind their gears."""
         every = np.arange(count)
         return designs.torque(every, speed) - crank.loss(every, speed, 0.0 * speed)
 
     def excess(speed: Array) -> Array:
-        return given(speed) - load(speed)
+        return supply(speed) - load(speed)
 
     near = np.stack([load(part * top) for part in PARTS])
     powers = np.linalg.solve(np.vander(PARTS), near)
     places = np.linspace(1.0, 0.0, PLACES)
-    surplus = [given(part * top) - np.vander([part], len(PARTS))[0] @ powers for part in places]
+    surplus = [supply(part * top) - np.vander([part], len(PARTS))[0] @ powers for part in places]
     enough = np.stack(surplus) >= -1e-12 * np.max(abs(np.stack(surplus)), axis=0)
     first = np.argmax(enough, axis=0)
     last, speed = top * places[np.maximum(first - 1, 0)], top * places[first]
