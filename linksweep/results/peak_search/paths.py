@@ -174,14 +174,24 @@ def kinks(group: Group) -> Array:
 
 
 def jump_angles(group: Group) -> Array:
-    """Return the jumps (design, jump) of the whole period [degree], and the angles at which contacts bear nothing; NaN
-    where others have more."""
+    """Return the jumps (design, jump) of the whole period [degree], and the angles at which friction begins to jam and
+    contacts bear nothing; NaN where others have more."""
     turn, designs = group.scene.mechanism.period, len(group.designs)
     turns = range(round(group.scene.period / turn))
     angles = [group.number(jump) + turn * k for jump in group.scene.jumps() for k in turns]
     located = [group.zeros(kind) + start for kind in JUMPS for start in _starts_of_motion(group)]
+    located += [jam + turn * k for jam in _jam_angles(group) for k in turns]
     jumps = np.concatenate([np.empty((designs, 0)), *(jump[:, None] for jump in angles), *located], axis=1)
     return distinct(np.concatenate([jumps, contact_angles(group, both_sides(jumps))], axis=1))
+
+
+def _jam_angles(group: Group) -> list[Array]:
+    """Return the angles (design, jam) [degree] at which friction begins to jam a machine, where they have closed forms:
+    a force may have a limit there."""
+    scene = group.scene
+    checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive}) if scene.mechanism.rubs else ()
+    found = [findings(*map(group.number, numbers)) for findings, numbers in checks]
+    return [angles["jam_angle"].values for angles in found if "jam_angle" in angles]
 
 
 def distinct(angles: Array) -> Array:

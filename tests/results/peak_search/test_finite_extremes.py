@@ -68,3 +68,16 @@ def test_finite_extremes_of_what_is_unbounded_at_toggles(scene, rates, part):
         np.testing.assert_allclose(inside[moves], value[known][moves], rtol=1e-9)
         bounded += moves.sum()
     assert bounded > 5
+
+
+def test_a_force_that_rises_only_just_before_friction_jams_the_machine():
+    """Within the last 0.01 of 181 degrees; its largest value is its limit at the jam."""
+    crank, rod = ls.Link(0.2871, 1.239, 0.0122, 0.0072, 131.8), ls.Link(0.205, 1.61, 0.00207, 0.1282, 133.8)
+    mechanism = ls.SliderCrank(crank, rod, slider_mass=1.928, offset=0.2009, friction=0.03956)
+    scene = ls.Scene(mechanism, -7.294, 69.64, (0.0, -9.81), [ls.Load("slider", force=(-18.86, 43.55))])
+    jam = np.nanmin(ls.check(scene).jam_angle)
+    beside = ls.sweep(scene, [jam - 0.03, jam - 0.01, jam - 1e-8, jam + 0.01], of=["F12x"]).F12x
+    assert beside[0] < beside[1] < 0.0 < 20_000.0 < beside[2] and np.isnan(beside[3])
+    peaks = ls.peaks(scene, of=["F12x"])
+    assert float(peaks.F12x_max) == pytest.approx(float(beside[2]), rel=1e-5)
+    assert float(peaks.F12x_max_at) == pytest.approx(jam, abs=1e-6) and peaks.F12x_max >= beside[2]
