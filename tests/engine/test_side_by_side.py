@@ -13,7 +13,7 @@ from benchmarks.cases import ALL, GENERAL, MASSES, batch, scene
 from benchmarks.speed.kernel import kernel_of, way
 from linksweep.engine.kernel.side_by_side import parity
 
-DESIGNS = 21
+DESIGNS = 25
 PRESS, ENGINE = ls.example("press"), ls.example("engine")
 general = scene(batch(DESIGNS, *ALL))
 factor = xr.DataArray(np.linspace(0.8, 1.2, DESIGNS), dims="mass")
@@ -46,7 +46,7 @@ MACHINES = {
         PRESS, ground=grounds, rocker=replace(PRESS.mechanism.rocker, density=7e3 * factor)
     ),
 }
-"""Scenes with at least as many designs in the innermost loop as fill a vector."""
+"""Scenes with at least one and a half vectors of designs in the innermost loop."""
 OF = {"masses on one geometry": ("F32", "F32_mean", "T12_rms", "T12")}
 
 

@@ -66,7 +66,7 @@ REQUESTS = {
     "guides with friction": partial(ls.sweep, ls.example("engine")),
     "designs": partial(ls.sweep, designs, of=(*NINE, "transmission_angle")),
     "largest samples": partial(ls.peaks, designs),
-    "largest samples, masses side by side": partial(ls.peaks, scene(batch(21, "m3", "m4")), of=NINE),
+    "largest samples, masses side by side": partial(ls.peaks, scene(batch(25, "m3", "m4")), of=NINE),
 }
 
 
