@@ -148,7 +148,7 @@ class DriveTrain:
 
     @cached_property
     def lossless(self) -> bool:
-        """Whether the gear of no design takes anything."""
+        """True where the gear of every design passes on all of its power."""
         return bool(np.all(np.asarray(self.efficiency) == 1.0))
 
     @cached_property
