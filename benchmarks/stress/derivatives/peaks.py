@@ -180,6 +180,6 @@ def _nearest(scene: ls.Scene, at: Array) -> Array:
     breaks |= {0.0} if scene.profile == "energy" else set()
     nearest = np.full(len(at), np.nan)
     for angle in breaks:
-        away = np.mod(angle - at + 180.0, 360.0) - 180.0
-        nearest = np.where(np.abs(away) < NEAR, at + away, nearest)
+        place = angle + 360.0 * np.round((at - angle) / 360.0)
+        nearest = np.where(np.abs(at - place) < NEAR, place, nearest)
     return nearest
