@@ -144,7 +144,8 @@ def is_quantity(value: Any) -> bool:
 
 def is_lazy(value: Any) -> bool:
     """Return whether a value is an array that dask has yet to compute: its numbers are checked then, not on input."""
-    return getattr(value, "chunks", None) is not None
+    known = is_array(value) and isinstance(value.variable._data, np.ndarray)  # xarray itself takes long to look
+    return not known and getattr(value, "chunks", None) is not None
 
 
 def as_float(value: Any) -> float | None:

@@ -1,5 +1,7 @@
 """Designs side by side: the same bits compiled and interpreted, alone and in company."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -54,7 +56,6 @@ def test_the_best_summit_and_the_next_are_those_of_a_search_one_by_one():
     np.testing.assert_array_equal(state[abreast.SUMMIT], reach.argmax(axis=0))
     np.testing.assert_allclose(state[abreast.REACH], ranked[-1], rtol=1e-15)
     np.testing.assert_allclose(state[abreast.OTHER], ranked[-2], rtol=1e-15)
-    np.testing.assert_array_equal(state[abreast.SIZE], np.abs(rows).max(axis=0))
 
 
 def four_bars(designs: int) -> ls.Scene:
@@ -72,8 +73,10 @@ def four_bars(designs: int) -> ls.Scene:
 
 
 def test_evaluators_have_the_same_bits_compiled_and_interpreted():
-    """Also at the samples that share operations with those on the other side of the middle."""
-    scene = four_bars(8)
+    """Also at the samples that share operations with those on the other side of the middle, and where the last design
+    stands in lanes that have none of their own; designs have two dims."""
+    scene, front, designs = four_bars(5), 8, 15
+    scene = replace(scene, omega2=xr.DataArray([20.0, 30.0, 40.0], dims="speed"))
     forms = tuple((name, form) for name, form in scene.inputs.forms if name not in scene.grid(1).names)
     forms += (("half_tangent", ("theta2", "design")), ("far_half", ("theta2",)))
     signals = ("F32", "T12", "theta4")
@@ -82,21 +85,35 @@ def test_evaluators_have_the_same_bits_compiled_and_interpreted():
     compiled, interpreted = evaluators.compiled, evaluators.interpreted
     lanes, of_turn = compiled.lanes, np.empty(2 * PLACED * compiled.lanes)
     abreast.place_samples(np.repeat([0.2, 1.0], lanes), lanes, grades(), of_turn)
-    inputs = np.array([np.broadcast_to(scene.inputs.fields[node.value].values, lanes) for node in evaluators.inputs])
+    values = [scene.inputs.fields[node.value].values for node in evaluators.inputs]
+    starts = np.cumsum([0, *(value.size for value in values[:-1])])
+    parameters = np.array([scene.inputs.sizes[dim] for dim in request.loops]), np.concatenate(values, axis=None), starts
     constants, rows = np.empty(len(evaluators.constants) * lanes), np.empty((SAMPLES + 1) * len(signals) * lanes)
-    compiled.prepare(inputs.ravel(), constants)
+    compiled.prepare(front, designs, *parameters, constants)
     compiled.sample(constants, of_turn, rows)
     places = np.array([np.linspace(-0.9, 0.9, lanes), np.zeros(lanes), np.arange(lanes) % 2.0, np.arange(lanes) % 3.0])
     table = places.copy()
     compiled.evaluate(constants, table, 0, 1, 2, 3, 0, lanes)
     for lane in range(lanes):
         own, own_rows = np.empty(interpreted.constants), np.empty(SAMPLES * len(signals))
-        interpreted.prepare(inputs[:, lane].copy(), own)
+        interpreted.prepare(min(front + lane, designs - 1), designs, *parameters, own)
         interpreted.sample(own, of_turn[lane::lanes].copy(), own_rows)
         interpreted.evaluate(own, places, 0, 1, 2, 3, lane, lane + 1)
         np.testing.assert_array_equal(constants.reshape(-1, lanes)[:2, lane], own[:2])
         np.testing.assert_array_equal(rows.reshape(SAMPLES + 1, -1, lanes)[:SAMPLES, :, lane].ravel(), own_rows)
     np.testing.assert_array_equal(table, places)
+
+
+def test_numbers_that_designs_share_are_the_same_as_their_own():
+    """Compiled for the same operations, but for parameters of other dims."""
+    own = four_bars(50)
+    same = replace(own, omega2=xr.DataArray(np.full(50, 30.0), dims="design"))
+    twice = replace(own, omega2=xr.DataArray([30.0, 30.0], dims="speed"))
+    peaks = [ls.peaks(scene, of=["F32", "T12"]).drop_vars("omega2", errors="ignore") for scene in (own, same, twice)]
+    peaks = [one.drop_attrs() for one in peaks]
+    xr.testing.assert_identical(peaks[0], peaks[1])
+    for speed in range(2):
+        xr.testing.assert_identical(peaks[0], peaks[2].isel(speed=speed))
 
 
 def test_samples_are_placed_by_the_near_toggles_with_one_more_on_either_side():
@@ -118,8 +135,8 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     def height(angle, phase):
         return 5.0 + np.cos(3.0 * (angle - phase)) + little * np.cos(angle - phase)
 
-    def prepare(inputs, constants):
-        constants[:] = 1.0, 1.0, inputs[0]
+    def prepare(front, designs, sizes, parameters, parameter_at, constants):
+        constants[:] = 1.0, 1.0, parameters[front]
 
     def sample(constants, x, rows):
         angles = 2.0 * np.arctan(x.reshape(2, PLACED)[:, 1:-1]) + [[0.0], [np.pi]]
@@ -133,10 +150,9 @@ def test_of_three_summits_nearly_as_high_the_highest_is_the_peak():
     one = np.array([0], dtype=np.int64)
     with np.errstate(all="ignore"):
         abreast.search(
-            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, one[:, None] + 1, grades(),
-            prepare, sample, evaluate, one[:, None].copy(), np.zeros(1), np.zeros((abreast.BLOCKS, 3)),
-            np.zeros(2 * PLACED), np.zeros(SAMPLES + 1), np.zeros((abreast.STATE_ROWS, 1)),
-            np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
+            0, len(phase), len(phase), 1, True, False, np.array([len(phase)]), phase, one, grades(), prepare, sample,
+            evaluate, np.zeros((abreast.BLOCKS, 3)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            np.zeros((abreast.STATE_ROWS, 1)), np.zeros((BRACKET_ROWS, abreast.ROOM)), np.zeros(3), best,
         )  # fmt: skip
     places = 2.0 * np.arctan(best[PEAK_X]) + np.pi * best[PEAK_FAR]
     np.testing.assert_allclose(best[PEAK], 6.0 + little, rtol=2e-11)

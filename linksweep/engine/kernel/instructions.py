@@ -139,6 +139,23 @@ class Instructions:
         """Store a vector, or a number repeated, from a position of an array on."""
         self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=8)
 
+    def gather(self, start: Any, at: Any) -> Any:
+        """Return the vector of the numbers at a vector of positions of an array."""
+        numbers = self.vector(self.ir.Undefined)
+        for k in map(self.integer, range(self.width)):
+            number = self.builder.load(self.builder.gep(start, [self.builder.extract_element(at, k)]))
+            numbers = self.builder.insert_element(numbers, number, k)
+        return numbers
+
+    def prefetch(self, start: Any, at: Any) -> None:
+        """Fetch the line of a position of an array into the caches."""
+        place = self.builder.bitcast(self.builder.gep(start, [at]), self.ir.IntType(8).as_pointer())
+        number = self.ir.IntType(32)
+        kind = self.ir.FunctionType(self.ir.VoidType(), [place.type, number, number, number])
+        name, to_read, often, data = "llvm.prefetch.p0i8", number(0), number(3), number(1)
+        function = self.builder.module.globals.get(name) or self.ir.Function(self.builder.module, kind, name)
+        self.builder.call(function, [place, to_read, often, data])
+
     def stream(self, value: Any, start: Any, at: Any) -> None:
         """Store a vector past the caches, which would first read what it replaces; it begins with a line of them."""
         stored = self.builder.store(self.wide(self.as_number(value)), self._place(start, at), align=64)

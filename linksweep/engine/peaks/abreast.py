@@ -44,7 +44,7 @@ from linksweep.engine.peaks.brackets import (
     place_trials,
 )
 from linksweep.engine.peaks.lanewise import around, lanewise
-from linksweep.engine.peaks.search import GRADES, HALF, PLACED, SAMPLES, might_reach
+from linksweep.engine.peaks.search import GRADES, HALF, PLACED, SAMPLES, might_reach, noise
 
 EVALUATIONS = BEST_ROWS
 """Row of `best` after those of a refined bracket: the number of evaluations of a signal."""
@@ -56,11 +56,11 @@ CAUTION = 3.0
 """Third derivatives that the error of a vertex allows for, of those that the samples show."""
 
 # rows of `state`, a column for each lane of each signal: results, in the order of the rows of `best`; whether they are
-# final, or confirmed while another summit may be higher; the rounding noise
-FINAL, CONFIRMED, NOISE_FLOOR = range(BEST_ROWS, BEST_ROWS + 3)
-# the largest magnitude; the number of the best summit, the height that it may reach, and any other
-SIZE, SUMMIT, REACH, OTHER = range(BEST_ROWS + 3, BEST_ROWS + 7)
-SAMPLED = BEST_ROWS + 7  # five samples about the summit
+# final, or confirmed while another summit may be higher
+FINAL, CONFIRMED = range(EVALUATIONS + 1, EVALUATIONS + 3)
+# the number of the best summit, the height that it may reach, and any other
+SUMMIT, REACH, OTHER = range(EVALUATIONS + 3, EVALUATIONS + 6)
+SAMPLED = EVALUATIONS + 6  # five samples about the summit
 PLACES = SAMPLED + 5  # the tangents at three of them
 # the half turn of the summit; the number of the signal; the tangent of a trial
 HALF_TURN, NUMBER, PLACE = range(PLACES + 3, PLACES + 6)
@@ -73,35 +73,38 @@ GAIN, LOSS, SOUND = range(PLACES + 17, PLACES + 20)
 STATE_ROWS = PLACES + 20
 
 FIVE, THREE = tuple(range(SAMPLED, SAMPLED + 5)), tuple(range(PLACES, PLACES + 3))
-NOTHING_YET = {SIZE: 0.0, SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
+NOTHING_YET = {SUMMIT: 0.0, REACH: -math.inf, OTHER: -math.inf}
 TRIED = (Z_LEFT, F_LEFT, Z_RIGHT, F_RIGHT, Z_MIDDLE, F_MIDDLE)
 
 
 def search(
-    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, strides, grades, prepare, sample,
-    evaluate, digits, inputs, constants, x, rows, state, brackets, gathered, best
+    first, last, designs, lanes, smooth, even, sizes, parameters, parameter_at, grades, prepare, sample, evaluate,
+    constants, x, rows, state, brackets, gathered, best
 ):  # fmt: skip
     """Write the peaks of blocks `first` … `last` of designs to `best`: a column for each design of each signal, one
     signal after the other, each filled up to whole blocks. `even` signals are the same on both halves of the turn: the
     samples of one are searched."""
     columns = state.shape[1]
-    width = best.shape[1] // (columns // lanes)
+    signals = columns // lanes
+    width = best.shape[1] // signals
     none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
-    for k in range(columns):
-        state[NUMBER, k] = k // lanes
+    for signal in range(signals):
+        for lane in range(lanes):
+            state[NUMBER, signal * lanes + lane] = signal
     for start in range(first, last, BLOCKS):
+        stop = min(start + BLOCKS, last)
         count = none
-        for block in range(start, min(start + BLOCKS, last)):
+        for block in range(start, stop):
             own = constants[block - start]
-            gather(block * lanes, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs)
-            call(prepare, (inputs, own))
+            call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
             place_samples(own, lanes, grades, x)
             call(sample, (own, x, rows))
             if even:
                 compare_sample_of_half(rows[(HALF - 1) * columns :], 2 * HALF + 3, state, columns)
             else:
                 compare_sample(rows, SAMPLES, state, columns)
-            pick_samples(rows, x, lanes, state)
+            for signal in range(signals):
+                pick_samples(rows, x, lanes, signal * lanes, state)
             predict_vertices(state, columns)
             place_left(state, columns)
             call(evaluate, (own, state, PLACE, F_LEFT, HALF_TURN, NUMBER, none, columns))
@@ -112,76 +115,62 @@ def search(
             call(evaluate, (own, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, none, columns))
             correct_vertices(state, columns)
             place_last(state, columns)
-            call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, none, columns))
+            for k in range(none, columns, lanes):
+                if last_trials(state, k, lanes) > 0:
+                    call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
             settle_peaks(state, columns)
-            for k in range(0, columns, lanes):
-                keep_peaks(state, k, lanes, best, k // lanes * width + block * lanes)
-            for k in range(columns):
-                tag = k // lanes * width + block * lanes + k % lanes
-                if not smooth or state[FINAL, k] == 0.0:
-                    if count + 2 * HALF > brackets.shape[1]:
-                        refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
-                        count = none
-                    count = open_brackets(rows, x, lanes, k, smooth, even, state, tag, brackets, count, best)
+            for signal in range(signals):
+                column, tag = signal * lanes, signal * width + block * lanes
+                keep_peaks(state, column, lanes, best, tag)
+                for lane in range(lanes):
+                    if not smooth or state[FINAL, column + lane] == 0.0:
+                        if count + 2 * HALF > brackets.shape[1]:
+                            refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
+                            count = none
+                        own_tag = tag + lane
+                        count = open_brackets(
+                            rows, x, lanes, column + lane, lane, smooth, even, state, own_tag, brackets, count, best
+                        )
         refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
 
 
-def gather(front, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs):
-    """Copy the parameters of designs side by side, the last design into lanes without one; `strides` has a row for each
-    design dim, a column for each parameter."""
-    dims, numbers = strides.shape
-    for lane in range(lanes):
-        left = min(front + lane, designs - 1)
-        for dim in range(dims - 1, 0, -1):
-            digits[dim, lane] = left % sizes[dim]
-            left //= sizes[dim]
-        digits[0, lane] = left
-    for k in range(numbers):
-        for lane in range(lanes):
-            at = parameter_at[k]
-            for dim in range(dims):
-                at += digits[dim, lane] * strides[dim, k]
-            inputs[k * lanes + lane] = parameters[at]
-
-
 def place_samples(constants, lanes, grades, x):
-    """Place the samples of each half turn by the width of its near-toggle, with one more on either side."""
+    """Place the samples of each half turn by the width of its near-toggle, with one more on either side; those that the
+    last block placed may be the right ones."""
     for half in range(2):
+        middle = (half * PLACED + 1 + HALF) * lanes
         for lane in range(lanes):
             grade, scale = 0, 1.0  # the first scale that does not exceed the width
             while constants[half * lanes + lane] < scale and grade < GRADES - 1:
                 grade += 1
                 scale *= 0.5
-            middle = half * PLACED + 1 + HALF
-            for k in range(HALF + 1):
-                x[(middle - k) * lanes + lane] = -grades[grade, k]
-                x[(middle + k) * lanes + lane] = grades[grade, k]
+            if x[middle + lanes + lane] != grades[grade, 1]:
+                for k in range(HALF + 1):
+                    x[middle - k * lanes + lane] = -grades[grade, k]
+                    x[middle + k * lanes + lane] = grades[grade, k]
     for half in range(2):  # measured from the other middle, 180 degrees away, a tangent is minus its inverse
         for lane in range(lanes):
             x[half * PLACED * lanes + lane] = -1.0 / x[((1 - half) * PLACED + 2 * HALF) * lanes + lane]
 
 
 @around(NOTHING_YET)
-def compare_sample(left, value, right, number, size, summit, reach, other):
-    """Note the largest magnitude, the best summit, and the heights that it and any other summit may reach."""
-    height = summit_height(left, value, right)
-    return larger(abs(value), size), *with_summit(height, number, summit, reach, other)
+def compare_sample(left, value, right, number, summit, reach, other):
+    """Note the best summit, and the heights that it and any other summit may reach."""
+    return with_summit(summit_height(left, value, right), number, summit, reach, other)
 
 
 @around(NOTHING_YET)
-def compare_sample_of_half(left, value, right, number, size, summit, reach, other):
-    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits; the
-    magnitude is that of the best summit and beside it, as a piece may end where a signal tends to −∞."""
+def compare_sample_of_half(left, value, right, number, summit, reach, other):
+    """Do the same for the samples of half a turn, and the one before and the one after them, which are no summits."""
     height = summit_height(left, value, right)
     height = (number < 1.0).where(-math.inf, (number > 2.0 * HALF + 1.0).where(-math.inf, height))
-    around_it = larger(abs(left), larger(abs(value), abs(right)))
-    size = (reach < height).where(around_it, size)
-    return size, *with_summit(height, number + (HALF - 1.0), summit, reach, other)
+    return with_summit(height, number + (HALF - 1.0), summit, reach, other)
 
 
 def summit_height(left, value, right):
     """Return the height that a summit about a sample may reach; −inf about a sample that is none."""
-    return (left < value).where((value < right).where(-math.inf, (value - left) + (value - right) + value), -math.inf)
+    height = ((value - left) - (right - value)) + value
+    return (left < value).where((value < right).where(-math.inf, height), -math.inf)
 
 
 def with_summit(height, number, summit, reach, other):
@@ -190,22 +179,21 @@ def with_summit(height, number, summit, reach, other):
     return best.where(number, summit), best.where(height, reach), (other < less).where(less, other)
 
 
-def pick_samples(rows, x, lanes, state):
-    """Copy five samples about each best summit, and the places of three; no peak is final near the ends of a half
-    turn."""
+def pick_samples(rows, x, lanes, column, state):
+    """Copy five samples about the best summit of a signal in each lane, and the places of three; no peak is final near
+    the ends of a half turn."""
     columns = state.shape[1]
-    for first in range(0, columns, lanes):
-        for lane in range(lanes):
-            k = first + lane
-            j = int(state[SUMMIT, k])
-            inside = 2 <= j % (2 * HALF) < 2 * HALF - 2
-            j = j if inside else HALF
-            half = j // (2 * HALF)
-            state[HALF_TURN, k], state[SOUND, k] = float(half), 1.0 if inside else 0.0
-            for near in range(5):
-                state[SAMPLED + near, k] = rows[(j + near - 2) * columns + k]
-            for near in range(3):
-                state[PLACES + near, k] = x[(j + near + 2 * half) * lanes + lane]
+    for lane in range(lanes):
+        k = column + lane
+        j = int(state[SUMMIT, k])
+        half = 1 if j >= 2 * HALF else 0
+        inside = 2 <= j - 2 * HALF * half < 2 * HALF - 2
+        j, half = (j, half) if inside else (HALF, 0)
+        state[HALF_TURN, k], state[SOUND, k] = half, inside
+        for near in range(5):
+            state[SAMPLED + near, k] = rows[(j + near - 2) * columns + k]
+        for near in range(3):
+            state[PLACES + near, k] = x[(j + near + 2 * half) * lanes + lane]
 
 
 @lanewise(FIVE, (VERTEX, CURVATURE, THIRD, Z_LEFT, Z_RIGHT))
@@ -245,7 +233,7 @@ def parabola(x, f, y, g, z, h):
     return slope, ((g - h) / (y - z) - slope) / (y - x)
 
 
-@lanewise((*TRIED, VERTEX, CURVATURE, THIRD, SOUND), (Z_LAST, GAIN, LOSS, SOUND))
+@lanewise((*TRIED, VERTEX, CURVATURE, THIRD, SOUND), (Z_LAST, F_LAST, GAIN, LOSS, SOUND))
 def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, curvature, third, sound):
     """Place the last trial: at the vertex of the parabola through three, where that promises more than they have."""
     slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
@@ -257,16 +245,24 @@ def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, 
     last = (gain + loss < tolerance).where(middle, vertex)
     for condition in (bend < 0.0, curvature < 0.0, abs(vertex) < 1.0, abs(vertex - predicted) < 0.3, loss < tolerance):
         sound = condition.where(sound, 0.0)
-    return last, gain, loss, sound
+    return last, f_middle, gain, loss, sound
+
+
+def last_trials(state, column, lanes):
+    """Return the number of lanes of a signal whose last trial is not the middle one."""
+    count = 0
+    for k in range(column, column + lanes):
+        count += 1 if state[Z_LAST, k] != state[Z_MIDDLE, k] else 0
+    return count
 
 
 @lanewise(
-    (*TRIED, Z_LAST, F_LAST, *THREE, SAMPLED + 2, HALF_TURN, OTHER, THIRD, GAIN, LOSS, SOUND, SIZE),
-    (PEAK, PEAK_X, PEAK_FAR, BEYOND, FINAL, CONFIRMED, NOISE_FLOOR),
+    (*TRIED, Z_LAST, F_LAST, *THREE, *FIVE[1:4], HALF_TURN, OTHER, THIRD, GAIN, LOSS, SOUND),
+    (PEAK, PEAK_X, PEAK_FAR, BEYOND, EVALUATIONS, FINAL, CONFIRMED),
 )
 def settle_peaks(
-    left, f_left, right, f_right, middle, f_middle, last, f_last, x1, x2, x3, f2, far, other, third, gain, loss, sound,
-    size
+    left, f_left, right, f_right, middle, f_middle, last, f_last, x1, x2, x3, f1, f2, f3, far, other, third, gain, loss,
+    sound
 ):  # fmt: skip
     """Note the peaks, whether the trials confirm them, and whether no other summit may be higher either."""
     slope, bend = parabola(left, f_left, right, f_right, middle, f_middle)
@@ -279,56 +275,62 @@ def settle_peaks(
     tolerance = RISE * abs(best)
     confirmed = (f_last < f_middle).where((gain < tolerance).where(sound, 0.0), sound)
     confirmed = (best < f2).where(0.0, confirmed)
+    tried = (gain + loss < RISE * abs(f_middle)).where(3.0, 4.0)
     final = (best + tolerance < other).where(0.0, confirmed)
     best = larger(f_right, larger(f_left, best))
-    floor = NOISE * size
-    return best, place_at(x1, x2, x3, vertex), far, larger(gain + loss, floor) + tolerance, final, confirmed, floor
+    floor = NOISE * larger(abs(f1), larger(abs(f2), abs(f3)))
+    beyond = larger(gain + loss, floor) + tolerance
+    return best, place_at(x1, x2, x3, vertex), far, beyond, SAMPLES + tried, final, confirmed
 
 
 def keep_peaks(state, column, lanes, best, tag):
     """Copy the peaks of one signal."""
-    for row in range(BEST_ROWS):
+    for row in range(len(best)):
         for lane in range(lanes):
             best[row, tag + lane] = state[row, column + lane]
-    for lane in range(lanes):
-        best[EVALUATIONS, tag + lane] = SAMPLES + 4
 
 
-def open_brackets(rows, x, lanes, k, smooth, even, state, tag, brackets, count, best):
+def open_brackets(rows, x, lanes, k, lane, smooth, even, state, tag, brackets, count, best):
     """Open brackets about all summits of a signal that may exceed its peak so far, or else its highest sample; return
     their number."""
-    columns, lane, confirmed = state.shape[1], k % lanes, smooth and state[CONFIRMED, k] > 0.0
+    columns, confirmed = state.shape[1], smooth and state[CONFIRMED, k] > 0.0
     if not confirmed:
         top, at = -math.inf, 0
         for j in range(SAMPLES):
             if rows[j * columns + k] > top:
                 top, at = rows[j * columns + k], j
-        best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * state[NOISE_FLOOR, k]
+        floor = noise(sample_of(rows, at - 1, columns, k), top, sample_of(rows, at + 1, columns, k))
+        best[PEAK, tag], best[BEYOND, tag] = top if top > -math.inf else math.nan, 10.0 * floor
         half = at // (2 * HALF)
         best[PEAK_X, tag], best[PEAK_FAR, tag] = x[(at + 1 + 2 * half) * lanes + lane], float(half)
     top = best[PEAK, tag]
     if not abs(top) < math.inf:
         return count
     known = int(state[SUMMIT, k]) if confirmed else -1
-    least = top + (RISE * abs(top) if confirmed else 10.0 * state[NOISE_FLOOR, k])
-    left, value = rows[(SAMPLES - 1) * columns + k], rows[k]
-    left, value = left if left == left else -math.inf, value if value == value else -math.inf
-    for j in range(SAMPLES):
-        searched = not even or HALF <= j <= 3 * HALF
-        right = rows[(j + 1) % SAMPLES * columns + k]
-        right = right if right == right else -math.inf
-        if searched and left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
+    first, last = (HALF, 3 * HALF) if even else (0, SAMPLES - 1)
+    left, value = sample_of(rows, first - 1, columns, k), sample_of(rows, first, columns, k)
+    for j in range(first, last + 1):
+        right = sample_of(rows, j + 1, columns, k)
+        floor = noise(left, value, right)
+        least = top + (RISE * abs(top) if confirmed else 10.0 * floor)
+        if left < value and value >= right and j != known and might_reach(left, value, right, 1.0) > least:
             half = j // (2 * HALF)
             for near in range(3):
                 brackets[XA + 2 * near, count] = x[(j + near + 2 * half) * lanes + lane]
             brackets[FA, count], brackets[FB, count], brackets[FC, count] = left, value, right
             brackets[FAR, count], brackets[SIGNAL, count] = float(half), state[NUMBER, k]
-            brackets[TAG, count], brackets[FLOOR, count] = tag, state[NOISE_FLOOR, k]
+            brackets[TAG, count], brackets[FLOOR, count] = tag, floor
             width = brackets[XC, count] - brackets[XA, count]
             brackets[WIDTH, count], brackets[FIRST_WIDTH, count] = 4.0 * width, width  # 4.0: not counted as slow
             count += 1
         left, value = value, right
     return count
+
+
+def sample_of(rows, j, columns, k):
+    """Return a sample of one signal and lane, around the turn; −inf where there is no value."""
+    value = rows[(j + SAMPLES) % SAMPLES * columns + k]
+    return value if value == value else -math.inf
 
 
 def refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best):

@@ -1,6 +1,7 @@
 """Evaluate the signals of a plan for several designs side by side, one in each lane.
 
-    prepare(inputs, constants)                              numbers of designs from their parameters
+    prepare(front, designs, sizes, parameters, parameter_at, constants)
+                                                            numbers of designs `front` … from their parameters
     sample(constants, x, rows)                              all signals at all samples of the turn
     evaluate(constants, table, x, value, far, signal, first, last)
                                                             one signal at one place in each lane `first` … `last`
@@ -16,7 +17,8 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -25,7 +27,7 @@ import numpy as np
 from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
-from linksweep.engine.kernel.machine_code import INTEGER, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
@@ -43,6 +45,13 @@ ALONG, END = "piece_tangent", "piece_end"
 the angle from the piece's start or end, and which of the two."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
+
+
+SOON = 2 * LANES
+"""Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
+"""
+SLOW = {"/", "sqrt"}
+"""Operations that take several times as long as others."""
 
 
 class Functions(NamedTuple):
@@ -77,10 +86,24 @@ class Evaluators:
         widths = [plan.outputs[NEAR_WIDTH], plan.outputs[FAR_WIDTH]]
         self.constants = [*widths, *sorted(used, key=lambda node: node.position)]
         self.fixed = [node for node in plan.nodes if node.operator == "constant"]
+        self.ahead = self._needed([node for node in self.at_samples if node.operator in SLOW and self.parity[node]])
+        """Operations at a place that lead to divisions and roots, which the place shares with its mirror."""
+        self.left = [node for node in self.at_samples if node not in set(self.ahead)]
+        """The operations that are left to do there."""
+        used = {x for node in self.left for x in node.operands} | set(self.signals)
+        self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
+        """What those need of the place, and of the operations before."""
 
     def _turns(self, node: Node) -> bool:
         """Return whether a node depends on the place."""
         return self.plan.index in node.dims
+
+    def _needed(self, nodes: list[Node]) -> list[Node]:
+        """Return the operations at samples that lead to some of them, and these themselves."""
+        needed = set(nodes)
+        for node in reversed(self.at_samples):
+            needed.update(node.operands if node in needed else ())
+        return [node for node in self.at_samples if node in needed]
 
     # ------------------------------------------------------------------------------------------ interpreted
 
@@ -89,8 +112,13 @@ class Evaluators:
         """The functions by the interpreter, for one lane: its constants are the widths, and the parameters as such."""
         return Functions(1, 2 + len(self.inputs), self._prepare, self._sample, self._evaluate)
 
-    def _prepare(self, inputs: np.ndarray, constants: np.ndarray) -> None:
-        constants[2:] = inputs
+    def _prepare(self, front: int, designs: int, sizes, parameters, parameter_at, constants: np.ndarray) -> None:
+        digits = np.unravel_index(front, tuple(sizes))
+        for k, node in enumerate(self.inputs):
+            place = 0
+            for dim, size, digit in zip(self.plan.loops, sizes, digits, strict=True):
+                place = place * size + digit if dim in node.dims else place
+            constants[2 + k] = parameters[parameter_at[k] + place]
         here = self._at(constants, np.zeros(1), 0.0)
         constants[:2] = [here[node].item() for node in self.constants[:2]]
 
@@ -124,50 +152,71 @@ class Evaluators:
         return Functions(
             LANES,
             len(self.constants),
-            machine_code(self._emit_prepare, (ROW, ROW), text),
+            machine_code(self._emit_prepare, (INTEGER, INTEGER, INTEGERS, ROW, INTEGERS, ROW), text),
             machine_code(self._emit_sample, (ROW, ROW, ROW), text),
             machine_code(self._emit_evaluate, (ROW, TABLE, *[INTEGER] * 6), text),
         )
 
-    def _emit_prepare(self, builder: Any, inputs: Any, constants: Any) -> None:
+    def _emit_prepare(
+        self, builder: Any, front: Any, designs: Any, sizes: Any, parameters: Any, parameter_at: Any, constants: Any
+    ) -> None:
+        """Emit the constants of designs side by side; lanes beyond the last design repeat it."""
         vectors = Instructions(builder)
-        values = self._row(vectors, inputs, self.inputs)
+        integer, none = vectors.integer, vectors.integer(0)
+
+        def number(array: Any, k: int) -> Any:
+            return builder.load(builder.gep(array.data, [integer(k)]))
+
+        lanes = vectors.ir.VectorType(integer, LANES)([*range(LANES)])
+        design, latest = builder.add(vectors.wide(front), lanes), vectors.wide(builder.sub(designs, integer(1)))
+        design = builder.select(builder.icmp_signed("<", design, latest), design, latest)
+        size, digit = {}, {}  # of each design dim, the outermost of which takes what the others leave
+        for k, dim in reversed([*enumerate(self.plan.loops)]):
+            size[dim] = vectors.wide(number(sizes, k))
+            digit[dim] = builder.urem(design, size[dim]) if k else design
+            design = builder.udiv(design, size[dim]) if k else design
+        values = {}
+        for k, node in enumerate(self.inputs):
+            place = vectors.wide(none)
+            for dim in (dim for dim in self.plan.loops if dim in node.dims):
+                place = builder.add(builder.mul(place, size[dim]), digit[dim])
+            start = builder.gep(parameters.data, [number(parameter_at, k)])
+            values[node] = vectors.gather(start, place)
+            vectors.prefetch(start, builder.add(builder.extract_element(place, none), integer(SOON)))
         interpret([*self.fixed, *self.of_designs], values, vectors.operators)
         for k, node in enumerate(self.constants):
-            vectors.store(values[node], constants.data, vectors.integer(k * LANES))
+            vectors.store(values[node], constants.data, integer(k * LANES))
 
     def _emit_sample(self, builder: Any, constants: Any, x: Any, rows: Any) -> None:
         """Emit a loop over both half turns, and in it one over the samples from the middle on, each with its mirror."""
         vectors = Instructions(builder)
-        integer, of, known = vectors.integer, builder.mul, self._row(vectors, constants, self.constants)
+        integer, of = vectors.integer, builder.mul
         size, half = integer(len(self.signals) * LANES), integer(HALF)
-        with (
-            vectors.loop(integer(0), integer(2)) as (turn, _),
-            vectors.loop(integer(0), integer(HALF + 1)) as (k, _),
-        ):
-            at = builder.add(of(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
-            place = {
-                self.tangent: vectors.load(x.data, of(at, integer(LANES))),
-                self.far: builder.uitofp(turn, vectors.double),
-            }
-            here = self._emitted(vectors, known | place)
-            middle = builder.add(of(turn, integer(2 * HALF)), half)
-            for there, sample in (
-                (self._mirrored(vectors, here), builder.sub(middle, k)),
-                (here, builder.add(middle, k)),
-            ):
-                for s, signal in enumerate(self.signals):
-                    vectors.store(there[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
+        with vectors.loop(integer(0), integer(2)) as (turn, _):
+
+            def place(k: Any) -> Values:
+                at = builder.add(of(turn, integer(PLACED)), builder.add(integer(1 + HALF), k))
+                tangent = vectors.load(x.data, of(at, integer(LANES)))
+                return {self.tangent: tangent, self.far: builder.uitofp(turn, vectors.double)}
+
+            with self._each(vectors, constants, integer(0), integer(HALF + 1), 1, place) as (k, here):
+                there = self._mirrored(vectors, here)
+                middle = builder.add(of(turn, integer(2 * HALF)), half)
+                for values, sample in ((there, builder.sub(middle, k)), (here, builder.add(middle, k))):
+                    for s, signal in enumerate(self.signals):
+                        vectors.store(values[signal], rows.data, builder.add(of(sample, size), integer(s * LANES)))
 
     def _mirrored(self, vectors: Instructions, here: Values) -> Values:
-        """Return the values at the opposite tangents; only operations that are neither even nor odd are repeated."""
+        """Emit what is left to do at a place and at the opposite tangent, and return the values there; only operations
+        that are neither even nor odd are repeated."""
         there = dict(here)
-        for node in [self.tangent, *self.at_samples]:
+        for node in [*self.kept, *self.left]:
             parity = self.parity[node]
-            if parity < 0:
-                there[node] = vectors.operators["negate"](here[node])
-            elif parity == 0:
+            interpret([node] if node not in here else [], here, vectors.operators)
+            if parity == 0:
                 interpret([node], there, vectors.operators)
+            else:
+                there[node] = here[node] if parity > 0 else vectors.operators["negate"](here[node])
         return there
 
     @cached_property
@@ -179,19 +228,46 @@ class Evaluators:
         self, builder: Any, constants: Any, table: Any, x: Any, value: Any, far: Any, signal: Any, first: Any, last: Any
     ) -> None:
         vectors = Instructions(builder)
-        known, length = self._row(vectors, constants, self.constants), table.shape[1]
-        with vectors.loop(first, last, LANES) as (lane, _):
-            at = [builder.add(builder.mul(length, row), lane) for row in (x, far, signal, value)]
-            tangent, half, number = (vectors.load(table.data, place) for place in at[:3])
-            here = self._emitted(vectors, known | {self.tangent: tangent, self.far: half})
-            chosen = here[self.signals[0]]
+        length = table.shape[1]
+
+        def at(row: Any, lane: Any) -> Any:
+            return builder.add(builder.mul(length, row), lane)
+
+        def place(lane: Any) -> Values:
+            return {node: vectors.load(table.data, at(row, lane)) for node, row in ((self.tangent, x), (self.far, far))}
+
+        with self._each(vectors, constants, first, last, LANES, place) as (lane, here):
+            interpret(self.left, here, vectors.operators)
+            number, chosen = vectors.load(table.data, at(signal, lane)), here[self.signals[0]]
             for k, node in enumerate(self.signals[1:], 1):
                 chosen = vectors.operators["where"](vectors.operators["=="](number, k), here[node], chosen)
-            vectors.store(chosen, table.data, at[3])
+            vectors.store(chosen, table.data, at(value, lane))
 
-    def _emitted(self, vectors: Instructions, values: Values) -> Values:
-        """Return all values at a place, from those of the designs and of the place."""
-        return interpret([*self.fixed, *self.at_samples], values, vectors.operators)
+    @contextmanager
+    def _each(
+        self, vectors: Instructions, constants: Any, first: Any, last: Any, step: int, place: Callable[[Any], Values]
+    ) -> Iterator[tuple[Any, Values]]:
+        """Emit a loop over places, which yields its counter and the values that are `kept` there.
+
+        Each pass computes those of the next place: divisions and roots take long, and nothing of this pass waits for
+        them. Constants are loaded where they are used, as they would fill the registers.
+        """
+        builder = vectors.builder
+        kept = {node: vectors.slot(vectors.vector(vectors.ir.Undefined)) for node in self.kept}
+
+        def start(k: Any) -> None:
+            values = self._row(vectors, constants, self.constants) | place(k)
+            interpret([*self.fixed, *self.ahead], values, vectors.operators)
+            for node, cell in kept.items():
+                builder.store(vectors.wide(vectors.as_number(values[node])), cell)
+
+        start(first)
+        with vectors.loop(first, last, step) as (k, _):
+            here = {node: builder.load(cell) for node, cell in kept.items()}
+            following = builder.add(k, vectors.integer(step))
+            start(builder.select(builder.icmp_signed("<", following, last), following, k))
+            here |= self._row(vectors, constants, self.constants)
+            yield k, interpret(self.fixed, here, vectors.operators)
 
     def _row(self, vectors: Instructions, array: Any, nodes: list[Node]) -> Values:
         """Return the values of nodes that an array holds one after the other."""
@@ -202,4 +278,5 @@ class Evaluators:
         nodes = {node: k for k, node in enumerate(self.plan.nodes)}
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals)]
-        return f"{SOURCE} {HALF} {lines} {roles}"
+        dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
+        return f"{SOURCE} {HALF} {lines} {roles} {dims}"

@@ -49,9 +49,7 @@ class Peak(NamedTuple):
     evaluations: Field
 
 
-OF_DESIGNS = (
-    INTEGERS, ROW, INTEGERS, "i8[:, :]", TABLE, INTEGER, INTEGER, INTEGER, "i8[:, :]", ROW, TABLE, ROW, ROW
-)  # fmt: skip
+OF_DESIGNS = (INTEGERS, ROW, INTEGERS, TABLE, INTEGER, INTEGER, INTEGER, TABLE, ROW, ROW)
 """Kinds of the arguments of a search that `laid_out` makes."""
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from linksweep.engine.patience import Patience
 from linksweep.engine.peaks import abreast, search
 from linksweep.engine.peaks.evaluators import FAR_WIDTH, NEAR_WIDTH, Evaluators, Functions
-from linksweep.engine.run import Field, Fields, Sizes, flat, ordered
+from linksweep.engine.run import Fields, Sizes, flat, ordered
 from linksweep.engine.trace.plan import Plan
 
 WIDTHS = (NEAR_WIDTH, FAR_WIDTH)
@@ -46,7 +46,7 @@ class LaidOut(NamedTuple):
     functions: Functions
     shape: tuple[int, ...]
     parameters: tuple[np.ndarray, ...]
-    """All parameters, where each starts, and the distances between its values along each design dim."""
+    """All parameters, and where each starts."""
 
     @property
     def lanes(self) -> int:
@@ -67,10 +67,11 @@ class LaidOut(NamedTuple):
     def arguments(self, first: int, last: int) -> tuple[Any, ...]:
         """Return the arguments that searches of blocks `first` … `last` have in common, with new arrays to work in."""
         lanes, constants = self.lanes, self.functions.constants * self.lanes
+        blocks = min(last - first, abreast.BLOCKS)
         return (
             np.array(self.shape, dtype=np.int64), *self.parameters, grades(), *self.functions.passed,
-            np.zeros((max(len(self.shape), 1), lanes), dtype=np.int64), np.zeros(self.parameters[2].shape[1] * lanes),
-            np.zeros((min(last - first, abreast.BLOCKS), constants)), np.zeros(2 * search.PLACED * lanes),
+            np.zeros((blocks, constants)),
+            np.zeros(2 * search.PLACED * lanes),
             np.zeros((search.SAMPLES + 1) * len(self.signals) * lanes),
         )  # fmt: skip
 
@@ -86,19 +87,8 @@ def laid_out(plan: Plan, inputs: Fields, sizes: Sizes) -> LaidOut:
     ready, shape = searcher(plan, signals), tuple(sizes[dim] for dim in plan.loops)
     nodes = ready.evaluators.inputs
     parameters, parameter_at = flat([ordered(plan, inputs[node.value]) for node in nodes])
-    strides = np.array([_strides(plan, inputs[node.value], sizes) for node in nodes], dtype=np.int64)
-    strides = np.ascontiguousarray(strides.reshape(len(nodes), len(shape)).T)
     functions = ready.functions(math.prod(shape))
-    return LaidOut(signals, ready.evaluators.even, functions, shape, (parameters, parameter_at[:-1], strides))
-
-
-def _strides(plan: Plan, field: Field, sizes: Sizes) -> list[int]:
-    """Return the distances between a parameter's values along each design dim, 0 along those that it lacks."""
-    strides, size = [], 1
-    for dim in reversed(plan.loops):
-        strides.append(size if dim in field.dims else 0)
-        size *= sizes[dim] if dim in field.dims else 1
-    return strides[::-1]
+    return LaidOut(signals, ready.evaluators.even, functions, shape, (parameters, parameter_at[:-1]))
 
 
 @lru_cache(maxsize=1)

@@ -107,6 +107,16 @@ class Around(Lanewise):
             known.update({node} if known.issuperset(node.operands) else ())
         return [node for node in self.nodes if node in known]
 
+    @cached_property
+    def ahead(self) -> dict[Node, Node]:
+        """The nodes that are those of the sample before, by what they will be at the next one."""
+        graph, ahead = self.inputs[0].graph, dict(zip(self.inputs[:2], self.inputs[1:3], strict=True))
+        for node in self.of_samples:
+            if node.operands and ahead.keys() >= set(node.operands):
+                later = graph.find(node.operator, *(ahead[x] for x in node.operands))
+                ahead |= {node: later} if later else {}
+        return ahead
+
     def __call__(self, samples: np.ndarray, count: int, table: np.ndarray, columns: int) -> None:  # type: ignore[override]
         row = samples[: count * columns].reshape(count, columns)
         around = np.roll(row, 1, axis=0), row, np.roll(row, -1, axis=0), np.arange(count, dtype=float)[:, None]
@@ -142,22 +152,27 @@ class Around(Lanewise):
         def sample(j: Any, k: Any) -> Any:
             return vectors.load(samples.data, builder.add(builder.mul(columns, j), k))
 
+        def first_values(k: Any) -> Values:
+            values = dict(zip(self.inputs, (sample(last, k), sample(none, k)), strict=False))
+            interpret([node for node in self.ahead if node.operands], values, vectors.operators)
+            return values | dict(zip(self.inputs[4:], start, strict=True))
+
         with vectors.loop(none, columns, ABREAST * LANES) as (first, _):
             blocks = [builder.add(first, vectors.integer(k * LANES)) for k in range(ABREAST)]
             blocks = [builder.select(builder.icmp_signed("<", k, latest), k, latest) for k in blocks]
-            running = [list(map(vectors.slot, (sample(last, k), sample(none, k), *start))) for k in blocks]
+            running = [{node: vectors.slot(value) for node, value in first_values(k).items()} for k in blocks]
             with vectors.loop(none, count) as (j, _):
                 following = builder.select(builder.icmp_signed("==", j, last), none, builder.add(j, one))
                 number = builder.sitofp(j, vectors.double)
-                for k, block in zip(blocks, running, strict=True):
-                    before, here, *rest = map(builder.load, block)
-                    after = sample(following, k)
-                    now = zip(self.inputs, (before, here, after, number, *rest), strict=True)
-                    values = interpret(self.nodes, dict(now), vectors.operators)
-                    for place, value in zip(block, (here, after, *(values[x] for x in self.results)), strict=True):
-                        builder.store(value, place)
-            for k, block in zip(blocks, running, strict=True):
-                self._store(vectors, table, k, [builder.load(value) for value in block[2:]])
+                for k, cells in zip(blocks, running, strict=True):
+                    values = {node: builder.load(cell) for node, cell in cells.items()}
+                    values |= dict(zip(self.inputs[2:4], (sample(following, k), number), strict=True))
+                    interpret([node for node in self.nodes if node not in cells], values, vectors.operators)
+                    now = self.ahead | dict(zip(self.inputs[4:], self.results, strict=True))
+                    for node, cell in cells.items():
+                        builder.store(values[now[node]], cell)
+            for k, cells in zip(blocks, running, strict=True):
+                self._store(vectors, table, k, [builder.load(cells[node]) for node in self.inputs[4:]])
 
 
 def lanewise(inputs: tuple[int, ...], outputs: tuple[int, ...]) -> Callable[[Callable[..., Any]], Lanewise]:

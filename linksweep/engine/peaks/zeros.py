@@ -10,7 +10,7 @@ Source: Dowell and Jarratt, A modified regula falsi method, BIT 11 (1971).
 """
 
 from linksweep.engine.kernel.instructions import call
-from linksweep.engine.peaks.abreast import BLOCKS, gather, place_samples
+from linksweep.engine.peaks.abreast import BLOCKS, place_samples
 from linksweep.engine.peaks.search import HALF
 
 MOST_ZEROS = 12
@@ -28,8 +28,8 @@ UNKNOWN, NONE, OPEN, FOUND = range(4)
 
 
 def find_zeros(
-    first, last, designs, lanes, sizes, parameters, parameter_at, strides, grades, prepare, sample, evaluate, digits,
-    inputs, constants, x, rows, zeros_at, gathered, zeros
+    first, last, designs, lanes, sizes, parameters, parameter_at, grades, prepare, sample, evaluate, constants, x, rows,
+    zeros_at, gathered, zeros
 ):  # fmt: skip
     """Write the zeros of pieces in blocks `first` … `last` to `zeros` (number, piece, nth): tangents, half turns."""
     none = first - first
@@ -37,8 +37,7 @@ def find_zeros(
         count = none
         for block in range(start, min(start + BLOCKS, last)):
             own = constants[block - start]
-            gather(block * lanes, designs, lanes, sizes, parameters, parameter_at, strides, digits, inputs)
-            call(prepare, (inputs, own))
+            call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
             place_samples(own, lanes, grades, x)
             call(sample, (own, x, rows))
             for lane in range(lanes):

@@ -118,9 +118,12 @@ class Graph:
         """Return a copy of a node of another graph, with operands of this one."""
         return self._make(node.operator, operands, node.dims, node.value)
 
+    def find(self, operator: str, *operands: Node) -> Node | None:
+        """Return the node of an operation on these operands, if there is one."""
+        return self._known.get(_key(operator, operands, None))
+
     def _make(self, operator: str, operands: tuple[Node, ...], dims: frozenset[str], value) -> Node:
-        positions = tuple(x.position for x in operands)
-        key = (operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value)
+        key = _key(operator, operands, value)
         if key not in self._known:
             self._known[key] = Node(self, operator, operands, dims, value)
         return self._known[key]
@@ -202,3 +205,9 @@ class Graph:
         if x.operator == "negate":
             return x.operands[0]
         return self.operation("negate", x)
+
+
+def _key(operator: str, operands: tuple[Node, ...], value: object) -> tuple[str, tuple[int, ...], object]:
+    """Return what equal operations have in common."""
+    positions = tuple(x.position for x in operands)
+    return operator, tuple(sorted(positions)) if operator in COMMUTATIVE else positions, value
