@@ -87,13 +87,12 @@ def search(
     columns = state.shape[1]
     signals = columns // lanes
     width = best.shape[1] // signals
-    none = first - first  # a literal 0 would be a type of its own, and every function be compiled for it, too
     for signal in range(signals):
         for lane in range(lanes):
             state[NUMBER, signal * lanes + lane] = signal
     for start in range(first, last, BLOCKS):
         stop = min(start + BLOCKS, last)
-        count = none
+        count = 0
         for block in range(start, stop):
             own = constants[block - start]
             call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
@@ -107,15 +106,15 @@ def search(
                 pick_samples(rows, x, lanes, signal * lanes, state)
             predict_vertices(state, columns)
             place_left(state, columns)
-            call(evaluate, (own, state, PLACE, F_LEFT, HALF_TURN, NUMBER, none, columns))
+            call(evaluate, (own, state, PLACE, F_LEFT, HALF_TURN, NUMBER, 0, columns))
             place_right(state, columns)
-            call(evaluate, (own, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, none, columns))
+            call(evaluate, (own, state, PLACE, F_RIGHT, HALF_TURN, NUMBER, 0, columns))
             step_to_vertices(state, columns)
             place_middle(state, columns)
-            call(evaluate, (own, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, none, columns))
+            call(evaluate, (own, state, PLACE, F_MIDDLE, HALF_TURN, NUMBER, 0, columns))
             correct_vertices(state, columns)
             place_last(state, columns)
-            for k in range(none, columns, lanes):
+            for k in range(0, columns, lanes):
                 if last_trials(state, k, lanes) > 0:
                     call(evaluate, (own, state, PLACE, F_LAST, HALF_TURN, NUMBER, k, k + lanes))
             settle_peaks(state, columns)
@@ -126,7 +125,7 @@ def search(
                     if not smooth or state[FINAL, column + lane] == 0.0:
                         if count + 2 * HALF > brackets.shape[1]:
                             refine(brackets, count, lanes, width, start, constants, gathered, evaluate, best)
-                            count = none
+                            count = 0
                         own_tag = tag + lane
                         count = open_brackets(
                             rows, x, lanes, column + lane, lane, smooth, even, state, own_tag, brackets, count, best

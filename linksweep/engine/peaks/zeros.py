@@ -32,9 +32,8 @@ def find_zeros(
     zeros_at, gathered, zeros
 ):  # fmt: skip
     """Write the zeros of pieces in blocks `first` … `last` to `zeros` (number, piece, nth): tangents, half turns."""
-    none = first - first
     for start in range(first, last, BLOCKS):
-        count = none
+        count = 0
         for block in range(start, min(start + BLOCKS, last)):
             own = constants[block - start]
             call(prepare, (block * lanes, designs, sizes, parameters, parameter_at, own))
