@@ -105,7 +105,7 @@ def test_a_turn_follows_a_piece_there_and_back(start, end):
 def zeros_of(height) -> np.ndarray:
     """Return the zeros [rad] of a function of the angle that follows a piece."""
 
-    def prepare(inputs, constants):
+    def prepare(first, designs, sizes, parameters, parameter_at, constants):
         constants[:] = 1.0
 
     def sample(constants, x, rows):
@@ -119,8 +119,8 @@ def zeros_of(height) -> np.ndarray:
     one, places = np.zeros(1, dtype=np.int64), np.full((2, 1, zeros.MOST_ZEROS), np.nan)
     with np.errstate(all="ignore"):
         zeros.find_zeros(
-            0, 1, 1, 1, one + 1, np.zeros(1), one, one[:, None], laid_out.grades(), prepare, sample, evaluate,
-            one[:, None].copy(), np.zeros(1), np.zeros((BLOCKS, 2)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
+            0, 1, 1, 1, one + 1, np.zeros(1), one, laid_out.grades(), prepare, sample, evaluate,
+            np.zeros((BLOCKS, 2)), np.zeros(2 * PLACED), np.zeros(SAMPLES + 1),
             np.zeros((zeros.ZERO_ROWS, 99)), np.zeros(2), places,
         )  # fmt: skip
     angles = 2.0 * np.arctan(places[0, 0]) + np.pi * places[1, 0]
