@@ -31,6 +31,7 @@ def in_python(monkeypatch):
         return namespace["kernel"]
 
     monkeypatch.setattr(run, "compiled", kernel)
+    monkeypatch.setattr(run, "fits_side_by_side", lambda fused: False)  # its loops over vectors are no Python
     monkeypatch.setattr(run, "COMPILE_AFTER", -1)
     monkeypatch.setattr(laid_out, "INTERPRETED_DESIGNS", math.inf)
     for made in (run.runner, laid_out.searcher):
