@@ -52,15 +52,15 @@ OF = {"masses on one geometry": ("F32", "F32_mean", "T12_rms", "T12")}
 
 @pytest.mark.parametrize("name", long_but(MACHINES, "as much at −θ as at θ", "parts of turns", "masses on three"))
 def test_designs_side_by_side_have_the_bits_of_those_interpreted(name):
-    def found(threads=1):
+    def largest(threads=1):
         return ls.peaks(MACHINES[name], OF.get(name), theta2=72, threads=threads)
 
     with way("interpreted"):
-        expected = found()
+        expected = largest()
     with way("compiled"):
-        assert 'running("largest_sample"' in kernel_of(found).sources[0]
-        xr.testing.assert_identical(found(), expected)
-        xr.testing.assert_identical(found(threads=2), expected)
+        assert 'running("largest_sample"' in kernel_of(largest).sources[0]
+        xr.testing.assert_identical(largest(), expected)
+        xr.testing.assert_identical(largest(threads=2), expected)
 
 
 def test_samples_are_the_same_or_opposite_at_minus_theta_by_their_bits():

@@ -83,17 +83,17 @@ def errors_of(scene: ls.Scene, theta2: float, random: np.random.Generator, most:
             if scene.table.quantity[name].squared:  # the magnitude of no force has no derivative
                 errors[name][values[name] < NOTHING * (slopes[name] * sizes).max(axis=1)] = 0.0
     own = {name: _turned(name, error) for name, error in own.items()}
-    found = _relative(values, slopes, own, errors, sizes, (drawn, paths))
-    rows = np.flatnonzero(found.derivative > LARGE)
+    relative = _relative(values, slopes, own, errors, sizes, (drawn, paths))
+    rows = np.flatnonzero(relative.derivative > LARGE)
     if not len(rows):
-        return found._replace(designs=count)
+        return relative._replace(designs=count)
     changed = _changed_by_a_digit(some(scene, rows, numbers.designs), paths, theta2, random)
     with fifty_digits():
         changes = {name: np.abs((changed[name] - exact_slopes[name][rows]).astype(float)) for name in drawn}
     values, slopes = ({name: of[name][rows] for name in drawn} for of in (values, slopes))
     effect = _relative(values, slopes, values, changes, sizes[rows], (drawn, paths)).derivative
-    found.over_digit[rows] = found.derivative[rows] / effect
-    return found._replace(designs=count)
+    relative.over_digit[rows] = relative.derivative[rows] / effect
+    return relative._replace(designs=count)
 
 
 def _changed_by_a_digit(

@@ -37,7 +37,7 @@ Emit = Callable[..., Any]
 
 
 class Emitted(Protocol):
-    """What is called like a function, and writes instructions in the place of the call."""
+    """A function that writes its instructions in the place of its call."""
 
     text: str
     """A text that differs wherever the instructions do."""

@@ -58,12 +58,12 @@ def _per_shown_unit(ds: xr.Dataset, system: UnitSystem) -> xr.Dataset:
     """Return a Dataset with its derivatives per unit in which their parameters are shown."""
     slopes = [name for name in ds.data_vars if str(name).endswith("_derivative") and "parameter" in ds[name].dims]
     units = [str(unit) for unit in ds.parameter_unit.values] if slopes and "parameter_unit" in ds else []
-    shown = [system.unit(unit) for unit in units]
-    if shown == units:
+    new_units = [system.unit(unit) for unit in units]
+    if new_units == units:
         return ds
     per = xr.Variable("parameter", [system.size(unit) for unit in units])
     values = {name: ds[name].copy(data=(ds[name].variable * per).transpose(*ds[name].dims)) for name in slopes}
-    return ds.assign(values).assign_coords(parameter_unit=ds.parameter_unit.copy(data=np.array(shown)))
+    return ds.assign(values).assign_coords(parameter_unit=ds.parameter_unit.copy(data=np.array(new_units)))
 
 
 def _converted(values: xr.Variable, unit: str, system: UnitSystem) -> xr.Variable:

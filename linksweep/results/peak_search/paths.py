@@ -190,8 +190,8 @@ def _jam_angles(group: Group) -> list[Array]:
     a force may have a limit there."""
     scene = group.scene
     checks = scene.mechanism.driven_findings(scene.motion | {"drive": scene.drive}) if scene.mechanism.rubs else ()
-    found = [findings(*map(group.number, numbers)) for findings, numbers in checks]
-    return [angles["jam_angle"].values for angles in found if "jam_angle" in angles]
+    angles_of = [findings(*map(group.number, numbers)) for findings, numbers in checks]
+    return [angles["jam_angle"].values for angles in angles_of if "jam_angle" in angles]
 
 
 def distinct(angles: Array) -> Array:

@@ -137,8 +137,8 @@ def _header_problems(name: str, rows: list[Row]) -> list[str]:
 
 def _heading(cell: str) -> Heading:
     """Return the name of a column and the unit that it states, as in "P [lbf]"."""
-    found = HEADING.fullmatch(cell)
-    return Heading(found[1], found[2].strip()) if found else Heading(cell, None)
+    match = HEADING.fullmatch(cell)
+    return Heading(match[1], match[2].strip()) if match else Heading(cell, None)
 
 
 def _column(table: dict[str, Any], headings: list[Heading]) -> int:
@@ -148,11 +148,11 @@ def _column(table: dict[str, Any], headings: list[Heading]) -> int:
         listed = ", ".join(names[1:])
         refuse([] if len(names) == 2 else [f"csv: column is missing; write column = one of {listed}"])
         return 1
-    wanted = table["column"]
-    if isinstance(wanted, str) and _heading(wanted) in headings[1:]:
-        return 1 + headings[1:].index(_heading(wanted))
-    refuse(name_problems("column", wanted, names[1:]))
-    return 1 + names[1:].index(wanted)
+    column = table["column"]
+    if isinstance(column, str) and _heading(column) in headings[1:]:
+        return 1 + headings[1:].index(_heading(column))
+    refuse(name_problems("column", column, names[1:]))
+    return 1 + names[1:].index(column)
 
 
 def _unit_of_column(place: str, heading: Heading, kind: str, unit: str | None) -> str | None:

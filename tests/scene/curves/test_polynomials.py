@@ -72,7 +72,7 @@ def test_what_is_no_cubic_is_none():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_peaks_with_tables_reach_the_densest_samples(kind):
-    """Of a machine whose frame is turned, with a torque and the gas pressure of two turns on an engine that rubs."""
+    """Test a machine whose frame is turned, and an engine that rubs with the gas pressure of two turns."""
     rough = scene(ls.Load("rocker", torque=table(), interpolation=kind), gravity=(0.0, -9.81))
     engine = ls.SliderCrank(
         ls.Link(xr.DataArray([0.03, 0.04, 0.05], dims="design"), 1.0, 1e-3), ls.Link(0.14, 1.0, 1e-3), 0.5, friction=0.1
