@@ -40,7 +40,7 @@ CHUNK = 50_000
 """Designs per chunk: some tenths of a second of work, and no more is lost by a kill."""
 
 SLOW_CHUNK = 1000
-"""Designs per chunk where loads or speeds change with the angle: exact peaks take a quarter of a millisecond each."""
+"""Designs per chunk where loads or speeds change with the angle: exact peaks may take half a millisecond each."""
 
 LONGEST_NAME = 255
 """Most bytes in the name of a file."""
