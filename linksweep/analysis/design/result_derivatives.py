@@ -56,7 +56,7 @@ OUTPUT = {"stroke": "x_slider", "swing": "theta4"}
 TRAVEL = "_travel"
 FLYWHEEL = "flywheel_inertia"
 NOTHING = 1e-13
-"""Part of what a parameter as large again would change a magnitude by, below which it is zero but for rounding."""
+"""Size, relative to the change for a parameter twice as large, below which a magnitude is zero but for rounding."""
 MOTION = "omega2", "alpha2"
 """Parameters that move no place."""
 STATUS_OF_LIFE = np.array([OK, ARC_END, NONE, UNBOUNDED, NONE])

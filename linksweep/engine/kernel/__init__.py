@@ -1,4 +1,5 @@
 """Write and compile the kernel of a plan: nested loops over design dims, designs side by side, reductions.
 
-Only `compile` imports numba.
+numba compiles the kernels of plans (`compile`). Instructions alone, and the search for peaks, which `translate` turns
+into instructions, become machine code without it (`machine_code`).
 """

@@ -22,7 +22,7 @@ from linksweep.engine.kernel import vectors
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """IEEE division, no GIL, and no fast-math at all: contracted or reordered sums would change bits. Kernels allocate no
-arrays, so numba's reference counting (`_nrt`) is off: in a search its cost shows."""
+arrays, so numba's reference counting (`_nrt`) is off."""
 
 SIGNATURE = (
     "void(i8, i8, i8, i8[::1], f8[::1], i8[::1], f8[:, ::1], i8[::1], "

@@ -20,7 +20,7 @@ import ast
 import builtins
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial, reduce
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn, Protocol
@@ -32,8 +32,6 @@ from linksweep.engine.kernel.values import ARITHMETIC, COMPARISONS, Values, each
 
 SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(values)
 """All that enters the machine code besides functions and instructions."""
-Emit = Callable[..., Any]
-"""emit(builder, *values) writes instructions, and returns a value, a tuple of such, or nothing."""
 
 
 class Emitted(Protocol):
@@ -43,26 +41,20 @@ class Emitted(Protocol):
     """A text that differs wherever the instructions do."""
 
     def emit(self, builder: Any, *arguments: Any) -> Any:
-        """Write the instructions."""
+        """Write the instructions, and return a value, a tuple of such, or nothing."""
 
 
-def translated(
-    function: Callable, kinds: tuple[str, ...], replaced: Mapping[Any, Emit] | None = None, text: str = ""
-) -> MachineCode:
-    """Return a function as machine code, for these kinds of arguments; it returns an integer or nothing.
-
-    `replaced` has the instructions to write for some functions that it calls; `text` differs wherever these do.
-    """
-    instead: dict[Any, Emit] = {call: write_call, **(replaced or {})}
+def translated(function: Callable, kinds: tuple[str, ...]) -> MachineCode:
+    """Return a function as machine code, for these kinds of arguments; it returns an integer or nothing."""
 
     def emit(builder: Any, *arguments: Any) -> Any:
-        return Translator(builder, instead).of_call(function, arguments)
+        return Translator(builder).of_call(function, arguments)
 
     emit.__name__ = function.__name__
-    return machine_code(emit, kinds, f"{SOURCE} {text} {'  '.join(_texts(function, instead))}")
+    return machine_code(emit, kinds, f"{SOURCE} {'  '.join(_texts(function))}")
 
 
-def _texts(function: Any, instead: Mapping[Any, Emit]) -> list[str]:
+def _texts(function: Any) -> list[str]:
     """Return texts that differ wherever a function, or what it calls, does."""
     texts: dict[str, str] = {}
     waiting = [function]
@@ -74,7 +66,7 @@ def _texts(function: Any, instead: Mapping[Any, Emit]) -> list[str]:
         for name in code.co_names:
             value = names.get(name)
             key = f"{getattr(value, '__module__', one.__module__)}.{name}"
-            if isinstance(value, FunctionType) and value not in instead and key not in texts:
+            if isinstance(value, FunctionType) and value is not call and key not in texts:
                 waiting.append(value)
             elif isinstance(value, int | float):
                 texts[f"{one.__module__}.{name}"] = repr(value)
@@ -96,9 +88,8 @@ class Frame(NamedTuple):
 class Translator(Values):
     """Translator of calls, in the place of a builder."""
 
-    def __init__(self, builder: Any, instead: Mapping[Any, Emit]) -> None:
+    def __init__(self, builder: Any) -> None:
         super().__init__(builder)
-        self.instead = instead
         self.frames: list[Frame] = []
         self.loops: list[Any] = []
         """The blocks after the loops that are being translated."""
@@ -362,8 +353,8 @@ class Translator(Values):
 
     def _call(self, node: ast.Call) -> Any:
         function, arguments = self._value(node.func), self._values(node.args)
-        if function in self.instead:
-            return self.instead[function](self.builder, *each(self.typed, arguments))
+        if function is call:
+            return write_call(self.builder, *each(self.typed, arguments))
         if hasattr(function, "emit"):
             return function.emit(self.builder, *each(self.typed, arguments))
         if isinstance(function, FunctionType):

@@ -159,11 +159,9 @@ class _Writer:
             yield _Value(self, j, ONE_BY_ONE)
 
     def _loop(self, first: _Value | int, last: _Value | int, step: Any) -> Iterator[Any]:
-        from numba.core import cgutils
-
         outermost = self.head is None
         self.head = self.head or self.builder.block
-        with cgutils.for_range_slice(self.builder, self.integer(first), self.integer(last), step, step.type) as (j, _):
+        with self.instructions.loop(self.integer(first), self.integer(last), step) as (j, _):
             yield j
         self.head = None if outermost else self.head
 

@@ -45,8 +45,6 @@ ALONG, END = "piece_tangent", "piece_end"
 the angle from the piece's start or end, and which of the two."""
 NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 """Widths of the near-toggles in those middles."""
-
-
 SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """

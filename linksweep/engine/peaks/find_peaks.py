@@ -33,7 +33,6 @@ INTERPRETED_SAMPLES = 100_000
 DESIGNS_PER_THREAD = 1000
 """Designs that pay for another thread."""
 
-
 Values = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """A function of tags and places that returns the values of the tagged signals there."""
 
