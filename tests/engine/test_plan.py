@@ -186,7 +186,7 @@ def test_operations_of_a_design_are_done_once():
 
 
 @pytest.mark.parametrize("name", ["press", "watt-2"])
-def test_ten_derivatives_take_at_most_five_times_the_operations_and_few_divisions(name):
+def test_ten_derivatives_take_at_most_four_and_a_half_times_the_operations_and_few_divisions(name):
     """Adjoints divide only by what changes with the angle: by each square root once, and by what a quotient is over."""
     machine, force = ls.example(name), "F32_squared"
     paths = tuple(path for path in free(machine) if path.partition(".")[0] in machine.mechanism.roles)[:10]
