@@ -1,6 +1,7 @@
 """A bracket keeps its highest point in the middle, and closes on the peak, wherever trials fall."""
 
 import itertools
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -14,6 +15,16 @@ def one(points: tuple[float, ...]) -> np.ndarray:
     table = np.zeros((b.BRACKET_ROWS, b.BLOCK))
     table[list(b.POINTS), 0], table[b.WIDTH, 0], table[b.FIRST_WIDTH, 0] = points, 4.0 * (points[4] - points[0]), 2.0
     return table
+
+
+def refine(table: np.ndarray, best: np.ndarray, height: Callable[[np.ndarray], np.ndarray]) -> None:
+    for _ in range(b.ROUNDS):
+        b.place_trials(table, 1)
+        table[list(b.VALUES), 0] = height(table[list(b.TRIALS), 0])
+        with np.errstate(all="ignore"):
+            b.insert_trials(table, 1)
+        if not b.advance(table, 1, best):
+            return
 
 
 @pytest.mark.parametrize(("place", "value"), TRIALS)
@@ -41,14 +52,23 @@ def test_brackets_close_on_smooth_peaks_kinks_and_jumps(peak, shape):
     table, best = one((-1.0, height(-1.0), start, height(start), 1.0, height(1.0))), np.zeros((b.BEST_ROWS, 1))
     if height(start) < max(height(-1.0), height(1.0)):
         table[[b.XB, b.FB], 0] = peak - 1e-3, height(peak - 1e-3)
-    for _ in range(b.ROUNDS):
-        b.place_trials(table, 1)
-        table[list(b.VALUES), 0] = height(table[list(b.TRIALS), 0])
-        with np.errstate(all="ignore"):
-            b.insert_trials(table, 1)
-        if not b.advance(table, 1, best):
-            break
+    refine(table, best, height)
     value, place, _, beyond = best[:, 0]
     assert value <= 5.0 + shape(0.0) + 1e-15
     assert 5.0 + shape(0.0) - value <= max(beyond, 1e-12)
     assert abs(place - peak) < 1e-6
+
+
+@pytest.mark.parametrize("away", [0.02, 0.096 / np.sqrt(2.002), 0.2])
+def test_two_equal_peaks_are_found_from_the_dip_between_them(away):
+    """The second round's trials fall 0.096 from the dip, where the curve is as high as the dip if away = 0.096/√2."""
+
+    def height(x):
+        square = (x / away) ** 2
+        return 5.0 + 5e-9 * square * (2.0 - square)
+
+    table, best = one((-1.0, height(-1.0), 0.0, 5.0, 1.0, height(1.0))), np.zeros((b.BEST_ROWS, 1))
+    refine(table, best, height)
+    value, place, _, beyond = best[:, 0]
+    assert 5.0 + 5e-9 - value <= min(beyond, 5e-11)
+    assert abs(place) == pytest.approx(away, rel=1e-3)

@@ -64,12 +64,13 @@ def insert_trials(a, f_a, b, f_b, c, f_c, x1, x2, x3, f1, f2, f3, first_width, f
     a, f_a, b, f_b, c, f_c = bracket
     top = f_b - 0.5 * RISE * abs(f_b)  # lowered by half the tolerance
     rise = larger((top - f_a) * ((c - b) / (b - a)), (top - f_c) * ((b - a) / (c - b)))
+    rise = larger(rise, 0.0)  # below 0, `advance` would drop the highest bracket while it is wide: b may be in a dip
     tolerance = larger(RISE * abs(f_b), floor)
     converged = (tolerance < rise).where(0.0, (NARROW * first_width < c - a).where(0.0, 1.0))
     empty = c - a < 1e-15 * (1e-9 + abs(b))  # at a jump or a kink: no number lies between its points
     step = vertex_step(*bracket)
     place = (a - b < step).where((step < c - b).where(b + step, b), b)
-    beyond = larger(empty.where(f_b - larger(f_a, f_c), rise), 0.0) + RISE * abs(f_b)
+    beyond = empty.where(f_b - larger(f_a, f_c), rise) + RISE * abs(f_b)
     return *bracket, rise, empty.where(1.0, converged), empty.where(b, place), beyond
 
 
