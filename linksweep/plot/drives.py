@@ -71,7 +71,8 @@ def flywheel(ds: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     'crank speed $\\\\omega_2$ [rad/s]'
     """
     require_dataset(ds, "ls.flywheel")
-    refuse([] if {"speed", "speed_max"} <= ds.keys() else ["ds has no speed: take what ls.flywheel returns"])
+    known = {"speed", "speed_max"} <= ds.keys()
+    refuse([] if known else ["ds has no speed with its extremes: take what ls.flywheel returns"])
     signals.require_angles(ds)
     ds = results_in_shown_units(ds)
     angles, speed = signals.revolution(ds, ds["speed"])
@@ -268,7 +269,7 @@ def motor_load(ds: xr.Dataset, motor: AnyMotor, *, ax: Axes | None = None) -> Ax
     """
     require_dataset(ds, "ls.motor_load")
     known = {"motor_torque", "torque_margin_min"} <= ds.keys()
-    refuse([] if known else ["ds has no motor_torque: take what ls.motor_load returns"])
+    refuse([] if known else ["ds has no motor_torque with its least margin: take what ls.motor_load returns"])
     signals.require_angles(ds)
     results, system, ds = ds, units_of(ds), results_in_shown_units(ds)
     _, speed, torque, margin = signals.revolution(ds, ds["motor_speed"], ds["motor_torque"], ds["torque_margin"])

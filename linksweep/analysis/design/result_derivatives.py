@@ -47,6 +47,7 @@ from linksweep.results.derivatives.of_peaks import (
 )
 from linksweep.results.peaks import peaks
 from linksweep.scene.at_sections import with_sections
+from linksweep.scene.derivatives.differentiated import MOTION
 from linksweep.scene.parameters import free
 from linksweep.scene.scene import Scene
 
@@ -57,8 +58,6 @@ TRAVEL = "_travel"
 FLYWHEEL = "flywheel_inertia"
 NOTHING = 1e-13
 """Size, relative to the change for a parameter twice as large, below which a magnitude is zero but for rounding."""
-MOTION = "omega2", "alpha2"
-"""Parameters that move no place."""
 STATUS_OF_LIFE = np.array([OK, ARC_END, NONE, UNBOUNDED, NONE])
 """Status of the derivatives of a life, by the status of the life: the ends of a part of a revolution move."""
 

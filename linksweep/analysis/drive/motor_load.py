@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from linksweep.analysis.drive.drive_train import EFFICIENCY, RATIO
 from linksweep.analysis.drive.motors.motor import AnyMotor, motor_problems
 from linksweep.base.checked_number import checked_number
 from linksweep.base.frozen import with_arrays
-from linksweep.base.validate import Number, Rule, quote, refuse
+from linksweep.base.validate import Number, refuse
 from linksweep.chains.between_links import pair_of
 from linksweep.engine.quantity import opposite_of, unless_jammed
 from linksweep.results.compute import known_names, require
@@ -29,13 +30,11 @@ from linksweep.scene.grid import crank_grid
 from linksweep.scene.pairs import Array, in_period
 from linksweep.scene.scene import Scene
 
-RATIO = Rule("dimensionless", above=0.0)
-EFFICIENCY = Rule("dimensionless", above=0.0)
 ROW, PAIR = "_row", "_pair"
 """Dims of designs on their motors, and of pairs of one of these and an angle."""
 
 
-class Drive(NamedTuple):
+class GearedMotor(NamedTuple):
     """A motor behind a gear."""
 
     motor: AnyMotor
@@ -52,9 +51,9 @@ class Drive(NamedTuple):
         """Return the largest torque of the motor where the driven link turns with omega."""
         return self.motor.torque_at(abs(self.ratio * omega))
 
-    def some(self, places: dict[str, xr.DataArray]) -> Drive:
+    def some(self, places: dict[str, xr.DataArray]) -> GearedMotor:
         """Return the drives at places along dims."""
-        return Drive(*(
+        return GearedMotor(*(
             with_arrays(number, lambda a: a.isel({dim: at for dim, at in places.items() if dim in a.dims}))
             for number in self
         ))  # fmt: skip
@@ -121,13 +120,12 @@ def motor_load(
     require(scene, "drives")
     refuse(_problems(scene, motor))
     ratio, efficiency = checked_number("ratio", ratio, RATIO), checked_number("efficiency", efficiency, EFFICIENCY)
-    refuse([f"efficiency = {quote(efficiency)}: must be at most 1"] if np.any(efficiency > 1.0) else [])
     torque = scene.mechanism.drives[scene.drive]
     _, link = pair_of(torque) or (1, 2)
     omega, alpha = f"omega{link}", f"alpha{link}"
     cycle = sweep(scene, theta2, of=[torque, omega, alpha], threads=threads)
     index = scene.mechanism.index
-    drive, T = Drive(motor, ratio, efficiency), cycle[torque].broadcast_like(cycle[index])
+    drive, T = GearedMotor(motor, ratio, efficiency), cycle[torque].broadcast_like(cycle[index])
     speed, needed = ratio * cycle[omega], drive.torque(T, cycle[omega], cycle[alpha])
     available = drive.available(cycle[omega])
     margin = available - abs(needed)
@@ -165,7 +163,7 @@ class Loaded(NamedTuple):
 
     group: Group
     names: tuple[str, ...]
-    drives: Drive
+    drives: GearedMotor
     motors: int
 
     @property
@@ -195,7 +193,12 @@ def _part(theta2: Any, scene: Scene) -> Part | None:
 
 
 def _least_margin(
-    scene: Scene, names: tuple[str, ...], drive: Drive, margin: xr.DataArray, part: Part | None, threads: int | None
+    scene: Scene,
+    names: tuple[str, ...],
+    drive: GearedMotor,
+    margin: xr.DataArray,
+    part: Part | None,
+    threads: int | None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Return the least margin of each design, and its angle [degree], by the search for peaks."""
     index = scene.mechanism.index
@@ -238,7 +241,7 @@ def _poles(group: Group, torque: str, part: Part | None, threads: int | None) ->
 
 
 def _loaded(
-    group: Group, names: tuple[str, ...], drive: Drive, designs: xr.DataArray, own: tuple[str, ...]
+    group: Group, names: tuple[str, ...], drive: GearedMotor, designs: xr.DataArray, own: tuple[str, ...]
 ) -> tuple[Loaded, Array]:
     """Return a group's designs on their motors, and the row-major place of each row among all `designs`; the scene's
     own dims are those of the group."""

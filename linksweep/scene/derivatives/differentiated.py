@@ -39,7 +39,7 @@ from linksweep.scene.scene import Scene
 from linksweep.scene.strokes import stroke_of
 
 MOTION = ("omega2", "alpha2")
-"""Parameters of the crank's motion, on which machine and loads at an angle do not depend."""
+"""Parameters of the crank's motion, which move no place: machine and loads at an angle do not depend on them."""
 ANGLE = "crank angle"
 """The crank angle [rad] as a parameter."""
 ROUNDING = 1e-9

@@ -354,7 +354,7 @@ def test_refused_curves(words, message):
     ("words", "message"),
     [
         ({"ratio": 0.0}, "ratio = 0: must be greater than 0"),
-        ({"efficiency": 1.5}, "efficiency = 1.5: must be at most 1"),
+        ({"efficiency": 1.5}, "efficiency = 1.5: must be greater than 0 and at most 1"),
         ({"motor": 3.0}, "motor = 3.0: must be a Motor"),
         ({"scene": ls.Scene(INVERTED, 1.0, drive="cylinder")}, 'drive = "cylinder": must be the torque on a link'),
     ],
