@@ -28,8 +28,10 @@ CALLS = {
     "T12 alone": (partial(ls.sweep, general, 72, of=("T12",)), 1),
     "magnitudes": (partial(ls.sweep, general, 72, of=PINS), 1 + len(PINS)),
     "peaks": (partial(ls.peaks, designs, theta2=72, threads=1), 1),
+    "peaks of designs side by side": (partial(ls.peaks, scene(batch(25, *ALL)), theta2=72, threads=1), 2),
 }
-"""Calls, and how many square roots their kernels take per sample, once each."""
+"""Calls, and how many square roots their kernels take per sample, once each; those of designs side by side have a loop
+over samples and one over pairs of them."""
 
 
 def width() -> str:

@@ -60,10 +60,12 @@ class MachineCode:
 
 
 def axes(kind: str) -> int:
+    """Return the number of axes of an array of this kind; 0 for an integer."""
     return kind.count(":")
 
 
 def address(array: np.ndarray) -> int:
+    """Return where an array starts in memory."""
     return array.__array_interface__["data"][0]
 
 

@@ -28,14 +28,13 @@ from linksweep.engine.interpreter.evaluate import evaluate
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
+from linksweep.engine.peaks.lanewise import Values
 from linksweep.engine.peaks.search import HALF, PLACED, SAMPLES
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.operators import interpret
 from linksweep.engine.trace.parity import parities
 from linksweep.engine.trace.plan import Plan
 
-Values = dict[Node, Any]
-"""Values of nodes: numbers, arrays, or instructions that compute vectors."""
 SOURCE = inspect.getsource(sys.modules[__name__]) + inspect.getsource(parities)
 """All that enters the machine code besides nodes and instructions."""
 TANGENT, FAR = "half_tangent", "far_half"
