@@ -25,6 +25,8 @@ COS_SIGNS, SIN_SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.
 
 def cos_sin(degrees):
     """Return cosine and sine of an angle [degree]: a number, an array or a DataArray; two of the kind passed in."""
+    if type(degrees) is float:  # a number takes long to look for what it is not
+        return _of_angle(degrees)[:2]
     return cos_sin_low_words(degrees)[:2]
 
 

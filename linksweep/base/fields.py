@@ -281,7 +281,7 @@ def converted_fields(owner: Any) -> dict[str, Any]:
 
 def left_out(value: Any) -> bool:
     """Return whether a value is that of a field left out: None, or an empty text, list or record."""
-    if value is None or isinstance(value, str | tuple | list):
+    if value is None or isinstance(value, (str, tuple, list)):
         return not value
     return has_fields(value) and isinstance(value, Mapping) and not value
 
@@ -291,6 +291,9 @@ def has_fields(value: Any) -> bool:
     # looks as is_dataclass does, in a third of its time
     return hasattr(type(value), "__dataclass_fields__") and not callable(value)
 
+
+PLAIN = (float, str, type(None))
+"""Types of a value that holds no other."""
 
 Numbers = list[tuple[str, Any, str]]
 """Path, value and kind of each number."""
@@ -304,8 +307,12 @@ def numbers(owner: Any, prefix: str = "") -> Numbers:
     listed: Numbers = []
     for name, kind, _ in declared(owner):
         value = getattr(owner, name)
-        if type(value) in (float, str, type(None)):  # most fields: one look is enough
-            listed += [(prefix + name, value, kind.rule.kind)] if type(kind) is NumberField else []
+        if type(value) in PLAIN:  # most fields: one look is enough
+            if type(kind) is NumberField:
+                listed.append((prefix + name, value, kind.rule.kind))
+        elif type(kind) is PairField and type(value) is tuple and {*map(type, value)} == {float}:
+            pair = zip((1, 2), value, kind.numbers, strict=True)
+            listed += [(f"{prefix}{name}[{k}]", item, each.rule.kind) for k, item, each in pair]
         else:
             listed += numbers_in(prefix + name, value, kind)
     return listed

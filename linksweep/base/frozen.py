@@ -84,6 +84,27 @@ def cached_beside(function: Callable[..., Result]) -> Callable[..., Result]:
     return cached
 
 
+def cached_copy(copied: Callable[[Owner], Owner]) -> Callable[[Owner], Owner]:
+    """Cache the copy that a function makes of a frozen object, in the object.
+
+    Where it returns the object itself nothing is kept: an object that held itself would outlive its last use, until the
+    garbage collector finds it.
+    """
+    name = f"_{copied.__name__}"
+
+    @wraps(copied)
+    def cached(owner: Owner) -> Owner:
+        kept: Owner | None = vars(owner).get(name)
+        if kept is not None:
+            return kept
+        made = copied(owner)
+        if made is not owner:
+            vars(owner)[name] = made
+        return made
+
+    return cached
+
+
 def _same(old: Any, new: Any) -> bool:
     """Return whether two values are the same object, or tuples of the same objects."""
     return old is new or (isinstance(new, tuple) and len(old) == len(new) and all(map(operator.is_, old, new)))

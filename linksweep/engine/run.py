@@ -177,14 +177,15 @@ def reduce_rows(
 
 def _interpreted(plan: Plan, inputs: Fields, grid: Grid, sizes: Sizes) -> dict[str, Field]:
     """Return every output of the plan without a kernel of its own."""
-    values = interpreter.evaluate(plan, aligned(plan, inputs, grid), {**sizes, grid.dim: len(grid.angles)})
-    return {name: _field(plan, node, values[node], grid, sizes) for name, node in plan.outputs.items()}
+    sizes = {**sizes, grid.dim: len(grid.angles)}
+    values = interpreter.evaluate(plan, aligned(plan, inputs, grid), sizes)
+    return {name: _field(dims, values[plan.outputs[name]], sizes) for name, dims in plan.dims_of_outputs.items()}
 
 
 def aligned(plan: Plan, inputs: Fields, grid: Grid) -> dict[Node, Numbers]:
     """Return the plan's inputs as arrays that broadcast, one axis per loop, then the index; scalars without dims."""
     fields = {**inputs, **{name: Field((grid.dim,), row) for name, row in zip(grid.names, grid.table, strict=True)}}
-    return {node: _align(plan, node.dims, fields[node.value]) for node in plan.nodes if node.operator == "input"}
+    return {node: _align(plan, node.dims, fields[node.value]) for node in plan.input_nodes}
 
 
 def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
@@ -194,10 +195,8 @@ def _align(plan: Plan, dims: frozenset[str], field: Field) -> Numbers:
     return values.reshape([next(shape) if dim in dims else 1 for dim in (*plan.loops, plan.index)])
 
 
-def _field(plan: Plan, node: Node, value: Numbers, grid: Grid, sizes: Sizes) -> Field:
-    dims = plan.dims(node)
-    shape = tuple(len(grid.angles) if dim == grid.dim else sizes[dim] for dim in dims)
-    return Field(dims, value.reshape(shape))  # a method: np.reshape takes as long as a row of samples
+def _field(dims: tuple[str, ...], value: Numbers, sizes: Sizes) -> Field:
+    return Field(dims, value.reshape(tuple(sizes[dim] for dim in dims)))  # np.reshape takes as long as a row of samples
 
 
 def _reduced_in_python(reduction: Reduction, field: Field, grid: Grid) -> tuple[Field, Field]:

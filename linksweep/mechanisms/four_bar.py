@@ -119,12 +119,13 @@ class FourBar(SingleDyad):
     @cached_property
     def _goes_through(self) -> bool:
         """True where a design may be a parallelogram or a kite, which change sides; other designs keep their bits."""
-        if any(map(is_lazy, self.by_role.values())):
+        lengths = self.by_role.values()
+        if any(map(is_lazy, lengths)):
             return True
-        a, b, c, d = map(bare, self.by_role.values())
+        a, b, c, d = map(bare, lengths)
         near = 1e-9 * (a + b + c + d)
         folds = abs(a + d - b - c) < near
-        if not np.any(folds):
+        if folds is False or not np.any(folds):  # numpy takes long to look at a plain truth value
             return False
         opposite, adjacent = abs(a - c) < near, abs(a - b) < near
         return bool(np.any(folds & (opposite | adjacent)))

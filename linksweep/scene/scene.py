@@ -24,7 +24,7 @@ from linksweep.base.fields import (
     of_kind,
     parameter,
 )
-from linksweep.base.frozen import bare, field_values, normalise, with_sound
+from linksweep.base.frozen import bare, cached_copy, field_values, normalise, with_sound
 from linksweep.base.validate import UNITS, Number, Rule, choice_problems, quote, refuse
 from linksweep.engine.quantity import Table
 from linksweep.engine.run import Grid
@@ -205,7 +205,7 @@ class Scene(ByContent):
     @cached_property
     def _not_plain(self) -> dict[str, tuple[Any, str]]:
         """The `numbers` that are not one float each."""
-        return {path: number for path, number in self.numbers.items() if not isinstance(number[0], float | None)}
+        return {path: number for path, number in self.numbers.items() if not isinstance(number[0], (float, type(None)))}
 
     @cached_property
     def parameters(self) -> dict[str, xr.Variable]:
@@ -277,7 +277,8 @@ class Scene(ByContent):
         """True where omega2 is a function of theta2, or an array over it."""
         return "omega2" in self.functions or self.mechanism.index in getattr(self.omega2, "dims", ())
 
-    @cached_property
+    @property
+    @cached_copy
     def at_one_angle(self) -> Scene:
         """Scene at one angle, for results that do not depend on it; the scene itself where nothing changes with it."""
         return self.at(self.grid(1))
@@ -287,7 +288,8 @@ class Scene(ByContent):
         """Mechanism alone, its crank turning at 1 rad/s."""
         return with_sound(self, omega2=1.0, alpha2=0.0, gravity=(0.0, 0.0), loads=())
 
-    @cached_property
+    @property
+    @cached_copy
     def bare(self) -> Scene:
         """Scene whose arrays have no labels, but for those of its loads."""
         parts = {name: value for name, value in field_values(self).items() if name != "loads"}

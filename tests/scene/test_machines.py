@@ -1,5 +1,7 @@
 """Example machines: each turns, keeps its power balance, survives its file, and moves as compass and ruler say."""
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -177,3 +179,16 @@ def test_the_cylinders_of_boom_and_stick_hold_all_moments_about_their_pivots():
         thrust = -sum(cross(place - pivot, force) for place, force in carried) / lever
         assert abs(at_rest[f"force_{cylinder}"] - thrust).max() < 1e-12 * abs(thrust).max()
     assert abs(at_rest.length_c1 - abs(pins["B"] - 0.45 + 0.5j)).max() < 1e-14
+
+
+@machines
+def test_a_scene_does_not_outlive_its_last_use(name):
+    scene = ls.example(name)
+    ls.sweep(scene, angles(name))
+    last = weakref.ref(scene.at_one_angle.bare), weakref.ref(scene)
+    gc.disable()  # nothing is left to it
+    try:
+        del scene
+        assert [each() for each in last] == [None, None]
+    finally:
+        gc.enable()

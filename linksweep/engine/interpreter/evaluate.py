@@ -57,7 +57,8 @@ def _rows(value: np.ndarray | np.float64, shape: tuple[int, ...], designs: int) 
     value = np.asarray(value)
     if designs > 1 and value.size == shape[-1]:
         designs, shape = 1, value.shape
-    rows = np.ascontiguousarray(np.broadcast_to(value, shape), dtype=np.float64).reshape(designs, -1)
+    spread = value if value.shape == shape else np.broadcast_to(value, shape)  # which takes long even for nothing
+    rows = np.ascontiguousarray(spread, dtype=np.float64).reshape(designs, -1)
     missing = REGISTER - rows.shape[1]
     return rows if missing <= 0 else np.concatenate([rows, np.repeat(rows[:, -1:], missing, axis=1)], axis=1)
 

@@ -43,8 +43,12 @@ class Plan:
         return tuple(sorted(alive, key=lambda node: node.position))
 
     @cached_property
+    def input_nodes(self) -> tuple[Node, ...]:
+        return tuple(node for node in self.nodes if node.operator == "input")
+
+    @cached_property
     def inputs(self) -> tuple[str, ...]:
-        return tuple(node.value for node in self.nodes if node.operator == "input")
+        return tuple(node.value for node in self.input_nodes)
 
     @cached_property
     def constants(self) -> tuple[Node, ...]:
@@ -58,6 +62,10 @@ class Plan:
         every = Counter(dim for node in self.nodes for dim in sorted(node.dims))
         dims = [dim for dim in every if dim != self.index]
         return tuple(sorted(dims, key=lambda dim: (-weight[dim], -every[dim], dim)))
+
+    @cached_property
+    def dims_of_outputs(self) -> Mapping[str, tuple[str, ...]]:
+        return {name: self.dims(node) for name, node in self.outputs.items()}
 
     @cached_property
     def stored(self) -> tuple[Node, ...]:

@@ -23,9 +23,7 @@ def document_text(raw: Words) -> str:
     radius = 30.0
     <BLANKLINE>
     """
-    return "\n".join(
-        head + "".join(f"{_key(key)} = {_value(words[key])}\n" for key in words) for head, words in _tables(raw)
-    )
+    return "\n".join([head + _lines(tuple(words)) % tuple(map(_value, words.values())) for head, words in _tables(raw)])
 
 
 def _tables(raw: Words) -> Iterator[tuple[str, Words]]:
@@ -38,8 +36,14 @@ def _tables(raw: Words) -> Iterator[tuple[str, Words]]:
     yield from (("[[loads]]\n", load) for load in raw.get("loads", ()))
 
 
+@lru_cache(maxsize=256)
+def _lines(keys: tuple[str, ...]) -> str:
+    """Return the lines of these keys, with "%s" for each value."""
+    return "".join(f"{_key(key).replace('%', '%%')} = %s\n" for key in keys)
+
+
 def _value(value: Any) -> str:
-    if type(value) in (float, int):
+    if type(value) is float or type(value) is int:
         return repr(value)
     if type(value) is str:
         return _word(value)

@@ -68,6 +68,8 @@ class _Writer(NamedTuple):
         if has_fields(value):
             return self._table(value, kind, where)
         if isinstance(value, (tuple, list)):
+            if {*map(type, value)} <= {float}:
+                return [*value]
             kinds = kind.items(value) or (kind,) * len(value)
             items = enumerate(zip(value, kinds, strict=True))
             return [self.written(item, each, (*where, k)) for k, (item, each) in items]
@@ -85,6 +87,8 @@ class _Writer(NamedTuple):
             value = getattr(part, name)
             if type(value) is float or (type(value) is str and value):
                 words[name] = value
+            elif value is None:
+                continue
             elif isinstance(each, NamedField) and each.inline:
                 words |= self._table(value, each, where)
             elif not left_out(value):
@@ -101,7 +105,7 @@ class _Writer(NamedTuple):
 def _implied(part: Any, kind: FieldKind, where: Where) -> bool:
     """Return whether a table needs no `type`: the scene, named things, the default of a list, a single class."""
     if not isinstance(kind, PartField):
-        return isinstance(part, Scene | Record)
+        return isinstance(part, (Scene, Record))
     return len(kind.classes) == 1 or (isinstance(where[-1], int) and type(part) is kind.default)
 
 

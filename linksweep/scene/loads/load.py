@@ -197,6 +197,8 @@ class Load(ChangingLoad):
     def sampled(self, path: str, revolution: Revolution) -> Load:
         """Return the load with all that changes over the revolution at its angles."""
         following = self.over is not None
+        if not following and {*map(type, self.changing)} <= {float, type(None)}:
+            return self
         sample = partial(self._followed, *self._positions(revolution)) if following else revolution.sample
         rules = (FORCE, FORCE, TORQUE) if self.force else (TORQUE,)
         *force, torque = (
