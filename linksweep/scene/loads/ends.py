@@ -44,5 +44,6 @@ def link_problems(path: str, item: str, from_: str, to: str, links: tuple[str, .
     """Return the problems of the links at the two ends; `item` is the place of a link in the value of an end."""
     problems = choice_problems(f"{path}.from_{item}", from_, (GROUND, *links))
     problems += choice_problems(f"{path}.to{item}", to, (GROUND, *links))
-    same = [f"{path}.to{item} = {to!r}: must be another link than that of from_"] if from_ == to else []
-    return problems or same
+    if problems or from_ != to:
+        return problems
+    return [f"{path}.to{item} = {to!r}: must be another link than that of from_"]

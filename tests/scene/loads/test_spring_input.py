@@ -102,6 +102,7 @@ REFUSED = [
     (ls.Damper(*(SPRING.from_, SPRING.to), np.inf), "loads[1].coefficient = inf N s/m: must be finite and at least 0"),
     (replace(WOUND, to="ground"), "loads[1].to = 'ground': must be another link than that of from_"),
     (replace(WOUND, from_="frame"), "loads[1].from_ = 'frame': must be one of ground, crank, coupler, rocker"),
+    (replace(WOUND, from_=xr.DataArray([0.1, 0.2], dims="n")), "loads[1].from_ = "),
     (replace(WOUND, rate=-5.0), "loads[1].rate = -5 N m/rad: must be at least 0"),
     (
         replace(WOUND, free_angle="90"),
