@@ -25,7 +25,8 @@ def in_python(monkeypatch):
     """Kernels, never numpy, but uncompiled."""
 
     def kernel(source: str, *_):
-        namespace = vars(reduce) | OPERATORS | {"in_vectors": whole_row, "number": np.float64, "math": math}
+        namespace = vars(reduce) | OPERATORS | {"number": np.float64, "math": math}
+        namespace |= {"in_vectors": whole_row, "in_vectors_ahead": whole_row}
         namespace["vectorised"] = lambda function: function
         exec(source, namespace)
         return namespace["kernel"]
@@ -41,8 +42,9 @@ def in_python(monkeypatch):
         made.cache_clear()
 
 
-def whole_row(first, last, samples):
-    return [slice(first, last)]
+def whole_row(first, last, samples, start=None):
+    row = slice(first, last)
+    return [(row, *start(row))] if start else [row]
 
 
 def over(random, sizes: dict[str, int]) -> xr.DataArray:

@@ -124,6 +124,24 @@ class Instructions:
             builder.branch(head)
         builder.position_at_end(after)
 
+    @contextmanager
+    def loop_ahead(
+        self, first: Any, last: Any, step: int, start: Callable[[Any], Iterable[Any]]
+    ) -> Iterator[tuple[Any, list[Any]]]:
+        """Write a loop over integers, as `loop` does; it yields the integer and the vectors that `start` writes for it.
+
+        Each pass starts the next one: divisions and roots take long, and nothing of this pass waits for them.
+        """
+        builder = self.builder
+        kept = [self.slot(self.wide(self.as_number(x))) for x in start(first)]
+        with self.loop(first, last, step) as (k, _):
+            values = [builder.load(place) for place in kept]
+            following = builder.add(k, self.integer(step))
+            following = builder.select(builder.icmp_signed("<", following, last), following, k)
+            for x, place in zip(start(following), kept, strict=True):
+                builder.store(self.wide(self.as_number(x)), place)
+            yield k, values
+
     def slot(self, value: Any) -> Any:
         """Return a place in memory that holds a value."""
         with self.builder.goto_entry_block():

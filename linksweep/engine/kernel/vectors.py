@@ -15,6 +15,15 @@ samples side by side as the processor takes: nothing is left to a compiler that 
 last vector of a row ends with the row, and so repeats samples of the vector before it: rows have at least `LANES`
 samples, and no function changes a row that it reads.
 
+The first half of the operations may be done one vector ahead of the others, which then wait less for each other:
+
+    def start(j):
+        cos2 = profiles[0, j]
+        x7 = cos2 * x5
+        return (x7,)
+    for j, x7 in in_vectors_ahead(0, samples, samples, start):
+        block[2, j] = x7
+
 Designs stand side by side in the same way, with their samples one after the other, and running summaries of these:
 
     for i0 in in_vectors(first, last, sizes[0]):
@@ -31,7 +40,7 @@ import inspect
 import math
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import partial
 from types import FunctionType
 from typing import Any
@@ -62,7 +71,7 @@ def intrinsic(function: FunctionType, streamed: str = "") -> Callable:
     names = list(inspect.signature(function).parameters)
 
     def emit(builder: Any, *arguments: Any) -> None:
-        writer = _Writer(builder)
+        writer = _Writer(builder, streams=bool(streamed))
         passed = [writer.argument(x, name == streamed) for name, x in zip(names, arguments, strict=True)]
         FunctionType(function.__code__, writer.names())(*passed)
 
@@ -128,7 +137,8 @@ class _Array:
 class _Writer:
     """Writer of one function's instructions."""
 
-    def __init__(self, builder: Any) -> None:
+    def __init__(self, builder: Any, streams: bool) -> None:
+        self.streams = streams
         self.builder, self.instructions = builder, Instructions(builder, width())
         _align_stack(builder.function)
         self.head: Any = None
@@ -137,8 +147,8 @@ class _Writer:
     def names(self) -> dict[str, Any]:
         """Return the functions that a function's source may use."""
         operations = {name: partial(self.operation, name) for name in self.instructions.operators}
-        loops = {"in_vectors": self.in_vectors, "each": self.each, "running": self.running}
-        return {"math": math, "number": self.number} | loops | operations
+        loops = {"in_vectors": self.in_vectors, "in_vectors_ahead": self.in_vectors_ahead, "each": self.each}
+        return {"math": math, "number": self.number, "running": self.running} | loops | operations
 
     def argument(self, llvm: Any, streamed: bool) -> _Value | _Array:
         return _Array(self, llvm, streamed) if hasattr(llvm, "data") else _Value(self, llvm)
@@ -148,21 +158,49 @@ class _Writer:
     def in_vectors(self, first: _Value | int, last: _Value | int, samples: _Value | int) -> Iterator[_Value]:
         """Write a loop over the samples, with the instructions that are written until the next value is asked for; it
         yields the first of those in a vector."""
+        place = self._place_of_vector(samples)
+        loop = self.instructions.loop(self.integer(first), self.integer(last), self.instructions.width)
+        for j, _ in self._inside(loop):
+            yield place(j)
+
+    def in_vectors_ahead(
+        self, first: _Value | int, last: _Value | int, samples: _Value | int, start: Callable[[_Value], tuple]
+    ) -> Iterator[tuple]:
+        """Write such a loop, which also yields what `start` returns for the vector.
+
+        With the widest registers each pass starts the next vector, and one register alone need not wait any more. Not
+        so where results are stored past the caches, which takes longer by single lines.
+        """
+        if width() < LANES or self.streams:
+            for j in self.in_vectors(first, last, samples):
+                yield j, *start(j)
+            return
+        self.instructions = Instructions(self.builder, REGISTER)
+        place = self._place_of_vector(samples)
+        loop = self.instructions.loop_ahead(
+            self.integer(first), self.integer(last), REGISTER, lambda j: [x.llvm for x in start(place(j))]
+        )
+        for j, started in self._inside(loop):
+            yield place(j), *(_Value(self, x) for x in started)
+
+    def _place_of_vector(self, samples: _Value | int) -> Callable[[Any], _Value]:
+        """Return a function of a loop's counter: where its vector begins, which must end with the row."""
         builder, step = self.builder, self.integer(self.instructions.width)
         latest = builder.sub(self._larger(self.integer(samples), self.integer(LANES)), step)
-        for j in self._loop(first, last, step):
-            yield _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest), VECTORS)
+        return lambda j: _Value(self, builder.select(builder.icmp_signed("<", j, latest), j, latest), VECTORS)
 
     def each(self, first: _Value | int, last: _Value | int, step: _Value | int = 1) -> Iterator[_Value]:
         """Write a loop over samples one by one, as `in_vectors` does."""
-        for j in self._loop(first, last, self.integer(step)):
+        loop = self.instructions.loop(*(self.integer(x) for x in (first, last, step)))
+        for j, _ in self._inside(loop):
             yield _Value(self, j, ONE_BY_ONE)
 
-    def _loop(self, first: _Value | int, last: _Value | int, step: Any) -> Iterator[Any]:
+    def _inside(self, loop: AbstractContextManager[Any]) -> Iterator[Any]:
+        """Yield what a loop yields, while it is being written."""
         outermost = self.head is None
         self.head = self.head or self.builder.block
-        with self.instructions.loop(self.integer(first), self.integer(last), step) as (j, _):
-            yield j
+        with loop as yielded:
+            yield yielded
         self.head = None if outermost else self.head
 
     def running(self, kind: str, memory: _Array, place: int) -> Any:

@@ -22,6 +22,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from linksweep.engine.kernel.ahead import first_half
 from linksweep.engine.trace.graph import Node
 from linksweep.engine.trace.plan import Plan
 
@@ -188,20 +189,34 @@ class Writer:
         return self.name(node)
 
     def _sample_loop(self, level: int) -> None:
-        """Write the loop over the samples."""
+        """Write the loop over the samples: it may `start` each vector while it ends the one before."""
         written = [node for node in {**dict.fromkeys(self.rows), **self.scratch} if self.level(node) == level]
-        if written:
-            work = [node for node in self._needed(written) if self.level(node) == level]
-            read = {*written, *operands(work)} - set(work)
-            self._function("rows", level)
-            self._read_singles(read)
-            bounds = "0, samples" if self.plan.loops else "first, last"
+        if not written:
+            return
+        work = [node for node in self._needed(written) if self.level(node) == level]
+        self._function("rows", level)
+        self._read_singles({*written, *operands(work)} - set(work))
+        bounds = "0, samples" if self.plan.loops else "first, last"
+        if ahead := first_half(work):
+            work = [node for node in work if node not in set(ahead)]
+            kept = _in_order({*operands(work), *written} & set(ahead))
+            before, names = set(self.known), [self.name(node) for node in kept]
+            self._line(1, "def start(j):")
+            self._operations(2, ahead)
+            self._line(2, f"return ({', '.join(names)},)")
+            self.known = before | set(names)
+            self._line(1, f"for j, {', '.join(names)} in in_vectors_ahead({bounds}, samples, start):")
+        else:
             self._line(1, f"for j in in_vectors({bounds}, samples):")
-            for node in _in_order({*read, *work}):
-                if self.per_sample(node):
-                    self._define(2, node, self._expression(node) if node in work else self._sample(node))
-                for cell in self._cells(node) if node in written else ():
-                    self._line(2, f"{cell} = {self.name(node)}")
+        self._operations(2, work, written)
+
+    def _operations(self, depth: int, work: list[Node], written: Iterable[Node] = ()) -> None:
+        """Write operations on samples, what they read, and where it is to be stored."""
+        for node in _in_order({*written, *operands(work), *work}):
+            if self.per_sample(node) and self.name(node) not in self.known:
+                self._define(depth, node, self._expression(node) if node in work else self._sample(node))
+            for cell in self._cells(node) if node in written else ():
+                self._line(depth, f"{cell} = {self.name(node)}")
 
     def _needed(self, rows: Iterable[Node]) -> list[Node]:
         """Return all operations per sample on which rows depend, of every level."""

@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linksweep.engine.interpreter.evaluate import evaluate
+from linksweep.engine.kernel.ahead import SLOW
 from linksweep.engine.kernel.instructions import REGISTER as LANES
 from linksweep.engine.kernel.instructions import Instructions
 from linksweep.engine.kernel.machine_code import INTEGER, INTEGERS, ROW, TABLE, MachineCode, machine_code
@@ -47,8 +48,6 @@ NEAR_WIDTH, FAR_WIDTH = "near_toggle_near", "near_toggle_far"
 SOON = 2 * LANES
 """Designs from the first lane's to one whose parameters are fetched into the caches: that of the lanes after the next.
 """
-SLOW = {"/", "sqrt"}
-"""Operations that take several times as long as others."""
 
 
 class Functions(NamedTuple):
@@ -246,24 +245,16 @@ class Evaluators:
     ) -> Iterator[tuple[Any, Values]]:
         """Emit a loop over places, which yields its counter and the values that are `kept` there.
 
-        Each pass computes those of the next place: divisions and roots take long, and nothing of this pass waits for
-        them. Constants are loaded where they are used, as they would fill the registers.
+        Constants are loaded where they are used, as they would fill the registers.
         """
-        builder = vectors.builder
-        kept = {node: vectors.slot(vectors.vector(vectors.ir.Undefined)) for node in self.kept}
 
-        def start(k: Any) -> None:
+        def start(k: Any) -> list[Any]:
             values = self._row(vectors, constants, self.constants) | place(k)
             interpret([*self.fixed, *self.ahead], values, vectors.operators)
-            for node, cell in kept.items():
-                builder.store(vectors.wide(vectors.as_number(values[node])), cell)
+            return [values[node] for node in self.kept]
 
-        start(first)
-        with vectors.loop(first, last, step) as (k, _):
-            here = {node: builder.load(cell) for node, cell in kept.items()}
-            following = builder.add(k, vectors.integer(step))
-            start(builder.select(builder.icmp_signed("<", following, last), following, k))
-            here |= self._row(vectors, constants, self.constants)
+        with vectors.loop_ahead(first, last, step, start) as (k, kept):
+            here = dict(zip(self.kept, kept, strict=True)) | self._row(vectors, constants, self.constants)
             yield k, interpret(self.fixed, here, vectors.operators)
 
     def _row(self, vectors: Instructions, array: Any, nodes: list[Node]) -> Values:
@@ -276,4 +267,4 @@ class Evaluators:
         lines = [(node.operator, node.value, [nodes[x] for x in node.operands]) for node in nodes]
         roles = [[nodes[node] for node in role] for role in (self.inputs, self.constants, self.signals)]
         dims = [[dim in node.dims for dim in self.plan.loops] for node in self.inputs]
-        return f"{SOURCE} {HALF} {lines} {roles} {dims}"
+        return f"{SOURCE} {HALF} {sorted(SLOW)} {lines} {roles} {dims}"

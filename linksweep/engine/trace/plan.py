@@ -22,6 +22,11 @@ LOW_WORD = "_lo"
 """Ending of the names of low words."""
 
 
+def instructions(operator: str) -> int:
+    """Return how many instructions an operation takes."""
+    return len(traced_arctangent().instructions) if operator == "atan2" else INSTRUCTIONS.get(operator, 1)
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A request traced into operations: `nodes` in order, `outputs` by name, `functions` traced, in the order of
@@ -83,8 +88,7 @@ class Plan:
 
     def instructions(self, *dims: str) -> int:
         """Return how many instructions that takes: a low word of a sum and an arctangent take several."""
-        several = INSTRUCTIONS | {"atan2": len(traced_arctangent().instructions)}
-        return sum(count * several.get(operator, 1) for operator, count in self.operations(*dims).items())
+        return sum(count * instructions(operator) for operator, count in self.operations(*dims).items())
 
     def only(self, names: tuple[str, ...]) -> Plan:
         """Return the plan of some of the outputs."""
