@@ -155,7 +155,7 @@ def test_the_command_writes_its_table(tmp_path, capsys, monkeypatch):
     assert "## Two threads against one" in written
     assert stored["machine"] == machine()
     assert all(f"- {name}: {value}" in written for name, value in machine().items())
-    assert [row["group"] for row in stored["rows"]] == ["Two threads against one"] * 5
+    assert [row["group"] for row in stored["rows"]] == ["Two threads against one"] * 6
 
 
 def test_disagreement_is_an_error_a_slow_run_is_not(tmp_path, monkeypatch):
