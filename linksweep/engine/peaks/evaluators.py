@@ -88,7 +88,7 @@ class Evaluators:
         """The operations that are left to do there."""
         used = {x for node in self.left for x in node.operands} | set(self.signals)
         self.kept = [node for node in [self.tangent, self.far, *self.ahead] if node in used]
-        """What those need of the place, and of the operations before."""
+        """The values that those take from the place and from the operations before."""
 
     def _turns(self, node: Node) -> bool:
         """Return whether a node depends on the place."""
