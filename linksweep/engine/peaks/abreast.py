@@ -242,7 +242,8 @@ def correct_vertices(left, f_left, right, f_right, middle, f_middle, predicted, 
     loss = abs(bend) * away * away
     tolerance = RISE * abs(f_middle)
     last = (gain + loss < tolerance).where(middle, vertex)
-    for condition in (bend < 0.0, curvature < 0.0, abs(vertex) < 1.0, abs(vertex - predicted) < 0.3, loss < tolerance):
+    near = larger(abs(vertex - predicted), abs(middle - predicted)) < 0.3  # else three points say little about the top
+    for condition in (bend < 0.0, curvature < 0.0, abs(vertex) < 1.0, near, loss < tolerance):
         sound = condition.where(sound, 0.0)
     return last, f_middle, gain, loss, sound
 

@@ -35,7 +35,7 @@ ROUNDING = 1e-13
 """Difference, relative to the input's largest size, from which on an input is no cubic."""
 LONGEST = 45.0
 """Longest interval [degree]: longer ones are divided evenly."""
-MOST_KNOTS, LONGEST_PIECE = 12, 60.0
+MOST_KNOTS, LONGEST_PIECE = 4, 60.0
 """Most knots of a piece, and its greatest length [degree]: with more knots an evaluation takes more operations, with
 more pieces there are more samples."""
 ROUNDED = 1e-7
