@@ -122,13 +122,19 @@ def _four_bar(random: Random, n: int) -> ls.Scene:
     With a shortest, the rocker swings; with the ground d shortest, it turns too.
     """
     a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
-    difference, total = np.abs(d - a) * (1.0 - _margin(random, n)), (d + a) * (1.0 + _margin(random, n))
-    difference *= random.choice([-1.0, 1.0], n)
-    b, c = 0.5 * (total + difference), 0.5 * (total - difference)
+    b, c = _dyad(random, a, d)
     links = (_link(random, length) for length in (a, b, c))
     branch = str(random.choice(["open", "crossed"]))
     loads = [ls.Load("coupler", _pair(random, n, 50.0), at=(_number(0.7 * b), 20.0)), ls.Load("rocker", torque=3.0)]
     return _scene(random, n, ls.FourBar(*links, _number(d), branch), loads)
+
+
+def _dyad(random: Random, a: Array, d: Array) -> tuple[Array, Array]:
+    """Return the lengths of two links that join a pin at a radius a to one at a distance d all the way round."""
+    n = len(a)
+    difference, total = np.abs(d - a) * (1.0 - _margin(random, n)), (d + a) * (1.0 + _margin(random, n))
+    difference *= random.choice([-1.0, 1.0], n)
+    return 0.5 * (total + difference), 0.5 * (total - difference)
 
 
 def _any_four_bar(random: Random, n: int) -> ls.Scene:
@@ -146,10 +152,7 @@ def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
         """Return machines whose crank turns fully: the rod is longer than crank and offset together."""
         a = np.exp(random.uniform(-1.5, 1.5, n))
         offset = a * random.uniform(-0.8, 0.8, n) * random.choice([0.0, 1.0], n)
-        height = a + np.abs(offset)
-        b = height * (1.0 + _margin(random, n))
-        wedges = np.sqrt((b - height) * (b + height)) / height
-        slides = np.minimum(wedges * random.uniform(0.0, 0.95, n), 0.5) if friction else np.zeros(n)
+        b, slides = _rod(random, a + np.abs(offset), friction)
         mass = _number(random.uniform(0.2, 2.0, n))
         branch = str(random.choice(["open", "crossed"]))
         crank, rod = _link(random, a), _link(random, b)
@@ -157,6 +160,62 @@ def _slider_crank(friction: bool) -> Callable[[Random, int], ls.Scene]:
         return _scene(random, n, mechanism, [ls.Load("slider", _pair(random, n, 50.0))])
 
     return scene
+
+
+def _rod(random: Random, height: Array, friction: bool) -> tuple[Array, Array]:
+    """Return the length of a rod to a slider, longer than the largest height of its other end over the guide; and the
+    guide's friction, which does not wedge the slider."""
+    n = len(height)
+    b = height * (1.0 + _margin(random, n))
+    wedges = np.sqrt((b - height) * (b + height)) / height
+    return b, np.minimum(wedges * random.uniform(0.0, 0.95, n), 0.5) if friction else np.zeros(n)
+
+
+def _six_bar(random: Random, n: int) -> ls.Scene:
+    """Return Watt six-bars whose crank turns fully; the second four-bar closes wherever its first link may be."""
+    a, d, e, g = np.exp(random.uniform(-1.5, 1.5, (4, n)))
+    lengths = dict(zip(("crank", "coupler", "rocker"), (a, *_dyad(random, a, d)), strict=True))
+    lengths |= dict(zip(("rod", "output"), _dyad(random, e, g), strict=True))
+    turned = np.radians(random.uniform(-180.0, 180.0))
+    pivots = {
+        "A": (0.0, 0.0),
+        "D": (_number(d), 0.0),
+        "G": (_number(d + g * np.cos(turned)), _number(g * np.sin(turned))),
+    }
+    mechanism = ls.Linkage(
+        "crank A-B, coupler B-C, rocker D-C-E, rod E-F, output G-F",
+        ground=pivots,
+        points={"E": (_number(e), random.uniform(-180.0, 180.0))},
+        branch=_branches(random, "C", "F"),
+        **{role: _link(random, length) for role, length in lengths.items()},
+    )
+    return _scene(random, n, mechanism, [ls.Load("output", torque=3.0)])
+
+
+def _press(random: Random, n: int) -> ls.Scene:
+    """Return knuckle-joint presses with friction whose crank turns fully: the lower link is longer than the upper and
+    the offset of the guide together."""
+    a, d = np.exp(random.uniform(-1.5, 1.5, (2, n)))
+    b, c = _dyad(random, a, d)
+    offset = c * random.uniform(-0.8, 0.8, n) * random.choice([0.0, 1.0], n)
+    lower, friction = _rod(random, c + np.abs(offset), friction=True)
+    angle = float(random.uniform(-180.0, 180.0))
+    across = -np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    guide = ls.Guide((_number(d + offset * across[0]), _number(offset * across[1])), angle, _number(friction))
+    lengths = {"crank": a, "rod": b, "upper": c, "lower": lower}
+    mechanism = ls.Linkage(
+        "crank A-B, rod B-C, upper D-C, lower C-E, ram E on slide",
+        ground={"A": (0.0, 0.0), "D": (_number(d), 0.0)},
+        guides={"slide": guide},
+        branch=_branches(random, "C", "E"),
+        ram=ls.Slider(_number(random.uniform(0.2, 2.0, n))),
+        **{role: _link(random, length) for role, length in lengths.items()},
+    )
+    return _scene(random, n, mechanism, [ls.Load("ram", _pair(random, n, 50.0))])
+
+
+def _branches(random: Random, *pins: str) -> dict[str, str]:
+    return {pin: str(random.choice(["open", "crossed"])) for pin in pins}
 
 
 def _inverted_slider_crank(random: Random, n: int) -> ls.Scene:
@@ -222,6 +281,8 @@ FAMILIES = {
     "slider-crank": Family(_slider_crank(friction=False), 90.0),
     "slider-crank with friction": Family(_slider_crank(friction=True), 90.0),
     "inverted slider-crank": Family(_inverted_slider_crank),
+    "Watt six-bar": Family(_six_bar),
+    "knuckle-joint press with friction": Family(_press),
     "four-bar with a table": Family(_with_table(_four_bar, "rocker")),
     "slider-crank with friction and a table": Family(_with_table(_slider_crank(friction=True), "slider"), 90.0),
 }

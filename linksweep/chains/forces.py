@@ -38,6 +38,7 @@ class Forces:
         self.rows: Rows = []
         self.statuses: list[tuple[Source, Source]] = []
         self.losses: list[str] = []
+        self.directions: dict[str, str] = {}
         self.powers: list[str] = []
         self.contacts: list[Contact] = []
         self.work: list[str] = []
@@ -133,6 +134,7 @@ class Forces:
         """Add the work of a slide's friction, and the power that it loses."""
         names = self.motion.names[step.name]
         normal, friction, direction = (str(names[own]) for own in (slide.normal, slide.friction, slide.acts[0]))
+        self.directions[guide] = direction
         self.losses.append(str(names[slide.power]))
         if step not in self.bearing:
             self.row(planar.product, (f"work_of_{friction}",), names[ratio], friction)

@@ -131,6 +131,11 @@ def unless_jammed(name: str) -> str:
     return f"{name} unless jammed"
 
 
+def regardless_of_jams(name: str) -> str:
+    """Return the name of a quantity's values that may be those unless jammed."""
+    return name.removesuffix(unless_jammed(""))
+
+
 def _where_ok(status: Any, value: Any) -> Any:
     """Return a value, NaN where the status is not ok."""
     return (status > 0.0).where(math.nan, value)

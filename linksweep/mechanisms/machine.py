@@ -110,6 +110,10 @@ class Machine(Mechanism):
         """Names of the guides with friction, and of slots such as yoke_slot."""
         return ()
 
+    def directions(self) -> tuple[str, ...]:
+        of_slides = self.chain.forces().directions
+        return tuple(of_slides[slide] for slide in self.rubbing)
+
     def kinks(self) -> tuple[str, ...]:
         """Return the normal forces of slides, with which friction changes sides."""
         return tuple(f"{force_name(*pair)}n" for pair in self.topology.slides.values()) if self.rubs else ()

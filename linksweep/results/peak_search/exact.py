@@ -1,10 +1,10 @@
 """Find the exact peaks of a scene: its signals' largest values over the continuous revolution, for every design.
 
 Where the crank turns fully, no load changes with the angle and near-toggles are known in closed form, the fused search
-inside the kernel finds them. Where friction alone makes forces jump, or loads over the angle are tables, it searches
-the pieces of the cycle between jumps, and between some of the tables' angles. Otherwise its samples ignore jumps and
-the closest approaches of springs: paths about these are searched too. Other designs and scenes are searched along paths
-alone.
+inside the kernel finds them. Where friction alone makes forces jump, loads over the angle are tables, or near-toggles
+may be anywhere, it searches the pieces of the cycle between jumps and near-toggles, and between some of the tables'
+angles. Otherwise its samples ignore jumps and the closest approaches of springs: paths about these are searched too.
+Other designs and scenes are searched along paths alone.
 
 A peak is a value of the signal at some angle, so that it exceeds the true one by no more than rounding.
 """
@@ -18,6 +18,7 @@ import numpy as np
 
 from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.peaks.find_peaks import Peak, find_peaks
+from linksweep.engine.quantity import regardless_of_jams
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.results.compute import compute, only_where
@@ -40,11 +41,11 @@ from linksweep.results.peak_search.pieces import (
     AT_ONCE,
     designs_without_jams,
     divides,
-    follow_loads,
     follow_pieces,
     follow_unbounded,
-    loads_on_pieces,
+    known_on_pieces,
     rubbing_signals,
+    turning_without_jams,
 )
 from linksweep.results.peak_search.poles import designs_with_candidates, may_have_poles
 from linksweep.scene.dimensions import aligned
@@ -95,12 +96,14 @@ def _by_paths(
 ) -> dict[str, SignalPeak]:
     """Return peaks from a search along these paths, or along those for each design's kind of assembly."""
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
-    loaded = {}
-    if not paths and loads_on_pieces(scene):
-        loaded = {signal: peaks[signal] for signal in _turning(scene, signals)}
-        designs = follow_loads(scene, different(scene, (*loaded, "assembly")), loaded, threads)
-        _follow_all(scene, loaded, paths, threads, designs)
-    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in loaded}, paths, threads)
+    on_pieces = {}
+    if not paths and known_on_pieces(scene):
+        on_pieces = {signal: peaks[signal] for signal in _turning(scene, signals)}
+        designs = different(scene, (*on_pieces, "assembly"))
+        sound = turning_without_jams(scene, designs)
+        follow_pieces(scene, sound, {regardless_of_jams(signal): peak for signal, peak in on_pieces.items()}, threads)
+        _follow_all(scene, on_pieces, paths, threads, _without(designs, sound))
+    _follow_all(scene, {signal: peaks[signal] for signal in signals if signal not in on_pieces}, paths, threads)
     if scene.quick.all:
         return peaks
     over_angle = {signal: peak for signal, peak in peaks.items() if changes(scene, (signal,))}
@@ -194,7 +197,8 @@ def _fused(
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, signals, designs, AT_ONCE):
         rows, middle = np.arange(len(group.designs)), group.number(scene.mechanism.near_toggle_angle)
-        request, inputs_of_group = group.one_by_one(scene.table.between_samples, signals, rows, {}, places)
+        names = (*signals, NEAR_WIDTH, FAR_WIDTH)
+        request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
         results = find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads)
         for signal, peak in results.items():
             value, _, _, bound, samples = (field.values for field in peak)
@@ -216,7 +220,7 @@ def _between_samples(scene: Scene, signals: tuple[str, ...]) -> Plan:
 
 def _turning(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return the signals that depend on the angle."""
-    outputs = _between_samples(scene, signals).outputs
+    outputs = plan(scene.table, signals, scene.at_one_angle.inputs.forms).outputs
     return tuple(signal for signal in signals if scene.mechanism.index in outputs[signal].dims)
 
 

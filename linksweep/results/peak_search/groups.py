@@ -97,7 +97,7 @@ class Group(NamedTuple):
             for name, form in inputs.forms
             if not (isinstance(form, tuple) and index in form)
         )
-        request = plan(table, (*names, NEAR_WIDTH, FAR_WIDTH), (*forms, *((name, (ONE,)) for name in own), *places))
+        request = plan(table, names, (*forms, *((name, (ONE,)) for name in own), *places))
         at = places_of(inputs.sizes, self.designs[rows])
         fields = inputs_along(ONE, request, inputs, at)
         return request, fields | {name: Field((ONE,), values) for name, values in own.items()}
@@ -108,6 +108,12 @@ class Group(NamedTuple):
             return np.full(len(self.designs), float(number))
         places = places_of(self.scene.at_one_angle.inputs.sizes, self.designs)
         return number.values[tuple(places[str(dim)] for dim in number.dims)] + np.zeros(len(self.designs))
+
+
+def all_at_once(scene: Scene, designs: Array) -> Group:
+    """Return designs as one group, of which only numbers of designs are computed."""
+    places = places_of(scene.at_one_angle.inputs.sizes, designs)
+    return Group(scene, designs, places, np.empty(0), _limits(scene, places, len(designs)))
 
 
 @singledispatch

@@ -177,7 +177,7 @@ def _search(scene: Scene, limits: tuple[Limit, ...], designs: Array, first: int)
                 continue
             curves = Curves(scene, limit, designs[own.row], _places(own, near, count, turns, scene.period), turns)
             crossed, touched, near_toggles = _zeros(curves, own, part)
-            known += [near_toggles] if limit.zeros != "jump" else []
+            known.append(near_toggles)
             pieces.append(_pieces(curves, own, crossed, part) if limit.zeros == "toggle" else own)
             zeros += [touched] if limit.zeros == "toggle" else [touched, crossed._replace(row=own.row[crossed.row])]
         arcs, near = _joined(Arcs, pieces), _joined(NearToggles, known)
@@ -196,7 +196,8 @@ def _zeros(curves: Curves, arcs: Arcs, part: int) -> tuple[Zeros, Zeros, NearTog
     height = turning.height
     angle = in_period(angle, curves.scene.period) if curves.turns else angle  # the last samples repeat the first
     closes = (turning.sign > 0.0) | (curves.limit.zeros != "toggle")
-    near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise)))
+    unbounded = curves.limit.zeros != "jump"
+    near = _near_toggles(curves, arcs, turning.some(closes & (height >= -turning.noise) & unbounded))
     least = turning.some(closes & (np.abs(height) <= turning.noise))
     row = arcs.row[curves.arc(least.curve)]
     touched = Zeros(row, least.x[1], np.full(len(row), part))
@@ -208,7 +209,7 @@ def _near_toggles(curves: Curves, arcs: Arcs, least: Extremes) -> NearToggles:
     angle, value = least.x[1], least.height
     depth = np.maximum(value, least.noise)
     with np.errstate(all="ignore"):
-        width = np.sqrt(depth / parabola(least)[1])
+        width = np.nan_to_num(np.sqrt(depth / parabola(least)[1]), nan=WIDE)  # noise may bend it the other way
         for _ in range(WIDTH_STEPS):
             step = np.degrees(np.clip(width, 1e-9, WIDE))
             before, after = (least.sign * curves.at(least.curve, angle + away)[0] - value for away in (-step, step))

@@ -1,9 +1,9 @@
 """Search for peaks on pieces of the turn: between the angles at which friction jumps or forces have a kink.
 
 The direction of sliding is known on each piece, so that all signals are smooth there, ends included. A piece also ends
-at a narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle are
-polynomials between the knots of their tables, of which a piece has a few. Pieces of many designs are searched side by
-side, each as a turn that follows it there and back.
+at each narrow near-toggle, so that its samples can be dense about it, and where a half turn does. Loads over the angle
+are polynomials between the knots of their tables, of which a piece has a few. Pieces of many designs are searched side
+by side, each as a turn that follows it there and back.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from linksweep.physics.closures import crank_angle
 from linksweep.results.peak_search.along_paths import SignalPeak, angle_in_period, put
 from linksweep.results.peak_search.arcs import NEAREST, arc_ends
 from linksweep.results.peak_search.between import EVERYWHERE
-from linksweep.results.peak_search.groups import ONE, Group, groups
+from linksweep.results.peak_search.groups import ONE, Group, all_at_once, groups
 from linksweep.results.peak_search.paths import distinct
 from linksweep.results.peak_search.poles import singular_angles
 from linksweep.scene.curves.polynomials import Polynomials, names_on_piece, polynomials
@@ -92,26 +92,23 @@ def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(signal for signal, inputs in inputs_of.items() if not known.isdisjoint(inputs))
 
 
-def loads_on_pieces(scene: Scene) -> bool:
-    """Return whether the loads over the angle of a scene are known on pieces of the cycle, between which all jumps
-    lie."""
+def known_on_pieces(scene: Scene) -> bool:
+    """Return whether pieces of the cycle, between which all jumps lie, state the motion and the loads over the
+    angle."""
     machine = scene.mechanism
-    known = bool(machine.directions()) or not machine.jumps()
-    return scene.table.limits is None and known and not scene.approaches() and _loads(scene) is not None
+    divided = bool(machine.directions()) or not machine.jumps()
+    simple = not (scene.table.contacts or scene.approaches()) and scene.period_of_motion == machine.period
+    return divided and simple and (scene.steady or _loads(scene) is not None)
 
 
-def follow_loads(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
-    """Write the peaks of those designs with loads over the angle that turn fully; return the other designs."""
-    every = Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0))
-    sound = designs_without_jams(scene, designs[every.assembly() == EVERYWHERE])
-    follow_pieces(scene, sound, peaks, threads)
-    return np.setdiff1d(designs, sound, assume_unique=True)
+def turning_without_jams(scene: Scene, designs: Array) -> Array:
+    """Return those designs of a scene that turn fully, without jams or dead centres."""
+    return designs_without_jams(scene, designs[all_at_once(scene, designs).assembly() == EVERYWHERE])
 
 
 def designs_without_jams(scene: Scene, designs: Array) -> Array:
     """Return those designs of a scene that friction jams nowhere, and whose drive stands still nowhere."""
-    every = Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0))
-    return designs[~np.isfinite(singular_angles(every)).any(axis=1)]
+    return designs[~np.isfinite(singular_angles(all_at_once(scene, designs))).any(axis=1)]
 
 
 def follow_pieces(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> None:
@@ -261,10 +258,11 @@ def _between_jumps(group: Group) -> Pieces:
     """Return the pieces of the whole cycle between jumps, narrow near-toggles, and ends of half turns or knots."""
     scene, period, designs = group.scene, group.scene.period, len(group.designs)
     turns = np.arange(0.0, period, scene.mechanism.period)
+    located = (group.zeros("jump")[..., None] + turns).reshape(designs, -1)
     frame = group.number(scene.mechanism.near_toggle_angle)[:, None]
     loads, jumps = _loads(scene), [group.number(jump)[:, None] + turns for jump in scene.jumps()]
-    jumps += [np.broadcast_to(loads.cuts, (designs, len(loads.cuts)))] if loads else [np.empty((designs, 0))]
-    breaks = np.mod(np.concatenate(jumps, axis=1) - frame, period)
+    jumps += [np.broadcast_to(loads.cuts, (designs, len(loads.cuts)))] if loads else []
+    breaks = np.mod(np.concatenate([*jumps, located], axis=1) - frame, period)
     middles, widths = group.near_toggles()
     with np.errstate(invalid="ignore"):
         narrow = np.where(widths < NARROW, middles, np.nan)[..., None] + turns
@@ -321,7 +319,7 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
     directions = scene.mechanism.directions()
     half = pieces.half
     start, end = (pieces.tangents(half, angle) for angle in (pieces.start, pieces.end))
-    widths = _widths(start, end, group.near_toggles()[1][pieces.row, half.astype(int)])
+    widths = _widths(pieces, start, end, *group.near_toggles())
     own = dict(zip((*ENDS, HALF_TURN, *WIDTHS), (start, end, half, *np.minimum(widths, pieces.widths)), strict=True))
     own |= {on_piece(name): values for name, values in zip(directions, pieces.directions, strict=True)}
     table, loads = _table_on_pieces(scene.table, directions), _loads(scene)
@@ -329,7 +327,8 @@ def _evaluated(group: Group, pieces: Pieces, names: tuple[str, ...]) -> tuple[Pl
         own |= {MIDDLE: pieces.tangents(half, 0.5 * (pieces.start + pieces.end))}
         own |= _on_pieces(loads, group, pieces)
         table = _table_on_pieces(scene.table, directions, tuple(loads.inputs), loads.per_piece)
-    return group.one_by_one(table, names, pieces.row, own, ((ALONG, (index, ONE)), (END, (index,))))
+    places = ((ALONG, (index, ONE)), (END, (index,)))
+    return group.one_by_one(table, (*names, NEAR_WIDTH, FAR_WIDTH), pieces.row, own, places)
 
 
 def _on_pieces(loads: Polynomials, group: Group, pieces: Pieces) -> dict[str, Array]:
@@ -367,16 +366,20 @@ def _loads(scene: Scene) -> Polynomials | None:
     return None if scene.steady else polynomials(scene)
 
 
-def _widths(start: Array, end: Array, width: Array) -> tuple[Array, Array]:
-    """Return the widths of the near-toggle as both ends of pieces know it, as tangents of half the angle that follows
-    a piece.
+def _widths(pieces: Pieces, start: Array, end: Array, angles: Array, widths: Array) -> tuple[Array, Array]:
+    """Return the widths of near-toggles (design, nth) as both ends of pieces know them, as tangents of half the angle
+    that follows a piece.
 
-    Quantities have poles at tangents 0 ± i·width, at a share z of the piece. There tan² is z/(1 − z).
+    Quantities have poles at tangents x ± i·width, at a share z of the piece. There tan² is z/(1 − z).
     """
-    span = end - start
-    narrow = np.flatnonzero(width < NARROW)
-    widths = np.ones((2, len(start)))
-    for of_end, away in zip(widths, (-start, end), strict=True):
-        z = (away + 1j * width)[narrow] / span[narrow]
-        of_end[narrow] = np.abs(np.sqrt(z / (1.0 - z)).imag)
-    return widths[0], widths[1]
+    away = np.mod(angles[pieces.row] - 180.0 * pieces.half[:, None] + 180.0, 360.0) - 180.0
+    with np.errstate(invalid="ignore"):
+        own = (widths[pieces.row] < NARROW) & (np.abs(away) < 180.0 - BEYOND)
+    piece, nth = np.nonzero(own)
+    x = np.tan(np.radians(0.5 * away[piece, nth]))
+    width = 1j * (1.0 + x * x) * widths[pieces.row[piece], nth]
+    seen = np.ones((2, len(start)))
+    for of_end, distance in zip(seen, (x - start[piece], end[piece] - x), strict=True):
+        z = (distance + width) / (end - start)[piece]
+        np.minimum.at(of_end, piece, np.abs(np.sqrt(z / (1.0 - z)).imag))
+    return seen[0], seen[1]

@@ -20,11 +20,11 @@ from linksweep.chains.finding import Finding
 from linksweep.engine.run import Field
 from linksweep.results.compute import surely_ok
 from linksweep.results.peak_search.between import PARTLY
-from linksweep.results.peak_search.groups import Group
+from linksweep.results.peak_search.groups import Group, all_at_once
 from linksweep.results.peak_search.jams import jammed_designs, may_jam
 from linksweep.results.peak_search.limits import limits_of
 from linksweep.scene.dimensions import side_by_side
-from linksweep.scene.pairs import Array, places_of
+from linksweep.scene.pairs import Array
 from linksweep.scene.scene import Scene
 
 CLOSEST = 1e-8
@@ -106,9 +106,7 @@ def poles(group: Group, signals: tuple[str, ...], threads: int | None = None) ->
 
 def designs_with_candidates(scene: Scene, designs: Array, signals: tuple[str, ...]) -> Array:
     """Return those designs of a scene with closed forms that have possible poles."""
-    row, *_ = pole_candidates(
-        Group(scene, designs, places_of(scene.at_one_angle.inputs.sizes, designs), np.empty(0)), signals
-    )
+    row, *_ = pole_candidates(all_at_once(scene, designs), signals)
     return designs[np.unique(row)]
 
 

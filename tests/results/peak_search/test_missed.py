@@ -10,8 +10,10 @@ from long import long_but
 import linksweep as ls
 from benchmarks.accuracy import missed
 
+QUICK = "slider-crank with friction", "knuckle-joint press with friction"
 
-@pytest.mark.parametrize("name", long_but(missed.FAMILIES, "slider-crank with friction"))
+
+@pytest.mark.parametrize("name", long_but(missed.FAMILIES, *QUICK))
 def test_no_sample_exceeds_a_peak(name):
     result = missed.search(missed.FAMILIES[name], 500, seed=1)
     assert result.count == 0, result.worst
