@@ -190,12 +190,16 @@ def surely_ok(scene: Scene) -> bool:
 def sample_status(scene: Scene, grid: Grid, threads: int | None = None) -> Field:
     """Return the status of each sample (int8); 0 without computing where the mechanism's numbers show it."""
     if surely_ok(scene):
-        request = plan(scene.table, ("status",), scene.inputs.forms)
-        dims = request.dims(request.outputs["status"])
-        shape = [len(grid.angles) if dim == grid.dim else scene.inputs.sizes[dim] for dim in dims]
-        return Field(dims, np.zeros(shape, dtype=np.int8))
+        return zeros_of("status", scene, grid, np.int8)
     status = compute(scene, grid, ("status",), threads)["status"]
     return Field(status.dims, status.values.astype(np.int8))
+
+
+def zeros_of(name: str, scene: Scene, grid: Grid, kind: type = float) -> Field:
+    """Return zeros over the dims that a quantity has at the grid's angles."""
+    dims = plan(scene.table, (name,), scene.inputs.forms).dims_of_outputs[name]
+    sizes = {**scene.inputs.sizes, grid.dim: len(grid.angles)}
+    return Field(dims, np.zeros([sizes[dim] for dim in dims], dtype=kind))
 
 
 def blank(fields: dict[str, Field], status: Field) -> None:

@@ -255,7 +255,7 @@ def status_of(scene: Scene, result: Result, threads: int | None) -> xr.Variable:
             status = xr.where(variable(Field(dims, infinite), "1", "", order), float(UNBOUNDED), status)
     dims = tuple(dim for dim in order if dim in status.dims)
     words = flags(scene.mechanism.round_trip, scene.mechanism.round_meanings)
-    return plain(Field(dims, status.transpose(*dims).values.astype(np.int8)), words)
+    return plain(Field(dims, aligned(status, dims).astype(np.int8)), words)
 
 
 def _extremes_of_status(

@@ -90,8 +90,9 @@ def in_period(angle: Array, period: float) -> Array:
     angle = np.asarray(angle, dtype=float) + 0.0  # never -0
     folded = np.where(angle < 0.0, angle + period, np.where(angle < period, angle, angle - period))
     outside = ~((folded >= 0.0) & (folded < period))
-    within = np.mod(angle[outside], period)  # slow
-    folded[outside] = np.where(within < period, within, 0.0 * within)  # mod rounds -1e-20 up to the period itself
+    if outside.any():
+        within = np.mod(angle[outside], period)  # slow
+        folded[outside] = np.where(within < period, within, 0.0 * within)  # mod rounds -1e-20 up to the period itself
     return folded
 
 

@@ -98,8 +98,11 @@ def _peaks(plan: Plan, inputs: Fields, sizes: Sizes, smooth: bool, threads: int 
     with np.errstate(all="ignore"):
         over_threads(work, blocks, 1 + designs.designs // DESIGNS_PER_THREAD, threads)
     stored = best.reshape(len(best), len(signals), -1)[..., : designs.designs]
-    fields = [[Field(plan.loops, row.reshape(designs.shape)) for row in rows] for rows in stored.swapaxes(0, 1)]
-    return {name: Peak(*rows) for name, rows in zip(signals, fields, strict=True)}
+    stored = stored.reshape(*stored.shape[:2], *designs.shape)
+    return {
+        signal: Peak(*(Field(plan.loops, stored[row, k, ...]) for row in range(len(stored))))
+        for k, signal in enumerate(signals)
+    }
 
 
 def zeros_of_pieces(plan: Plan, inputs: Fields, sizes: Sizes, threads: int | None) -> np.ndarray:

@@ -12,14 +12,18 @@ A peak is a value of the signal at some angle, so that it exceeds the true one b
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
+from itertools import groupby
+from typing import Any
 
 import numpy as np
 
+from linksweep.base.frozen import cached_beside
 from linksweep.engine.peaks.evaluators import FAR, FAR_WIDTH, NEAR_WIDTH, TANGENT
 from linksweep.engine.peaks.find_peaks import Peak, find_peaks
 from linksweep.engine.quantity import regardless_of_jams
-from linksweep.engine.run import Field
+from linksweep.engine.run import Field, Sizes
 from linksweep.engine.trace.plan import Plan, plan
 from linksweep.results.compute import compute, only_where
 from linksweep.results.peak_search.along_paths import (
@@ -55,6 +59,9 @@ from linksweep.scene.scene import Scene
 
 WINDOWS_AT_ONCE = 4096
 """Designs whose windows are searched together: a window has few samples, so there can be more than of whole turns."""
+
+NUMBERS_AT_ONCE = 8192
+"""Numbers whose angles are computed together, several signals of few designs."""
 
 
 def exact_peaks(
@@ -127,7 +134,8 @@ def _fused_first(scene: Scene, signals: tuple[str, ...], assembly: Field, thread
     """Return peaks from the fused search of whole turns, or of their pieces, raised to those along paths where its
     samples do not suffice."""
     names, turning = (*signals, "assembly"), _turning(scene, signals)
-    whole, partly = (_designs_where(scene, assembly, kind) for kind in (EVERYWHERE, PARTLY))
+    kinds = np.broadcast_to(aligned(assembly, tuple(scene.inputs.sizes)), tuple(scene.inputs.sizes.values()))
+    whole, partly = (np.flatnonzero(kinds == kind) for kind in (EVERYWHERE, PARTLY))
     arcs_known = _arcs_known(scene, names, partly)
     partly, also_searched = (partly, partly[:0]) if arcs_known else (partly[:0], partly)
     searched = np.union1d(whole, also_searched) if len(also_searched) else whole
@@ -161,13 +169,7 @@ def paths_of(scene: Scene, kind: float) -> tuple[PathsOf, ...]:
 
 def _arcs_known(scene: Scene, names: tuple[str, ...], designs: Array) -> bool:
     """Return whether the arcs of designs that move over part of a turn are known in closed form."""
-    return any(arc_ends(group) for group in groups(scene, names, designs[:1]))
-
-
-def _designs_where(scene: Scene, field: Field, value: float) -> Array:
-    """Return the designs at which a field has a value."""
-    sizes = scene.inputs.sizes
-    return np.flatnonzero(np.broadcast_to(aligned(field, tuple(sizes)) == value, tuple(sizes.values())))
+    return len(designs) > 0 and any(arc_ends(group) for group in groups(scene, names, designs[:1]))
 
 
 def _without(designs: Array, others: Array) -> Array:
@@ -191,8 +193,8 @@ def _fused(
         return {}
     if len(designs) == math.prod(scene.inputs.sizes.values()):
         inputs = scene.inputs
-        results = find_peaks(_between_samples(scene, signals), signals, inputs.fields, inputs.sizes, smooth, threads)
-        return {signal: _at_angle(scene, peak) for signal, peak in results.items()}
+        request = _between_samples(scene, signals)
+        return _at_angles(scene, find_peaks(request, signals, inputs.fields, inputs.sizes, smooth, threads))
     peaks = {signal: nothing(field) for signal, field in empty(scene, signals).items()}
     places = ((TANGENT, (scene.mechanism.index, ONE)), (FAR, (scene.mechanism.index,)))
     for group in groups(scene, signals, designs, AT_ONCE):
@@ -201,12 +203,13 @@ def _fused(
         request, inputs_of_group = group.one_by_one(scene.table.between_samples, names, rows, {}, places)
         results = find_peaks(request, signals, inputs_of_group, {ONE: len(rows)}, smooth, threads)
         for signal, peak in results.items():
-            value, _, _, bound, samples = (field.values for field in peak)
-            angle = angle_in_period(_away(peak) + middle, scene.period)
+            value, tangent, far, bound, samples = (field.values for field in peak)
+            angle = angle_in_period(_away(tangent, far) + middle, scene.period)
             put(peaks[signal], group, (value, np.where(np.isnan(value), np.nan, angle), bound, samples))
     return peaks
 
 
+@cached_beside
 def _between_samples(scene: Scene, signals: tuple[str, ...]) -> Plan:
     """Return the plan of signals between samples of a turn, and of the widths of its near-toggles."""
     index = scene.mechanism.index
@@ -235,26 +238,48 @@ def _constants(scene: Scene, signals: tuple[str, ...], designs: Array) -> dict[s
     return peaks_where(Field(tuple(sizes), good.reshape(tuple(sizes.values()))), peaks) if peaks else {}
 
 
-def _away(peak: Peak) -> Array:
+def _away(tangent: Array, far: Array) -> Array:
     """Return the angles of peaks from the near-toggle [degree]."""
-    return 2.0 * np.degrees(np.arctan(peak.tangent.values)) + 180.0 * peak.far.values
+    return 2.0 * np.degrees(np.arctan(tangent)) + 180.0 * far
 
 
-def _at_angle(scene: Scene, peak: Peak) -> SignalPeak:
-    """Return a peak of the fused search, which knows a half-angle tangent, with its angle [degree].
+def _at_angles(scene: Scene, peaks: dict[str, Peak]) -> dict[str, SignalPeak]:
+    """Return peaks of the fused search, which knows half-angle tangents, with their angles [degree].
 
     A signal may depend on the crank's angle from the frame alone; its angle from x has the dims of the frame's, too.
     """
-    middle, sizes = scene.mechanism.near_toggle_angle, scene.inputs.sizes
-    dims = (*peak.value.dims, *(dim for dim in getattr(middle, "dims", ()) if dim not in peak.value.dims))
+    middle, results = scene.mechanism.near_toggle_angle, {}
+    if hasattr(middle, "dims"):
+        peaks = {signal: _over_dims_of(middle, peak, scene.inputs.sizes) for signal, peak in peaks.items()}
+    for signals in _side_by_side(peaks):
+        dims, some = peaks[signals[0]].value.dims, [peaks[signal] for signal in signals]
+        value, tangent, far = (_stacked([peak[k].values for peak in some]) for k in range(3))
+        angle = angle_in_period(_away(tangent, far) + aligned(middle, dims), scene.period)
+        angle = np.where(np.isnan(value), np.nan, angle)
+        for k, (signal, peak) in enumerate(zip(signals, some, strict=True)):
+            results[signal] = SignalPeak(peak.value, Field(dims, angle[k, ...]), peak.beyond, peak.evaluations)
+    return results
+
+
+def _side_by_side(peaks: dict[str, Peak]) -> Iterator[list[str]]:
+    """Yield signals that have the same dims: several of few designs, as long as their numbers stay in the cache."""
+    for _, same in groupby(peaks, lambda signal: peaks[signal].value.dims):
+        signals = [*same]
+        step = max(1, NUMBERS_AT_ONCE // max(1, peaks[signals[0]].value.values.size))
+        yield from (signals[k : k + step] for k in range(0, len(signals), step))
+
+
+def _stacked(arrays: list[Array]) -> Array:
+    """Return arrays along a new first axis, a single one uncopied."""
+    return np.stack(arrays) if len(arrays) > 1 else arrays[0][None]
+
+
+def _over_dims_of(middle: Any, peak: Peak, sizes: Sizes) -> Peak:
+    """Return a peak with the dims of the frame's angle, too: a signal may depend on the crank's angle from the frame
+    alone, but its peak's angle from x does not."""
+    dims = (*peak.value.dims, *(dim for dim in middle.dims if dim not in peak.value.dims))
     shape = tuple(sizes[dim] for dim in dims)
-    numbers = (aligned(field, dims) for field in (peak.value, peak.beyond, peak.evaluations, peak.tangent, peak.far))
-    value, beyond, evaluations, tangent, far = (
-        Field(dims, array if array.shape == shape else np.broadcast_to(array, shape).copy()) for array in numbers
-    )
-    angle = _away(peak._replace(tangent=tangent, far=far)) + aligned(middle, dims)
-    angle = np.where(np.isnan(value.values), np.nan, angle_in_period(angle, scene.period))
-    return SignalPeak(value, Field(dims, angle), beyond, evaluations)
+    return Peak(*(Field(dims, np.broadcast_to(aligned(field, dims), shape).copy()) for field in peak))
 
 
 def _constant(field: Field) -> SignalPeak:

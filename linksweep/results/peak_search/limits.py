@@ -23,7 +23,7 @@ from linksweep.engine.peaks.search import GRADES
 from linksweep.engine.quantity import Limit
 from linksweep.engine.run import Field
 from linksweep.engine.trace.plan import plan
-from linksweep.results.compute import compute
+from linksweep.results.compute import compute, zeros_of
 from linksweep.results.peak_search.between import EVERYWHERE, NEVER, PARTLY
 from linksweep.results.peak_search.curves import SEAM, WIDE, Curves, Extremes, parabola, zeros_and_extremes
 from linksweep.scene.pairs import Array, by_row, different_designs, in_period
@@ -109,8 +109,10 @@ def assembly_of(scene: Scene, threads: int | None = None) -> Field:
     if scene.table.limits is not None:
         sizes, limits = limits_of(scene.unloaded)
         return Field(tuple(sizes), limits.assembly.reshape(tuple(sizes.values())))
-    at_one = scene.grid(1)
-    return compute(scene.at_one_angle, at_one, ("assembly",), threads)["assembly"]
+    sampled, grid = scene.at_one_angle, scene.grid(1)
+    if scene.bare.mechanism.closes_everywhere:
+        return zeros_of("assembly", sampled, grid)
+    return compute(sampled, grid, ("assembly",), threads)["assembly"]
 
 
 @lru_cache(maxsize=2)

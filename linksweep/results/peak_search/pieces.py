@@ -85,10 +85,12 @@ def divides(scene: Scene) -> bool:
 def rubbing_signals(scene: Scene, signals: tuple[str, ...]) -> tuple[str, ...]:
     """Return those signals of a scene that depend on the direction of sliding; none where pieces are not enough."""
     machine = scene.mechanism
+    if not divides(scene):
+        return ()
     known = {on_piece(name) for name in machine.directions()}
     forms = (*scene.inputs.forms, *((name, ()) for name in (*known, *ENDS, HALF_TURN, *WIDTHS, ALONG, END)))
     table = _table_on_pieces(scene.table, machine.directions())
-    inputs_of = {signal: plan(table, (signal,), forms).inputs for signal in (signals if divides(scene) else ())}
+    inputs_of = {signal: plan(table, (signal,), forms).inputs for signal in signals}
     return tuple(signal for signal, inputs in inputs_of.items() if not known.isdisjoint(inputs))
 
 
@@ -145,7 +147,7 @@ def _highest(group: Group, pieces: Pieces, inputs: Fields, peak: Peak) -> tuple[
 def follow_unbounded(scene: Scene, designs: Array, peaks: dict[str, SignalPeak], threads: int | None) -> Array:
     """Write the peaks of those designs that move over part of a turn, and of which all signals grow without bound at
     all toggles, to either side; return the other designs."""
-    if scene.jumps() or scene.mechanism.kinks() or scene.approaches():
+    if not len(designs) or scene.jumps() or scene.mechanism.kinks() or scene.approaches():
         return designs
     regular, signals = designs_without_jams(scene, designs), tuple(peaks)
     others = [np.setdiff1d(designs, regular, assume_unique=True)]
